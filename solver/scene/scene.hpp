@@ -1,0 +1,139 @@
+// A scene: what a run is asked to compute, as plain data that nothing changes once it is read.
+// Units are SI and stand in the names; in-situ stress and fluid pressure are positive in compression.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace strata {
+
+enum class Edge { symmetry, fixed, traction };
+
+struct Domain {
+  double width_m = 0.0;
+  double height_m = 0.0;
+  Edge bottom = Edge::symmetry;
+  Edge sides = Edge::fixed;
+  Edge top = Edge::traction;
+};
+
+struct InSitu {
+  enum class Initialise { uniform, loaded };
+  double vertical_Pa = 0.0;
+  double horizontal_Pa = 0.0;
+  Initialise initialise = Initialise::uniform;
+};
+
+struct Rock {
+  std::string name;
+  double youngs_modulus_Pa = 0.0;
+  double poisson_ratio = 0.2;
+  double density_kg_m3 = 2500.0;
+  double toughness_Pa_sqrt_m = 1.45e6;
+};
+
+// The law of an interface between two layers. Members of other laws keep their defaults and are not used.
+struct InterfaceLaw {
+  enum class Kind { perfect, friction, weak, soft };
+  enum class Compression { contact, spring };
+  std::string name = "perfect";
+  Kind kind = Kind::perfect;
+  double coefficient = 0.6;              // friction
+  double shear_strength_Pa = 0.5e6;      // weak
+  double tensile_strength_Pa = 0.5e6;    // weak
+  double residual_friction = 0.0;        // weak, after failure
+  double normal_stiffness_Pa_m = 0.5e6;  // soft
+  double shear_stiffness_Pa_m = 0.5e6;   // soft
+  Compression compression = Compression::contact;
+};
+
+// A layer from `from_m` to `to_m` along the stacking axis.
+struct Layer {
+  std::size_t rock = 0;  // index into Scene::rocks
+  double from_m = 0.0;
+  double to_m = 0.0;
+};
+
+// The interface between layer k and layer k + 1.
+struct InterfacePlace {
+  std::size_t law = 0;  // index into Scene::laws
+  double at_m = 0.0;    // position along the stacking axis
+};
+
+struct Strata {
+  enum class Along { x, y };
+  Along along = Along::y;
+  std::vector<Layer> layers;
+  std::vector<InterfacePlace> interfaces;  // layers.size() - 1 of them
+};
+
+struct Fracture {
+  enum class Growth { none, J };
+  enum class Direction { straight, max_hoop };
+  std::vector<std::array<double, 2>> path_m;
+  Growth growth = Growth::J;
+  double increment_m = 1.0;
+  Direction direction = Direction::straight;
+};
+
+struct Fluid {
+  enum class Law { uniform, paper };
+  enum class NewPoint { dry, inherit };
+  enum class TimeRule { trapezoid, backward_euler, explicit_euler };
+  Law law = Law::paper;
+  double bulk_modulus_Pa = 1.0e9;
+  double viscosity_Pa_s = 0.1;
+  double minimum_opening_m = 1.0e-4;
+  double start_Pa = 0.0;   // inlet pressure at time 0
+  double rate_Pa_s = 0.0;  // and its rise
+  NewPoint new_point = NewPoint::dry;
+  TimeRule time_rule = TimeRule::trapezoid;
+};
+
+struct Numerics {
+  enum class Mechanics { explicit_dynamics };
+  enum class Shape { bspline2, linear, gimp };
+  enum class Transfer { flip, pic, xpic2 };
+  enum class Kinematics { updated };
+  Mechanics mechanics = Mechanics::explicit_dynamics;
+  Kinematics kinematics = Kinematics::updated;
+  double cell_m = 0.0;
+  int particles_per_cell = 4;  // 4, 9 or 16
+  Shape shape = Shape::bspline2;
+  Transfer transfer = Transfer::flip;
+  double courant = 0.6;       // c_P dt / h
+  double damping_1_s = 0.0;
+};
+
+// The first bound reached ends the run; one that is absent does not stop it.
+struct Stop {
+  std::optional<double> tip_y_m;
+  std::optional<double> inlet_Pa;
+  std::optional<double> time_s;
+};
+
+struct Output {
+  std::optional<double> fields_every_s;  // absent: 1/50 of the run
+};
+
+struct Scene {
+  std::string title;
+  std::string variant;  // empty: none chosen
+  Domain domain;
+  InSitu in_situ;
+  std::vector<Rock> rocks;
+  std::vector<InterfaceLaw> laws;  // laws[0] is always "perfect"
+  Strata strata;
+  std::optional<Fracture> fracture;
+  Fluid fluid;  // used where there is a fracture
+  Numerics numerics;
+  Stop stop;
+  Output output;
+  std::string resolved_toml;  // the scene as text, every key with its value, variant and --set applied
+};
+
+}  // namespace strata
