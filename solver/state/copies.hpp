@@ -1,0 +1,65 @@
+// Copies of nodes. Seen from a node near surfaces, particles on different sides of them belong to different velocity
+// fields (CRAMP, Nairn 2003): such a node has a copy for each combination of sides that occurs. Nodes away from split
+// surfaces have one record. Particles that share a node stencil and a side word form a bin, so that the transfer loops
+// see nine record indices and a range of particles, cut or not.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "state/grid.hpp"
+#include "state/particles.hpp"
+#include "state/surfaces.hpp"
+
+namespace strata {
+
+// Nodal quantities gathered from particles; a record is one aligned 8-vector.
+struct alignas(64) NodeSums {
+  double m = 0.0;                        // mass (kg/m)
+  double mom_x = 0.0, mom_y = 0.0;       // momentum (kg/s)
+  double f_x = 0.0, f_y = 0.0;           // force (N/m)
+  double unused[3] = {0.0, 0.0, 0.0};
+};
+
+// Nodal quantities given back to particles; a record is one aligned 4-vector.
+struct alignas(32) NodeMotion {
+  double v_x = 0.0, v_y = 0.0;    // velocity at the end of the step (m/s)
+  double dv_x = 0.0, dv_y = 0.0;  // what forces added to it in the step (m/s)
+};
+
+struct CutNode {
+  SideWord mask = 0;           // the surfaces that split this node
+  std::vector<SideWord> keys;  // the side combinations that occur
+  std::vector<int> records;    // and the record of each
+};
+
+struct Copies {
+  std::vector<int> cut_of_node;  // index into cut, or -1: the node has the one record of its own index
+  std::vector<CutNode> cut;
+  std::vector<int> node_of_record;  // grid node of each record; records beyond Grid::nodes() are further copies
+  int records() const { return static_cast<int>(node_of_record.size()); }
+};
+
+struct Bin {
+  int first = 0, last = 0;     // particles [first, last)
+  int i = 0, j = 0;            // column and row of the middle node of the 3 x 3 stencil
+  std::array<int, 9> record{};  // records of the stencil's nodes, row by row from the lower left
+};
+
+// Bins of a few neighbouring rows. Strips of the same colour (even or odd) share no record, so threads may work on them
+// at the same time and every sum has one fixed order.
+struct Strip {
+  int first = 0, last = 0;  // bins [first, last)
+};
+
+// A record outside a symmetric edge and the one inside that it mirrors.
+struct MirrorPair {
+  int ghost = 0;
+  int inside = 0;
+  bool x_odd = false;  // v_x changes sign (an edge normal to x); otherwise v_y does
+};
+
+/// The copy of a node that a place with these sides belongs to: index of its record, or -1 where no such copy exists.
+int record_of(const Copies& copies, int node, SideWord sides);
+
+}  // namespace strata

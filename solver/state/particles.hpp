@@ -1,0 +1,39 @@
+// Material points as a structure of arrays. Strain is small and the rock linear elastic, so stress is a function of the
+// displacement gradient that a particle carries; the in-situ stress comes on top of it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "state/types.hpp"
+
+namespace strata {
+
+struct Particles {
+  std::vector<double> x, y;                // position (m)
+  std::vector<double> u_x, u_y;            // displacement since the in-situ state (m)
+  std::vector<double> v_x, v_y;            // velocity (m/s)
+  std::vector<double> g_xx, g_xy;          // displacement gradient: g_xy = du_x/dy
+  std::vector<double> g_yx, g_yy;          //
+  std::vector<double> m;                   // mass per metre of thickness (kg/m)
+  std::vector<double> V;                   // area (m^2)
+  std::vector<double> half;                // half of the side of a particle's square (m), for uGIMP
+  std::vector<std::uint8_t> rock;          // index into Scene::rocks
+  std::vector<SideWord> sides;             // side of each surface
+  std::vector<Stress> in_situ;             // in-situ stress (Pa), tension positive
+  std::vector<std::int32_t> id;            // fixed for life; the arrays are reordered as particles change bins
+  std::int32_t next_id = 0;
+
+  std::size_t size() const { return x.size(); }
+};
+
+// Calls visit(array) for each array of the particles, so that reordering, copying and saving are written once.
+template <class AnyParticles, class Visit>
+void for_each_array(AnyParticles& p, Visit visit) {
+  visit(p.x), visit(p.y), visit(p.u_x), visit(p.u_y), visit(p.v_x), visit(p.v_y);
+  visit(p.g_xx), visit(p.g_xy), visit(p.g_yx), visit(p.g_yy);
+  visit(p.m), visit(p.V), visit(p.half);
+  visit(p.rock), visit(p.sides), visit(p.in_situ), visit(p.id);
+}
+
+}  // namespace strata

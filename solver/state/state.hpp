@@ -1,0 +1,105 @@
+// The whole state of a run as plain data: what is saved in a checkpoint is what is here.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scene/scene.hpp"
+#include "state/copies.hpp"
+#include "state/grid.hpp"
+#include "state/particles.hpp"
+#include "state/surfaces.hpp"
+
+namespace strata {
+
+// Fluid pressure at the fracture's vertices (Pa), from its first vertex to its last.
+struct FluidLine {
+  std::vector<double> P;
+  std::size_t inlet = 0;   // the vertex at which the pressure is prescribed
+  double inlet_Pa = 0.0;
+};
+
+struct Tip {
+  bool at_back = true;         // at the last vertex of the fracture, or at the first
+  bool growing = true;         // false once it may not grow any more (see stopped_by)
+  std::string stopped_by;
+  double K_I = 0.0, K_II = 0.0;  // stress intensity factors (Pa sqrt(m))
+  double J = 0.0;                // J-integral, mean over rings (N/m)
+  double J_spread = 0.0;         // (max - min)/mean over rings
+  double ring_m = 0.0;           // outer radius of the widest ring (m)
+  double kink = 0.0;             // next growth direction from the present one (rad), counter-clockwise positive
+  bool at_interface = false;     // an interface is so near that J and K are not to be trusted
+  double last_growth_s = -1.0;   // time of its last growth, -1 before the first
+  double last_growth_Pa = 0.0;   // inlet pressure then
+  double J_at_growth = 0.0;
+  double J_spread_at_growth = 0.0;
+  bool has_grown = false;
+  bool arrested = false;
+  std::vector<int> reached;      // interfaces (surface bits) already reported as reached
+};
+
+struct Event {
+  std::string kind;  // "start", "reach_interface", "arrest", "restart", "stop"
+  double time_s = 0.0;
+  double inlet_Pa = 0.0;
+  double tip_x_m = 0.0, tip_y_m = 0.0;
+  bool at_interface = false;  // decided by a J too near to an interface to be trusted
+};
+
+// Energy per metre of thickness (J/m) since the start. Work done on the rock is positive, and so is dissipation.
+struct Ledger {
+  double kinetic = 0.0;           // of the particles, now
+  double strain = 0.0;            // of the change from the in-situ state, now
+  double interface_strain = 0.0;  // in the springs of soft interfaces, now
+  double fluid_work = 0.0;        // integral of P dV
+  double in_situ_work = 0.0;      // of the in-situ tractions released on surfaces
+  double edge_work = 0.0;         // of the edges' tractions beyond the in-situ ones
+  double damping = 0.0;           // dissipated by damping_1_s
+  double transfer = 0.0;          // dissipated between particles and grid
+  double contact = 0.0;           // dissipated by impacts on contact
+  double friction = 0.0;          // dissipated by sliding and by the failure of interfaces
+  double largest = 0.0;           // largest of the stored or supplied energies so far, the scale for closure()
+
+  double supplied() const { return fluid_work + in_situ_work + edge_work; }
+  double stored() const { return kinetic + strain + interface_strain; }
+  double dissipated() const { return damping + transfer + contact + friction; }
+  double closure() const { return largest > 0.0 ? (stored() + dissipated() - supplied()) / largest : 0.0; }
+};
+
+// What to watch in a run; reported in its summary.
+struct Monitors {
+  double largest_courant = 0.0;           // c_P dt / h
+  double largest_penetration = 0.0;       // of closed contact (m)
+  std::int64_t contact_sweeps = 0;        // Gauss-Seidel sweeps, summed
+  std::int64_t contact_unconverged = 0;   // steps whose contact solve ran out of sweeps
+  double largest_particle_velocity = 0.0;  // m/s
+};
+
+struct State {
+  double time = 0.0;       // s
+  std::int64_t step = 0;
+  double dt = 0.0;         // s
+  Grid grid;
+  Particles particles;
+  std::vector<Surface> surfaces;  // the fracture first, where there is one
+  bool has_fracture = false;
+  FluidLine fluid;
+  std::vector<Tip> tips;
+  std::vector<Event> events;
+  Ledger ledger;
+  Monitors monitors;
+
+  // Derived from the above by rebuild_copies(); not saved.
+  Copies copies;
+  std::vector<Bin> bins;
+  std::vector<Strip> strips;
+  std::vector<MirrorPair> mirrors;
+  std::vector<NodeSums> sums;
+  std::vector<NodeMotion> motion;
+
+  const Surface& fracture() const { return surfaces.front(); }
+  Surface& fracture() { return surfaces.front(); }
+};
+
+}  // namespace strata
