@@ -1,0 +1,100 @@
+// The history of a run: one row per growth event and per output time, without anything that depends on the wall clock.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/scene.hpp"
+#include "state/state.hpp"
+
+namespace strata {
+
+// A row. The tip is the leading one, with the largest y; where there is no fracture, what belongs to a tip is nan (and
+// opening, volume and inlet pressure are 0). Energies are per metre of thickness, as in Ledger.
+struct HistoryRow {
+  double time_s = 0.0;
+  double inlet_Pa = 0.0;
+  double tip_x_m = 0.0, tip_y_m = 0.0;
+  double height_m = 0.0;  // of the leading tip above y = 0, the symmetry line
+  double J_N_m = 0.0;
+  double K_I_Pa_sqrt_m = 0.0, K_II_Pa_sqrt_m = 0.0;
+  double mouth_opening_m = 0.0;
+  double fracture_volume_m2 = 0.0;
+  double kinetic_J = 0.0, strain_J = 0.0, interface_strain_J = 0.0;
+  double fluid_work_J = 0.0, in_situ_work_J = 0.0, edge_work_J = 0.0;
+  double damping_J = 0.0, transfer_J = 0.0, contact_J = 0.0, friction_J = 0.0;
+  double energy_closure = 0.0;
+  double J_spread = 0.0;
+  double kink_deg = 0.0;
+  double at_interface = 0.0;  // 1 where J and K are not to be trusted, 0 elsewhere
+  double ring_m = 0.0;
+};
+
+// A column: its name, which is that of the member, and its unit.
+struct HistoryColumn {
+  const char* name;
+  const char* unit;
+  double HistoryRow::*value;
+};
+
+/// The columns in the order of history.csv; throws nothing.
+std::span<const HistoryColumn> history_columns();
+
+/// The row that describes a state. Throws std::logic_error where a fracture has no tip.
+HistoryRow history_row(const Scene& scene, const State& state);
+
+/// The tip with the largest y, the first of equal ones, or nullptr where there is none; throws nothing.
+const Tip* leading_tip(const State& state);
+
+/// Where a tip is (m): the fracture's last vertex or its first; throws nothing.
+Vec2 tip_position(const State& state, const Tip& tip);
+
+/// Opening face to face (m) where the fracture starts on the symmetry line y = 0: at its first or its last vertex, or,
+/// where neither lies there, the largest of its vertices; 0 without a fracture. Throws nothing.
+double mouth_opening(const State& state);
+
+/// Area between the fracture's faces (m^2), the sum of A w . n over its points, of the modelled domain: what symmetry
+/// left out is not added. 0 without a fracture. Throws nothing.
+double fracture_volume(const State& state);
+
+// Where history.csv stands: what a checkpoint remembers of it.
+struct HistoryMark {
+  std::uint64_t rows = 0;
+  std::uint64_t bytes = 0;
+};
+
+// Writes history.csv and keeps its rows for result.h5. Numbers are the shortest that read back to the same double.
+class HistoryWriter {
+ public:
+  /// Starts `file` with its header, in place of what was there. Throws std::runtime_error if it cannot be written.
+  explicit HistoryWriter(const std::filesystem::path& file);
+
+  /// Goes on behind the rows of `mark`: what follows them is cut off. Throws std::runtime_error where the file does not
+  /// hold these rows.
+  HistoryWriter(const std::filesystem::path& file, const HistoryMark& mark);
+
+  /// Adds a row to the buffer; throws std::runtime_error where the disc refuses it.
+  void append(const HistoryRow& row);
+
+  /// Hands all rows so far to the system and says where the file stands; throws std::runtime_error where it fails.
+  HistoryMark flush();
+
+  /// All rows from the start of the run.
+  const std::vector<HistoryRow>& rows() const { return rows_; }
+
+ private:
+  void put(const std::string& line);
+  std::filesystem::path file_;
+  std::ofstream stream_;
+  std::uint64_t bytes_ = 0;
+  std::vector<HistoryRow> rows_;
+};
+
+/// Reads the rows of a history.csv. Throws std::runtime_error naming file and line where it is not one.
+std::vector<HistoryRow> read_history(const std::filesystem::path& file);
+
+}  // namespace strata

@@ -1,0 +1,64 @@
+// result.h5: the fields of a run at its output times, and result.xdmf, through which ParaView reads them.
+//
+//   /times                       time of each output (s)
+//   /history/<column>            the columns of history.csv
+//   /fracture/00000/...          at the fracture's vertices: x_m, y_m, arc_m, opening_m, slip_m, pressure_Pa,
+//                                permeability_m2; attributes time_s, inlet_Pa
+//   /interfaces/00000/<k>/...    at the points of the scene's interface k, from 0: x_m, y_m, opening_m, slip_m,
+//                                reaction_n_Pa, reaction_t_Pa, split (0 or 1); attributes law, at_m
+//   /particles/00000/...         in the order of their id: id, rock, x_m, y_m, u_x_m, u_y_m, v_x_m_s, v_y_m_s, s_xx_Pa,
+//                                s_yy_Pa, s_xy_Pa (total stress, tension positive), volume_m2; attribute time_s
+//
+// Every data set has an attribute `unit`. The number of particles may differ from one output time to the next. The
+// normal points from the - to the + side, which is on the left of the path; the tangent runs along the path. Fields of
+// particles are stored in single precision, all else in double.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+#include "output/history.hpp"
+#include "scene/scene.hpp"
+#include "state/state.hpp"
+
+namespace strata {
+
+/// Total stress of particle p (Pa, tension positive): in-situ stress and, in plane strain, that of the displacement
+/// gradient; throws nothing.
+Stress total_stress(const Scene& scene, const Particles& particles, std::size_t p);
+
+// The file is open only while something is written, so that others may read it during the run; an interrupted writing
+// is noticed when the file is opened again.
+class ResultFile {
+ public:
+  /// Starts `file` in place of what was there. Throws std::runtime_error if it cannot be written.
+  explicit ResultFile(const std::filesystem::path& file);
+
+  /// Goes on behind the first `outputs` output times: later ones are dropped. Throws std::runtime_error where the file
+  /// is missing, torn or holds fewer.
+  ResultFile(const std::filesystem::path& file, std::size_t outputs);
+
+  /// Adds an output time: the fields of `state`, and the .xdmf beside the file. Throws std::runtime_error where it
+  /// cannot be written.
+  void write_output(const Scene& scene, const State& state);
+
+  /// Puts the rows (all of them, from the start) under /history. Throws std::runtime_error where it cannot be written.
+  void write_history(const std::vector<HistoryRow>& rows);
+
+  /// Number of output times in the file.
+  std::size_t outputs() const { return outputs_.size(); }
+
+ private:
+  // What the .xdmf needs to know about an output time.
+  struct OutputSize {
+    double time_s = 0.0;
+    std::size_t particles = 0;
+    std::size_t vertices = 0;  // of the fracture; 0 without one
+  };
+  void write_xdmf() const;
+  std::filesystem::path file_;
+  std::vector<OutputSize> outputs_;
+};
+
+}  // namespace strata
