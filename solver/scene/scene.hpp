@@ -19,6 +19,8 @@ struct Domain {
   Edge bottom = Edge::symmetry;
   Edge sides = Edge::fixed;
   Edge top = Edge::traction;
+
+  bool operator==(const Domain&) const = default;
 };
 
 struct InSitu {
@@ -26,6 +28,8 @@ struct InSitu {
   double vertical_Pa = 0.0;
   double horizontal_Pa = 0.0;
   Initialise initialise = Initialise::uniform;
+
+  bool operator==(const InSitu&) const = default;
 };
 
 struct Rock {
@@ -34,6 +38,8 @@ struct Rock {
   double poisson_ratio = 0.2;
   double density_kg_m3 = 2500.0;
   double toughness_Pa_sqrt_m = 1.45e6;
+
+  bool operator==(const Rock&) const = default;
 };
 
 // The law of an interface between two layers. Members of other laws keep their defaults and are not used.
@@ -49,6 +55,8 @@ struct InterfaceLaw {
   double normal_stiffness_Pa_m = 0.5e6;  // soft
   double shear_stiffness_Pa_m = 0.5e6;   // soft
   Compression compression = Compression::contact;
+
+  bool operator==(const InterfaceLaw&) const = default;
 };
 
 // A layer from `from_m` to `to_m` along the stacking axis.
@@ -56,12 +64,16 @@ struct Layer {
   std::size_t rock = 0;  // index into Scene::rocks
   double from_m = 0.0;
   double to_m = 0.0;
+
+  bool operator==(const Layer&) const = default;
 };
 
 // The interface between layer k and layer k + 1.
 struct InterfacePlace {
   std::size_t law = 0;  // index into Scene::laws
   double at_m = 0.0;    // position along the stacking axis
+
+  bool operator==(const InterfacePlace&) const = default;
 };
 
 struct Strata {
@@ -69,15 +81,21 @@ struct Strata {
   Along along = Along::y;
   std::vector<Layer> layers;
   std::vector<InterfacePlace> interfaces;  // layers.size() - 1 of them
+
+  bool operator==(const Strata&) const = default;
 };
 
 struct Fracture {
   enum class Growth { none, J };
   enum class Direction { straight, max_hoop };
-  std::vector<std::array<double, 2>> path_m;
+  enum class Crossing { J };
+  std::vector<std::array<double, 2>> path_m;  // an end on the symmetry line comes first
   Growth growth = Growth::J;
   double increment_m = 1.0;
   Direction direction = Direction::straight;
+  Crossing crossing = Crossing::J;
+
+  bool operator==(const Fracture&) const = default;
 };
 
 struct Fluid {
@@ -92,6 +110,8 @@ struct Fluid {
   double rate_Pa_s = 0.0;  // and its rise
   NewPoint new_point = NewPoint::dry;
   TimeRule time_rule = TimeRule::trapezoid;
+
+  bool operator==(const Fluid&) const = default;
 };
 
 struct Numerics {
@@ -105,8 +125,10 @@ struct Numerics {
   int particles_per_cell = 4;  // 4, 9 or 16
   Shape shape = Shape::bspline2;
   Transfer transfer = Transfer::flip;
-  double courant = 0.6;       // c_P dt / h
+  double courant = 0.6;  // c_P dt / h
   double damping_1_s = 0.0;
+
+  bool operator==(const Numerics&) const = default;
 };
 
 // The first bound reached ends the run; one that is absent does not stop it.
@@ -114,14 +136,19 @@ struct Stop {
   std::optional<double> tip_y_m;
   std::optional<double> inlet_Pa;
   std::optional<double> time_s;
+
+  bool operator==(const Stop&) const = default;
 };
 
 struct Output {
   std::optional<double> fields_every_s;  // absent: 1/50 of the run
+
+  bool operator==(const Output&) const = default;
 };
 
 struct Scene {
   std::string title;
+  std::string name;     // of the file it was first read from, without folder and .toml
   std::string variant;  // empty: none chosen
   Domain domain;
   InSitu in_situ;
@@ -134,6 +161,8 @@ struct Scene {
   Stop stop;
   Output output;
   std::string resolved_toml;  // the scene as text, every key with its value, variant and --set applied
+
+  bool operator==(const Scene&) const = default;
 };
 
 }  // namespace strata

@@ -1,0 +1,60 @@
+#include "scene/spelling.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstddef>
+
+namespace strata {
+namespace {
+
+double substitution(char a, char b) {
+  if (a == b) return 0.0;
+  const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+  return lower(a) == lower(b) ? 0.5 : 1.0;
+}
+
+// A unit left off or a word cut short: "viscosity" for "viscosity_Pa_s".
+bool is_stem(std::string_view part, std::string_view whole) {
+  return part.size() >= 4 && whole.size() > part.size() && whole.starts_with(part) && whole[part.size()] == '_';
+}
+
+}  // namespace
+
+double edit_distance(std::string_view a, std::string_view b) {
+  const std::size_t columns = b.size() + 1;
+  std::vector<double> d((a.size() + 1) * columns);
+  const auto at = [&](std::size_t i, std::size_t j) -> double& { return d[i * columns + j]; };
+  for (std::size_t i = 0; i <= a.size(); ++i) at(i, 0) = static_cast<double>(i);
+  for (std::size_t j = 0; j <= b.size(); ++j) at(0, j) = static_cast<double>(j);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      at(i, j) =
+          std::min({at(i - 1, j) + 1.0, at(i, j - 1) + 1.0, at(i - 1, j - 1) + substitution(a[i - 1], b[j - 1])});
+      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (swapped) at(i, j) = std::min(at(i, j), at(i - 2, j - 2) + 1.0);
+    }
+  }
+  return at(a.size(), b.size());
+}
+
+std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string>& candidates) {
+  std::optional<std::string> nearest;
+  double nearest_distance = 0.0;
+  for (const std::string& candidate : candidates) {
+    // A third of the letters wrong is still a slip of the fingers; more is another word.
+    const double allowed = std::max(1.0, static_cast<double>(std::max(word.size(), candidate.size())) / 3.0);
+    double distance = edit_distance(word, candidate);
+    if (is_stem(word, candidate) || is_stem(candidate, word)) distance = std::min(distance, 0.9);
+    if (distance > allowed || (nearest && distance >= nearest_distance)) continue;
+    nearest = candidate;
+    nearest_distance = distance;
+  }
+  return nearest;
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
+  const auto nearest = nearest_word(word, candidates);
+  return nearest ? " Did you mean " + *nearest + "?" : std::string();
+}
+
+}  // namespace strata

@@ -1,0 +1,215 @@
+#include "scene/toml_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <utility>
+
+#include "scene/build_scene.hpp"
+#include "scene/entries.hpp"
+#include "scene/resolved.hpp"
+#include "scene/scene_checks.hpp"
+#include "scene/spelling.hpp"
+
+namespace strata {
+namespace {
+
+// A parsed text, or why it is not TOML.
+struct Parsed {
+  toml::table table;
+  std::string error;
+};
+
+Parsed parse(std::string_view text, const std::string& name) {
+  Parsed parsed;
+  try {
+    parsed.table = toml::parse(text, name);
+  } catch (const toml::parse_error& error) {
+    const auto place = error.source().begin;
+    parsed.error = fmt::format("{}:{}:{}: this is not TOML: {}.", name, place.line, place.column, error.description());
+  }
+  return parsed;
+}
+
+// A file's text, or why there is none.
+struct FileText {
+  std::string text;
+  std::string error;
+};
+
+FileText file_text(const std::filesystem::path& file) {
+  std::error_code code;
+  if (!std::filesystem::exists(file, code)) return {"", file.string() + ": there is no such file. Check the path."};
+  if (std::filesystem::is_directory(file, code)) {
+    return {"", file.string() + ": this is a folder. Give the path of a scene file."};
+  }
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return {"", file.string() + ": the file cannot be read. Check its permissions."};
+  std::ostringstream text;
+  text << in.rdbuf();
+  return {text.str(), ""};
+}
+
+struct Variant {
+  std::string name;
+  Where where;
+  Entries entries;
+};
+
+bool is_folder_name(std::string_view name) {
+  return !name.empty() && name[0] != '.' && std::ranges::all_of(name, [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+           std::string_view("_-.+").find(c) != std::string_view::npos;
+  });
+}
+
+// All variants of the scene in the order of the file; what is wrong with them, chosen or not, goes to `faults`.
+std::vector<Variant> read_variants(const toml::table& root, const std::string& file_name, Faults& faults) {
+  std::vector<Variant> variants;
+  const Origin origin{file_name, 1};
+  const toml::node* node = root.get("variants");
+  if (node == nullptr) return variants;
+  if (!node->is_table()) {
+    faults.add(where_of(origin, node->source()), "variants is not a table. Write [variants.NAME] above each.");
+    return variants;
+  }
+  for (const auto& [name, value] : *node->as_table()) {
+    Variant variant{std::string(name.str()), where_of(origin, name.source()), {}};
+    if (!is_folder_name(variant.name)) {
+      faults.add(variant.where,
+                 fmt::format("variants.\"{}\": a variant names a folder, so it is made of letters, digits, _ - + "
+                             "and a dot that is not the first.",
+                             variant.name));
+    } else if (!value.is_table()) {
+      faults.add(variant.where,
+                 fmt::format("variants.{} = {} is not a table. Write [variants.{}] and below it the keys it "
+                             "replaces.",
+                             variant.name, as_typed(value), variant.name));
+    } else {
+      flatten(*value.as_table(), "", origin, {}, true, variant.entries, faults);
+      variants.push_back(std::move(variant));
+    }
+  }
+  std::ranges::stable_sort(variants, {}, [](const Variant& v) { return std::pair(v.where.line, v.where.column); });
+  return variants;
+}
+
+std::string trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
+}
+
+bool is_bare_word(std::string_view text) {
+  return !text.empty() && std::ranges::all_of(text, [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+  });
+}
+
+// Reads one "key.path=value" into `entries`; the parsed value is put into `tables`, which must live as long.
+void read_setting(const std::string& setting, std::vector<std::unique_ptr<toml::table>>& tables, Entries& entries,
+                  Faults& faults) {
+  const Origin origin{"--set " + setting, 2};
+  const Where where{origin.name, 0, 0, 2};
+  const std::size_t equals = setting.find('=');
+  const std::string path = trimmed(std::string_view(setting).substr(0, equals));
+  if (equals == std::string::npos || path.empty()) {
+    faults.add(where, "this is not key.path=value.");
+    return;
+  }
+  const std::string value = trimmed(std::string_view(setting).substr(equals + 1));
+  Parsed parsed = parse("value = " + value, origin.name);
+  if (!parsed.error.empty() && is_bare_word(value)) {
+    parsed = {};
+    parsed.table.insert("value", value);
+  }
+  if (!parsed.error.empty() || parsed.table.size() != 1) {
+    faults.add(where, fmt::format("{} is neither TOML nor a bare word. Text in a list or with spaces needs quotes: "
+                                  "'[\"weak\"]'.",
+                                  value.empty() ? "an empty value" : value));
+    return;
+  }
+  tables.push_back(std::make_unique<toml::table>(std::move(parsed.table)));
+  flatten_value(path, *tables.back()->get("value"), where, origin, true, entries, faults);
+}
+
+// The [[claim]] tables as they will stand in the resolved scene.
+std::string claims_text(const toml::table& root) {
+  const toml::node* claims = root.get("claim");
+  if (claims == nullptr) return {};
+  toml::table table;
+  table.insert("claim", *claims->as_array());
+  std::ostringstream out;
+  out << toml::toml_formatter{table, toml::format_flags::allow_unicode_strings};
+  return out.str();
+}
+
+void lay_variant(const std::string& name, const std::vector<Variant>& variants, const std::string& file_name,
+                 Entries& entries, Faults& faults) {
+  if (name.empty()) return;
+  const auto chosen = std::ranges::find(variants, name, &Variant::name);
+  if (chosen != variants.end()) {
+    lay_over(entries, chosen->entries);
+    return;
+  }
+  std::vector<std::string> names;
+  for (const Variant& variant : variants) names.push_back(variant.name);
+  const std::string known = names.empty() ? "It has no variants." : fmt::format("It has {}.", fmt::join(names, ", "));
+  faults.add({file_name}, fmt::format("there is no variant {}. {}{}", name, known, did_you_mean(name, names)));
+}
+
+}  // namespace
+
+ReadResult read_scene_text(std::string_view text, const std::string& file_name, const std::string& variant,
+                           const std::vector<std::string>& set) {
+  const Parsed parsed = parse(text, file_name);
+  if (!parsed.error.empty()) return {std::nullopt, {parsed.error}};
+  const Origin origin{file_name, 0};
+  Faults faults;
+  Entries entries;
+  flatten(parsed.table, "", origin, {"variants", "claim"}, false, entries, faults);
+  if (const toml::node* claims = parsed.table.get("claim")) check_claims(*claims, origin, faults);
+  lay_variant(variant, read_variants(parsed.table, file_name, faults), file_name, entries, faults);
+  std::vector<std::unique_ptr<toml::table>> tables;
+  for (const std::string& setting : set) {
+    Entries above;
+    read_setting(setting, tables, above, faults);
+    lay_over(entries, above);
+  }
+  const Positions positions = positions_of(entries, {file_name + ":1:1", 1, 1, 0});
+  Scene scene = build_scene(entries, positions, faults);
+  if (scene.name.empty()) scene.name = std::filesystem::path(file_name).stem().string();
+  if (!variant.empty()) scene.variant = variant;
+  check_scene(scene, positions, faults);
+  if (!faults.list.empty()) return {std::nullopt, as_lines(faults)};
+  scene.resolved_toml = resolved_toml(scene, claims_text(parsed.table));
+  return {std::move(scene), {}};
+}
+
+ReadResult read_scene(const std::filesystem::path& file, const std::string& variant,
+                      const std::vector<std::string>& set) {
+  const FileText read = file_text(file);
+  if (!read.error.empty()) return {std::nullopt, {read.error}};
+  return read_scene_text(read.text, file.string(), variant, set);
+}
+
+VariantList list_variants_text(std::string_view text, const std::string& file_name) {
+  const Parsed parsed = parse(text, file_name);
+  if (!parsed.error.empty()) return {{}, {parsed.error}};
+  Faults faults;
+  VariantList list;
+  for (const Variant& variant : read_variants(parsed.table, file_name, faults)) list.names.push_back(variant.name);
+  return list;
+}
+
+VariantList list_variants(const std::filesystem::path& file) {
+  const FileText read = file_text(file);
+  if (!read.error.empty()) return {{}, {read.error}};
+  return list_variants_text(read.text, file.string());
+}
+
+}  // namespace strata

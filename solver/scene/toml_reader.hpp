@@ -1,0 +1,42 @@
+// Reads a scene from TOML. Every mistake in it is reported, in one pass, with its place and what to do.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/scene.hpp"
+
+namespace strata {
+
+// A scene, or else what is wrong with it: lines "file:line:column: what. What to do.".
+struct ReadResult {
+  std::optional<Scene> scene;
+  std::vector<std::string> errors;
+};
+
+// The names of a scene's variants in the order of the file, or else why it cannot be read.
+struct VariantList {
+  std::vector<std::string> names;
+  std::vector<std::string> errors;
+};
+
+// Reads a scene file and applies a variant, then settings. variant: name of one of its variants, "" for none;
+// set: texts "key.path=value" whose value is TOML or a bare word, the later ones above the earlier.
+// Throws nothing but std::bad_alloc.
+ReadResult read_scene(const std::filesystem::path& file, const std::string& variant,
+                      const std::vector<std::string>& set);
+
+// The same from text. file_name: what messages call it. Throws nothing but std::bad_alloc.
+ReadResult read_scene_text(std::string_view text, const std::string& file_name, const std::string& variant,
+                           const std::vector<std::string>& set);
+
+// The variants of a scene file; of the rest only the syntax is looked at. Throws nothing but std::bad_alloc.
+VariantList list_variants(const std::filesystem::path& file);
+
+// The same from text. file_name: what messages call it. Throws nothing but std::bad_alloc.
+VariantList list_variants_text(std::string_view text, const std::string& file_name);
+
+}  // namespace strata
