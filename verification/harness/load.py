@@ -1,0 +1,206 @@
+"""Reads a run's folder into plain data: scene, summary, history, and on demand what result.h5 holds."""
+from __future__ import annotations
+
+import csv
+import json
+import math
+import tomllib
+from dataclasses import dataclass, field, fields
+from functools import cached_property
+from pathlib import Path
+from typing import Any, TypeVar
+
+import h5py
+import numpy as np
+
+Array = np.ndarray
+
+
+class LoadError(Exception):
+    """A run's folder lacks a file, or one cannot be read; the message says which."""
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happened to a tip: kind, time (s), inlet pressure (Pa) and place (m)."""
+
+    kind: str
+    time_s: float
+    inlet_Pa: float
+    tip_x_m: float
+    tip_y_m: float
+
+
+@dataclass(frozen=True)
+class Tip:
+    """A tip at the end of a run: place (m), K (Pa sqrt(m)), J (N/m), ring spread (of J) and next kink (degrees)."""
+
+    x_m: float
+    y_m: float
+    K_I_Pa_sqrt_m: float
+    K_II_Pa_sqrt_m: float
+    J_N_m: float
+    J_spread: float
+    kink_deg: float
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What summary.json says, in SI units; `raw` is all of it."""
+
+    scene: str
+    variant: str
+    status: str
+    reason: str
+    mechanics: str
+    cells: int
+    particles: int
+    steps: int
+    time_s: float
+    inlet_Pa: float
+    wall_s: float
+    particle_steps_per_s: float
+    peak_memory_MB: float
+    version: str
+    mouth_opening_m: float
+    fracture_volume_m2: float
+    energy: dict[str, float]
+    tips: tuple[Tip, ...]
+    events: tuple[Event, ...]
+    raw: dict[str, Any] = field(repr=False)
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run as its folder has it."""
+
+    folder: Path
+    scene: dict[str, Any] = field(repr=False)
+    summary: Summary = field(repr=False)
+    history: dict[str, Array] = field(repr=False)
+
+    @property
+    def name(self) -> str:
+        """Scene and variant, as the folders say it."""
+        return f"{self.folder.parent.name}/{self.folder.name}"
+
+    @property
+    def interfaces_m(self) -> list[float]:
+        """Places of the interfaces along the stacking axis, m."""
+        layers = self.scene["strata"]["layers"]
+        return [sum(float(layer["thickness_m"]) for layer in layers[: k + 1]) for k in range(len(layers) - 1)]
+
+    @property
+    def along(self) -> str:
+        """The stacking axis, 'x' or 'y'."""
+        return str(self.scene["strata"].get("along", "y"))
+
+    @property
+    def increment_m(self) -> float:
+        """Growth increment, m."""
+        return float(self.scene["fracture"].get("increment_m", self.scene["numerics"]["cell_m"]))
+
+    @property
+    def decides_by_J(self) -> bool:
+        """Whether J alone decides on growth near an interface."""
+        default = "J" if self.summary.mechanics == "explicit" else "energy"
+        return str(self.scene["fracture"].get("crossing", default)) == "J"
+
+    @cached_property
+    def path(self) -> Array:
+        """The fracture from its first vertex to its last tip, shape (n, 2), m."""
+        points = [tuple(map(float, point)) for point in self.scene["fracture"]["path_m"]]
+        for tip in zip(self.history["tip_x_m"], self.history["tip_y_m"]):
+            if math.dist(points[-1], tip) > 1e-9:
+                points.append((float(tip[0]), float(tip[1])))
+        return np.array(points)
+
+
+T = TypeVar("T")
+
+
+def number(value: Any) -> float:
+    """A JSON number as a float; null, which stands for not finite, as NaN."""
+    return math.nan if value is None else float(value)
+
+
+def build(cls: type[T], content: dict[str, Any], where: Path) -> T:
+    """A flat dataclass of numbers and words from a JSON object; a missing key is a LoadError."""
+    values: dict[str, Any] = {}
+    for item in fields(cls):  # type: ignore[arg-type]
+        if item.name not in content:
+            raise LoadError(f"{where}: no key {item.name}")
+        values[item.name] = str(content[item.name]) if item.type == "str" else number(content[item.name])
+    return cls(**values)
+
+
+def read_summary(path: Path) -> Summary:
+    """Read summary.json."""
+    try:
+        raw = json.loads(path.read_text(encoding="utf-8"))
+        events = tuple(build(Event, event, path) for event in raw["events"])
+        tips = tuple(build(Tip, tip, path) for tip in raw["tips"])
+        energy = {name: number(value) for name, value in raw["energy"].items()}
+        words = {name: str(raw.get(name) or "") for name in ("scene", "variant", "status", "reason", "mechanics", "version")}
+        counts = {name: int(raw[name]) for name in ("cells", "particles", "steps")}
+        sizes = ("time_s", "inlet_Pa", "wall_s", "particle_steps_per_s", "peak_memory_MB", "mouth_opening_m", "fracture_volume_m2")
+        numbers = {name: number(raw[name]) for name in sizes}
+    except KeyError as error:
+        raise LoadError(f"{path}: no key {error.args[0]}") from error
+    except (OSError, ValueError, TypeError, AttributeError) as error:
+        raise LoadError(f"{path}: {error}") from error
+    return Summary(**words, **counts, **numbers, energy=energy, tips=tips, events=events, raw=raw)
+
+
+def read_history(path: Path) -> dict[str, Array]:
+    """Read history.csv: a column a key, NaN where a cell is no number."""
+    try:
+        with path.open(encoding="utf-8", newline="") as stream:
+            rows = [row for row in csv.reader(stream) if row]
+    except OSError as error:
+        raise LoadError(f"{path}: {error}") from error
+    if len(rows) < 2:
+        raise LoadError(f"{path}: no rows")
+    ragged = next((n for n, row in enumerate(rows[1:], 2) if len(row) != len(rows[0])), None)
+    if ragged is not None:
+        raise LoadError(f"{path}:{ragged}: not as many cells as the header names")
+
+    def cell(text: str) -> float:
+        try:
+            return float(text)
+        except ValueError:
+            return math.nan
+
+    return {name.strip(): np.array([cell(row[k]) for row in rows[1:]]) for k, name in enumerate(rows[0])}
+
+
+def load(folder: Path) -> Run:
+    """Read a run's folder; raises LoadError where something is missing."""
+    try:
+        scene = tomllib.loads((folder / "scene.toml").read_text(encoding="utf-8"))
+    except (OSError, tomllib.TOMLDecodeError) as error:
+        raise LoadError(f"{folder / 'scene.toml'}: {error}") from error
+    return Run(folder, scene, read_summary(folder / "summary.json"), read_history(folder / "history.csv"))
+
+
+def frames(run: Run, group: str) -> list[tuple[float, dict[str, Array]]]:
+    """Output times (s) of a group of result.h5, such as 'fracture', with the arrays stored at each, by their names."""
+    path = run.folder / "result.h5"
+    try:
+        with h5py.File(path, "r") as store:
+            times = store["times"][()]
+            return [(float(times[int(name)]), arrays_of(item)) for name, item in sorted(store[group].items()) if name.isdigit()]
+    except (OSError, KeyError, IndexError) as error:
+        raise LoadError(f"{path}: {error}") from error
+
+
+def arrays_of(group: h5py.Group) -> dict[str, Array]:
+    """All data sets below a group, by their names from it."""
+    arrays: dict[str, Array] = {}
+
+    def visit(name: str, item: h5py.Group | h5py.Dataset) -> None:
+        if isinstance(item, h5py.Dataset):
+            arrays[name] = item[()]
+
+    group.visititems(visit)
+    return arrays

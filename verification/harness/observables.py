@@ -1,0 +1,338 @@
+"""What claims are about, as functions of run folders.
+
+Every observable is an interval: a single number where a run shows it, and a bound where the run ended first. Heights are
+tip y above the symmetry line (m); pressures are inlet pressures (Pa).
+"""
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from verification.harness.load import Array, LoadError, Run, frames
+
+Parameters = dict[str, Any]
+
+# Lengths are compared with this slack, m: far below any increment, far above round-off.
+SLACK_M = 1e-6
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A number known to lie in [low, high]; NaN in both where there is nothing to measure, then `note` says why."""
+
+    low: float
+    high: float
+    note: str = ""
+    flags: tuple[str, ...] = ()
+
+    @property
+    def exact(self) -> bool:
+        """Whether the number itself is known."""
+        return self.low == self.high
+
+    @property
+    def value(self) -> float | None:
+        """The number, or the finite bound of it that is known, or None."""
+        finite = [bound for bound in (self.low, self.high) if math.isfinite(bound)]
+        return finite[0] if finite else None
+
+    def holds(self, at_least: float | None, at_most: float | None) -> bool | None:
+        """Whether the number is in the asked range; None where its bounds leave that open or there is no number."""
+        if math.isnan(self.low) or math.isnan(self.high):
+            return None
+        asked_low = -math.inf if at_least is None else at_least
+        asked_high = math.inf if at_most is None else at_most
+        if self.low >= asked_low and self.high <= asked_high:
+            return True
+        return False if self.high < asked_low or self.low > asked_high else None
+
+
+def exactly(number: float, *flags: str) -> Measured:
+    """A number that is known."""
+    return Measured(float(number), float(number), flags=flags)
+
+
+def nothing(note: str) -> Measured:
+    """No number, and why."""
+    return Measured(math.nan, math.nan, note)
+
+
+def difference(a: Measured, b: Measured) -> Measured:
+    """a - b."""
+    return Measured(a.low - b.high, a.high - b.low, "; ".join(filter(None, (a.note, b.note))), a.flags + b.flags)
+
+
+def ratio(a: Measured, b: Measured) -> Measured:
+    """a / b for two numbers that are not negative."""
+    note, flags = "; ".join(filter(None, (a.note, b.note))), a.flags + b.flags
+    if b.high == 0.0:
+        return Measured(math.nan, math.nan, note or "the number to divide by is zero", flags)
+    low = a.low / b.high if math.isfinite(b.high) else 0.0
+    return Measured(low, a.high / b.low if b.low > 0.0 else math.inf, note, flags)
+
+
+# --- building blocks
+
+
+def grew(run: Run) -> bool:
+    """Whether any tip moved."""
+    return len(run.path) > len(run.scene["fracture"]["path_m"])
+
+
+def pressure_at_height(run: Run, height_m: float) -> Measured:
+    """Inlet pressure at which the tip first is at a height, Pa; at least the last one where it never gets there."""
+    reached = np.flatnonzero(run.history["tip_y_m"] >= height_m - SLACK_M)
+    if reached.size:
+        return exactly(run.history["inlet_Pa"][reached[0]])
+    return Measured(float(run.history["inlet_Pa"][-1]), math.inf, f"{run.name} does not reach {height_m:g} m")
+
+
+def interface_height(run: Run, number: int) -> float:
+    """Height of an interface normal to the fracture, counted from 1 below, m."""
+    if run.along != "y" or not 1 <= number <= len(run.interfaces_m):
+        raise ValueError(f"{run.name} has no interface {number} across the fracture")
+    return run.interfaces_m[number - 1]
+
+
+def arrests_near(run: Run, height_m: float, band_m: float) -> list[Measured]:
+    """Rise of the inlet pressure, Pa, over each arrest with the tip within a band (m) of a height."""
+    events = [event for event in run.summary.events if event.kind in ("arrest", "restart")]
+    found = []
+    for k, event in enumerate(events):
+        if event.kind != "arrest" or abs(event.tip_y_m - height_m) > band_m:
+            continue
+        after = next((later for later in events[k + 1 :] if later.kind == "restart"), None)
+        if after is not None:
+            found.append(exactly(after.inlet_Pa - event.inlet_Pa))
+        else:
+            note = f"{run.name} does not grow on from {event.tip_y_m:g} m"
+            found.append(Measured(run.summary.inlet_Pa - event.inlet_Pa, math.inf, note))
+    return found
+
+
+def resample(path: Array, step_m: float) -> Array:
+    """Points every step (m) along a polyline, from its first point."""
+    arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
+    at = np.arange(0.0, arc[-1] + 1e-9, step_m)
+    return np.column_stack([np.interp(at, arc, path[:, 0]), np.interp(at, arc, path[:, 1])])
+
+
+def path_length(path: Array) -> float:
+    """Length of a polyline, m."""
+    return float(np.hypot(*np.diff(path, axis=0).T).sum())
+
+
+def distances_to(points: Array, path: Array) -> Array:
+    """Distance of each point to a polyline, m."""
+    a, d = path[:-1], np.diff(path, axis=0)
+    length2 = np.maximum((d**2).sum(axis=1), 1e-300)
+    along = np.clip(((points[:, None, :] - a) * d).sum(axis=2) / length2, 0.0, 1.0)
+    feet = a + along[:, :, None] * d
+    return np.sqrt(((points[:, None, :] - feet) ** 2).sum(axis=2)).min(axis=1)
+
+
+# --- observables of one run
+
+
+def start_Pa(run: Run, _: Run | None, __: Parameters) -> Measured:
+    """Pressure of the first growth."""
+    start = next((event for event in run.summary.events if event.kind == "start"), None)
+    if start is not None:
+        return exactly(start.inlet_Pa)
+    return Measured(run.summary.inlet_Pa, math.inf, f"{run.name} does not start to grow")
+
+
+def final_height_m(run: Run, _: Run | None, __: Parameters) -> Measured:
+    """Height of the tip at the end of the run."""
+    return exactly(float(np.max(run.history["tip_y_m"])))
+
+
+def plateau_Pa(run: Run, _: Run | None, parameters: Parameters) -> Measured:
+    """Rise of the inlet pressure between arrest and restart at an interface, summed over arrests within 1.5 increments."""
+    height = interface_height(run, int(parameters["interface"]))
+    if np.max(run.history["tip_y_m"]) < height - 1.5 * run.increment_m - SLACK_M:
+        return nothing(f"{run.name} does not reach the interface at {height:g} m")
+    found = arrests_near(run, height, 1.5 * run.increment_m + SLACK_M)
+    if not found:
+        return exactly(0.0)
+    flags = ("J at interface",) if run.decides_by_J else ()
+    note = "; ".join(filter(None, (one.note for one in found)))
+    return Measured(sum(one.low for one in found), sum(one.high for one in found), note, flags)
+
+
+def arrests(run: Run, _: Run | None, __: Parameters) -> Measured:
+    """Number of arrests of a fracture that has grown."""
+    if not grew(run):
+        return nothing(f"{run.name} does not grow")
+    return exactly(sum(event.kind == "arrest" for event in run.summary.events))
+
+
+def lateral_deflection_m(run: Run, _: Run | None, __: Parameters) -> Measured:
+    """Farthest distance of the path from its first straight line, positive towards larger x."""
+    if not grew(run):
+        return nothing(f"{run.name} does not grow")
+    offset = run.path[:, 0] - run.path[0, 0]
+    return exactly(float(offset[np.argmax(np.abs(offset))]))
+
+
+def final_angle_deg(run: Run, _: Run | None, parameters: Parameters) -> Measured:
+    """Angle between the last 5 m of the path and the horizontal, 0 to 90 degrees."""
+    points = resample(run.path, 0.05)
+    count = round(float(parameters.get("over_m", 5.0)) / 0.05)
+    if not grew(run) or len(points) <= count:
+        return nothing(f"{run.name} does not grow far enough")
+    dx, dy = np.abs(points[-1] - points[-1 - count])
+    return exactly(math.degrees(math.atan2(dy, dx)))
+
+
+def failed_length_m(arrays: dict[str, Array], number: int) -> float:
+    """Length of interface `number` (from 1) that has two separate sides at an output time, m."""
+    place = str(number - 1)
+    x, split = arrays[f"{place}/x_m"], arrays[f"{place}/split"]
+    return float(np.sum(split > 0)) * (float(x.max() - x.min()) / (len(x) - 1) if len(x) > 1 else 0.0)
+
+
+def interface_failure_excess_Pa(run: Run, _: Run | None, parameters: Parameters) -> Measured:
+    """Pressure at the first output with two cells of an interface failed, less that which brought the tip near to it."""
+    number = int(parameters["interface"])
+    near = pressure_at_height(run, interface_height(run, number) - 1.5 * run.increment_m)
+    if not near.exact:
+        return nothing(near.note)
+    two_cells = 2.0 * float(run.scene["numerics"]["cell_m"])
+    for time_s, arrays in frames(run, "interfaces"):
+        if failed_length_m(arrays, number) >= two_cells - SLACK_M:
+            return exactly(float(np.interp(time_s, run.history["time_s"], run.history["inlet_Pa"])) - near.low)
+    return Measured(run.summary.inlet_Pa - near.low, math.inf, f"{run.name}: interface {number} does not fail")
+
+
+def interface_energy(run: Run, height_m: float) -> Measured:
+    """Energy in interfaces (stored in springs, spent on sliding and failure) when the tip is at a height, J/m."""
+    energy = run.history["interface_strain_J"] + run.history["friction_J"]
+    reached = np.flatnonzero(run.history["tip_y_m"] >= height_m - SLACK_M)
+    if reached.size:
+        return exactly(energy[reached[0]])
+    return Measured(float(energy[-1]), math.inf, f"{run.name} does not reach {height_m:g} m")
+
+
+# --- observables of two runs
+
+
+def interface_energy_difference_J(run: Run, against: Run | None, parameters: Parameters) -> Measured:
+    """Energy in interfaces, per metre of thickness, when the tip is at a height, less that of the other run."""
+    assert against is not None
+    height = float(parameters["height_m"])
+    return difference(interface_energy(run, height), interface_energy(against, height))
+
+
+def start_shift_Pa(run: Run, against: Run | None, parameters: Parameters) -> Measured:
+    """Pressure of the first growth less that of the other run."""
+    assert against is not None
+    return difference(start_Pa(run, None, parameters), start_Pa(against, None, parameters))
+
+
+def plateau_difference_Pa(run: Run, against: Run | None, parameters: Parameters) -> Measured:
+    """Plateau at an interface less that of the other run."""
+    assert against is not None
+    return difference(plateau_Pa(run, None, parameters), plateau_Pa(against, None, parameters))
+
+
+def plateau_ratio(run: Run, against: Run | None, parameters: Parameters) -> Measured:
+    """Plateau at an interface divided by that of the other run."""
+    assert against is not None
+    return ratio(plateau_Pa(run, None, parameters), plateau_Pa(against, None, parameters))
+
+
+def pressure_shift_Pa(run: Run, against: Run | None, parameters: Parameters) -> Measured:
+    """Largest distance in pressure, whatever its sign, between two height curves over a range of heights."""
+    assert against is not None
+    if not grew(run) and not grew(against):
+        return nothing("neither run grows")
+    low, high, neither = 0.0, 0.0, 0
+    for height in np.arange(float(parameters["from_m"]), float(parameters["to_m"]) + SLACK_M, run.increment_m):
+        a, b = pressure_at_height(run, height), pressure_at_height(against, height)
+        if not (a.exact or b.exact):
+            neither += 1
+            continue
+        gap = difference(a, b)
+        least = max(gap.low, -gap.high, 0.0)
+        low, high = max(low, least), max(high, abs(gap.low), abs(gap.high))
+    note = f"neither run reaches {neither} of the heights" if neither else ""
+    return Measured(low, high, note)
+
+
+def pressure_at_height_difference_Pa(run: Run, against: Run | None, parameters: Parameters) -> Measured:
+    """Pressure that brings the tip to a height less that of the other run."""
+    assert against is not None
+    height = float(parameters["height_m"])
+    return difference(pressure_at_height(run, height), pressure_at_height(against, height))
+
+
+def height_ratio(run: Run, against: Run | None, parameters: Parameters) -> Measured:
+    """Height at the pressure which has brought the other run to a height, divided by that height."""
+    assert against is not None
+    height = float(parameters["height_m"])
+    pressure = pressure_at_height(against, height)
+    if not pressure.exact:
+        return nothing(pressure.note)
+    before = run.history["inlet_Pa"] <= pressure.low + 1e-6
+    return exactly(float(np.max(run.history["tip_y_m"][before])) / height)
+
+
+def path_distance_m(run: Run, against: Run | None, _: Parameters) -> Measured:
+    """Root mean square distance of the path from the other's, over the length both have."""
+    assert against is not None
+    if not (grew(run) and grew(against)):
+        return nothing("one of the paths does not grow")
+    common = min(path_length(run.path), path_length(against.path))
+    points = resample(run.path, 0.25)[: int(common / 0.25) + 1]
+    flags = () if common >= 10.0 else (f"common path of {common:.1f} m only",)
+    return exactly(float(np.sqrt(np.mean(distances_to(points, against.path) ** 2))), *flags)
+
+
+@dataclass(frozen=True)
+class Observable:
+    """A named observable: its function, unit and whether it compares two runs."""
+
+    function: Callable[[Run, Run | None, Parameters], Measured]
+    unit: str
+    compares: bool = False
+
+    @property
+    def meaning(self) -> str:
+        """One sentence on what it is."""
+        return (self.function.__doc__ or "").strip()
+
+
+OBSERVABLES: dict[str, Observable] = {
+    "start_Pa": Observable(start_Pa, "Pa"),
+    "final_height_m": Observable(final_height_m, "m"),
+    "plateau_Pa": Observable(plateau_Pa, "Pa"),
+    "arrests": Observable(arrests, ""),
+    "lateral_deflection_m": Observable(lateral_deflection_m, "m"),
+    "final_angle_deg": Observable(final_angle_deg, "degrees"),
+    "interface_failure_excess_Pa": Observable(interface_failure_excess_Pa, "Pa"),
+    "interface_energy_difference_J": Observable(interface_energy_difference_J, "J/m", True),
+    "start_shift_Pa": Observable(start_shift_Pa, "Pa", True),
+    "plateau_difference_Pa": Observable(plateau_difference_Pa, "Pa", True),
+    "plateau_ratio": Observable(plateau_ratio, "", True),
+    "pressure_shift_Pa": Observable(pressure_shift_Pa, "Pa", True),
+    "pressure_at_height_difference_Pa": Observable(pressure_at_height_difference_Pa, "Pa", True),
+    "height_ratio": Observable(height_ratio, "", True),
+    "path_distance_m": Observable(path_distance_m, "m", True),
+}
+
+
+def measure(name: str, parameters: Parameters, run: Run, against: Run | None) -> Measured:
+    """The named observable of a run, or of a run against another; equal notes and flags are given once."""
+    observable = OBSERVABLES[name]
+    if observable.compares and against is None:
+        raise ValueError(f"{name} compares two runs")
+    try:
+        found = observable.function(run, against, parameters)
+    except LoadError as error:
+        return nothing(str(error))
+    return replace(found, flags=tuple(dict.fromkeys(found.flags)))

@@ -1,0 +1,19 @@
+"""Where things are in the project."""
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+EXPERIMENTS = ROOT / "experiments"
+ANALYTIC = ROOT / "verification" / "analytic"
+
+
+def solver() -> Path:
+    """The solver to run: $STRATA, or that of the release build."""
+    return Path(os.environ.get("STRATA", ROOT / "build" / "release" / "strata"))
+
+
+def reference_program() -> Path:
+    """The program with the reference values: $STRATA_REFERENCE, or that of the release build."""
+    return Path(os.environ.get("STRATA_REFERENCE", ROOT / "build" / "release" / "strata-reference"))

@@ -1,0 +1,175 @@
+"""Runs one variant of a scene into a folder, unless that folder already holds the same run by the same solver.
+
+usage: python3 -m verification.harness.run SCENE --variant NAME --out DIR [--set KEY=VALUE]... [--force]
+"""
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import shutil
+import subprocess
+import sys
+import time
+import tomllib
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from verification.harness.paths import solver
+
+OUTCOME = "outcome.json"
+
+# What the solver's exit status means (0 done, 3 numerics failed); only these two are the solver's word on the scene.
+MEANING = {0: "completed", 1: "a bug in the solver", 2: "bad input", 3: "numerics failed", 130: "interrupted"}
+FINAL = (0, 3)
+
+
+@dataclass(frozen=True)
+class Job:
+    """One run: a scene, its variant (empty: the base scene), further settings, where to put it and on how many threads."""
+
+    scene: Path
+    variant: str
+    out: Path
+    settings: tuple[str, ...] = ()
+    threads: int = 1
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a run ended; wall_s in seconds. It is kept in the run's folder as outcome.json."""
+
+    scene: str
+    variant: str
+    status: str
+    exit_status: int
+    reason: str
+    wall_s: float
+    key: str
+    settings: tuple[str, ...] = ()
+    skipped: bool = False
+
+    @property
+    def ok(self) -> bool:
+        """Whether the run came to its end."""
+        return self.status == "completed"
+
+
+def without_claims(scene_text: str, variant: str) -> dict[str, Any]:
+    """What of a scene decides on a run: all but its title, its claims and the other variants."""
+    scene = tomllib.loads(scene_text)
+    variants = scene.pop("variants", {})
+    for key in ("claim", "title"):
+        scene.pop(key, None)
+    if variant:
+        scene["variant"] = variants.get(variant, f"no variant {variant}")
+    return scene
+
+
+def key_of(job: Job, binary: Path) -> str:
+    """A hash of scene, variant, settings and solver; the thread count is left out, results do not depend on it."""
+    content = without_claims(job.scene.read_text(encoding="utf-8"), job.variant)
+    digest = hashlib.sha256(json.dumps(content, sort_keys=True, default=str).encode())
+    digest.update(json.dumps([job.variant, list(job.settings)]).encode())
+    digest.update(hashlib.sha256(binary.read_bytes()).digest())
+    return digest.hexdigest()
+
+
+def command_of(job: Job, binary: Path) -> list[str]:
+    """The command line of a job."""
+    command = [str(binary), "run", str(job.scene), "--out", str(job.out), "--threads", str(job.threads), "--quiet"]
+    if job.variant:
+        command += ["--variant", job.variant]
+    for setting in job.settings:
+        command += ["--set", setting]
+    return command
+
+
+def load_outcome(folder: Path) -> Outcome | None:
+    """The outcome kept in a run's folder, or None where there is none that can be read."""
+    try:
+        content = json.loads((folder / OUTCOME).read_text(encoding="utf-8"))
+        return Outcome(**{**content, "settings": tuple(content["settings"])})
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def done_before(job: Job, key: str) -> Outcome | None:
+    """The outcome of the same run made before, if it was final and its summary is there."""
+    before = load_outcome(job.out)
+    if before is None or before.key != key or before.exit_status not in FINAL:
+        return None
+    return before if (job.out / "summary.json").is_file() else None
+
+
+def clear(folder: Path) -> None:
+    """Empty a run's folder; refuses a folder that holds something else than a run."""
+    names = {item.name for item in folder.iterdir()} if folder.is_dir() else set()
+    if names and not names & {OUTCOME, "scene.toml", "summary.json", "log.txt", ".done"}:
+        raise FileExistsError(f"{folder} holds files but no run; name another folder")
+    if folder.is_dir():
+        shutil.rmtree(folder)
+    folder.mkdir(parents=True)
+
+
+def reason_of(folder: Path, exit_status: int, log: str) -> str:
+    """Why a run failed: its summary's reason, or the end of what it said."""
+    try:
+        reason = json.loads((folder / "summary.json").read_text(encoding="utf-8")).get("reason") or ""
+    except (OSError, ValueError):
+        reason = ""
+    meaning = MEANING.get(exit_status, f"killed by signal {-exit_status}" if exit_status < 0 else "unknown exit status")
+    return reason or " / ".join(log.strip().splitlines()[-3:]) or meaning
+
+
+def run(job: Job, binary: Path | None = None, force: bool = False) -> Outcome:
+    """Run a job unless its folder has it already; the outcome says how it ended and never raises for a failed run."""
+    binary = binary or solver()
+    key = key_of(job, binary)
+    before = None if force else done_before(job, key)
+    if before is not None:
+        return Outcome(**{**asdict(before), "settings": before.settings, "skipped": True})
+    clear(job.out)
+    start = time.monotonic()
+    done = subprocess.run(command_of(job, binary), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    (job.out / "log.txt").write_text(done.stdout, encoding="utf-8")
+    complete = done.returncode == 0 and (job.out / "summary.json").is_file()
+    outcome = Outcome(
+        scene=job.scene.stem,
+        variant=job.variant,
+        status="completed" if complete else "failed",
+        exit_status=done.returncode,
+        reason="" if complete else reason_of(job.out, done.returncode, done.stdout),
+        wall_s=round(time.monotonic() - start, 3),
+        key=key,
+        settings=job.settings,
+    )
+    (job.out / OUTCOME).write_text(json.dumps(asdict(outcome), indent=1) + "\n", encoding="utf-8")
+    return outcome
+
+
+def variants_of(scene: Path) -> list[str]:
+    """The names of a scene's variants, in its order."""
+    return list(tomllib.loads(scene.read_text(encoding="utf-8")).get("variants", {}))
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run one job from the command line; exit status that of the solver."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scene", type=Path)
+    parser.add_argument("--variant", default="", help="a variant of the scene (default: the base scene)")
+    parser.add_argument("--out", type=Path, required=True, help="the run's folder")
+    parser.add_argument("--set", dest="settings", action="append", default=[], metavar="KEY=VALUE", help="a scene key")
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--force", action="store_true", help="run even if the folder holds the same run")
+    options = parser.parse_args(arguments)
+    job = Job(options.scene, options.variant, options.out, tuple(options.settings), options.threads)
+    outcome = run(job, force=options.force)
+    how = "already done" if outcome.skipped else f"{outcome.wall_s:.1f} s"
+    print(f"{outcome.scene} {outcome.variant}: {outcome.status} ({how}) {outcome.reason}".rstrip())
+    return outcome.exit_status if outcome.exit_status >= 0 else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,110 @@
+"""The six experiments at smoke size, and the values of them that the regression keeps."""
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from verification.harness.compare import Comparison, Expected, compare
+from verification.harness.load import Run, load
+from verification.harness.observables import path_length, resample
+from verification.harness.paths import EXPERIMENTS, ROOT
+from verification.harness.run import Job, Outcome, run
+
+EXPECTED = EXPERIMENTS / "expected"
+SMOKE_RUNS = ROOT / "runs" / "smoke"
+
+# Cells and increments of 2 m: an eighth of the work of the 1 m runs, in the same block with the same events.
+SETTINGS = ("numerics.cell_m=2.0", "fracture.increment_m=2.0")
+
+# What of each experiment is run: the perfect case and one with an interface that acts.
+VARIANTS: dict[str, tuple[str, ...]] = {
+    "exp1_single_interface": ("perfect", "weak"),
+    "exp2_soft_above": ("perfect", "soft"),
+    "exp3_two_interfaces": ("weak_soft",),
+    "exp4_soft_between": ("friction",),
+    "exp5_parallel_interface": ("perfect", "soft"),
+    "exp6_stress_reversal": ("perfect", "weak"),
+}
+
+# Tolerances of the regression. Results are the same to the last digit on one machine; another compiler or processor may
+# round differently, and a growth event then falls into another step. Pressures: the rise over three crossings of the
+# block by a P wave. Lengths: half an increment.
+PRESSURE_TOLERANCE_PA = 4.0e4
+LENGTH_TOLERANCE_M = 1.0
+
+Values = dict[str, dict[str, Any]]
+
+
+def cases() -> list[tuple[str, str]]:
+    """All experiments and variants of the regression."""
+    return [(experiment, variant) for experiment, variants in VARIANTS.items() for variant in variants]
+
+
+def smoke_run(experiment: str, variant: str, folder: Path = SMOKE_RUNS) -> Outcome:
+    """Run one case at smoke size, unless it is there already."""
+    return run(Job(EXPERIMENTS / f"{experiment}.toml", variant, folder / experiment / variant, SETTINGS))
+
+
+def measured_values(found: Run) -> Values:
+    """Start, arrests, restarts, final height and points of the path, each with unit and tolerance."""
+    values: Values = {}
+
+    def put(name: str, value: float, unit: str) -> None:
+        tolerance = PRESSURE_TOLERANCE_PA if unit == "Pa" else LENGTH_TOLERANCE_M
+        values[name] = {"value": round(value, 6), "unit": unit, "tolerance": tolerance}
+
+    counts: dict[str, int] = {}
+    for event in found.summary.events:
+        if event.kind not in ("start", "arrest", "restart"):
+            continue
+        counts[event.kind] = counts.get(event.kind, 0) + 1
+        put(f"{event.kind}_{counts[event.kind]}_Pa", event.inlet_Pa, "Pa")
+        if event.kind == "arrest":
+            put(f"arrest_{counts['arrest']}_height_m", event.tip_y_m, "m")
+    put("final_height_m", float(found.history["tip_y_m"].max()), "m")
+    quarter = path_length(found.path) / 4.0
+    for k, (x, y) in enumerate(resample(found.path, quarter)[1:5] if quarter > 0.0 else [], 1):
+        put(f"path_{k}_x_m", float(x), "m")
+        put(f"path_{k}_y_m", float(y), "m")
+    return values
+
+
+def compare_values(found: Values, expected: Values) -> list[Comparison]:
+    """Compare value by value; one that is there on one side only is a comparison that fails."""
+    comparisons = []
+    for name in sorted(expected.keys() | found.keys()):
+        if name not in expected:
+            unasked = Expected(0.0, 0.0, found[name]["unit"], scale=1.0)
+            comparisons.append(Comparison(f"{name} (not expected)", float("nan"), unasked))
+            continue
+        item = expected[name]
+        allowed = Expected(item["value"], item["tolerance"], item["unit"])
+        comparisons.append(compare(name, found[name]["value"] if name in found else None, allowed))
+    return comparisons
+
+
+def expected_file(experiment: str) -> Path:
+    """The file with an experiment's expected values."""
+    return EXPECTED / f"{experiment}.json"
+
+
+def read_expected(experiment: str) -> dict[str, Values]:
+    """Expected values of an experiment, a table a variant; empty where there is no file."""
+    path = expected_file(experiment)
+    return json.loads(path.read_text(encoding="utf-8"))["variants"] if path.is_file() else {}
+
+
+def write_expected(experiment: str, variants: dict[str, Values]) -> None:
+    """Write the expected values of an experiment with the settings they belong to."""
+    content = {"experiment": experiment, "settings": list(SETTINGS), "variants": variants}
+    EXPECTED.mkdir(exist_ok=True)
+    expected_file(experiment).write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+
+
+def measure_case(experiment: str, variant: str, folder: Path = SMOKE_RUNS) -> Values:
+    """Run a case and measure it; raises RuntimeError for a run that failed."""
+    outcome = smoke_run(experiment, variant, folder)
+    if not outcome.ok:
+        raise RuntimeError(f"{experiment}/{variant}: {outcome.reason}")
+    return measured_values(load(folder / experiment / variant))

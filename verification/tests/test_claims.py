@@ -1,0 +1,169 @@
+"""Verdicts: each claim of the experiments can be reproduced and can fail; what is missing is not judged."""
+from __future__ import annotations
+
+import json
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from verification.harness.claims import (
+    NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, BadClaim, Runs, as_json, case_of, claims_of, evaluate,
+    evaluate_all,
+)  # fmt: skip
+from verification.harness.paths import EXPERIMENTS
+from verification.tests.fake_run import climb, write_run
+
+MPA = 1.0e6
+SCENES = sorted(EXPERIMENTS.glob("*.toml"))
+STUDY = {1: "abcd", 2: "abc", 3: "abc", 4: "abc", 5: "ab", 6: "ab"}
+
+CLAIM: dict[str, Any] = {
+    "id": "x", "text": "a plateau", "why": "made up", "observable": "plateau_Pa",
+    "case": [{"variant": "weak", "interface": 1, "at_least": 0.05 * MPA, "at_most": 0.30 * MPA}],
+}  # fmt: skip
+
+
+def write(tmp_path: Path, variant: str, plateau_MPa: float, **options: Any) -> None:
+    """A run of the experiment 'exp' with a plateau at the interface."""
+    steps = climb(plateaus={10.0: plateau_MPa * MPA} if plateau_MPa else {})
+    write_run(tmp_path / "exp" / variant, steps, **options)
+
+
+@pytest.mark.parametrize("plateau, verdict", [(0.2, REPRODUCED), (0.0, NOT_REPRODUCED), (0.4, NOT_REPRODUCED), (-0.2, NOT_REPRODUCED)])
+def test_right_zero_twice_and_flipped(tmp_path: Path, plateau: float, verdict: str) -> None:
+    write(tmp_path, "weak", plateau)
+    result = evaluate(CLAIM, "exp", Runs(tmp_path))
+    assert result.verdict == verdict
+    assert result.flags == (("J at interface",) if plateau > 0 else ())
+
+
+def test_a_reading_that_holds_makes_it_only_under_a_variant(tmp_path: Path) -> None:
+    write(tmp_path, "weak", 0.0)
+    write(tmp_path, "other", 0.2)
+    reading = {"name": "another reading", "case": [{"variant": "other", "interface": 1, "at_least": 0.05 * MPA}]}
+    result = evaluate({**CLAIM, "reading": [reading]}, "exp", Runs(tmp_path))
+    assert result.verdict == ONLY_UNDER_A_VARIANT
+    assert [one.name for one in result.readings if one.holds] == ["another reading"]
+
+
+def test_a_reading_that_fails_flags_what_is_reproduced(tmp_path: Path) -> None:
+    write(tmp_path, "weak", 0.2)
+    write(tmp_path, "other", 0.0)
+    reading = {"name": "another reading", "case": [{"variant": "other", "interface": 1, "at_least": 0.05 * MPA}]}
+    result = evaluate({**CLAIM, "reading": [reading]}, "exp", Runs(tmp_path))
+    assert result.verdict == REPRODUCED and "does not hold under: another reading" in result.flags
+
+
+def test_missing_and_failed_runs_are_not_judged(tmp_path: Path) -> None:
+    assert evaluate(CLAIM, "exp", Runs(tmp_path)).verdict == NOT_EVALUATED
+    write(tmp_path, "weak", 0.2, status="failed")
+    result = evaluate(CLAIM, "exp", Runs(tmp_path))
+    assert result.verdict == NOT_EVALUATED and "made to fail" in result.cases[0].note
+
+
+def test_a_bound_that_leaves_it_open_is_flagged(tmp_path: Path) -> None:
+    write_run(tmp_path / "exp" / "weak", climb(to_m=10.0), end_Pa=2.5 * MPA)
+    result = evaluate(CLAIM, "exp", Runs(tmp_path))
+    assert result.verdict == NOT_REPRODUCED
+    assert "undecided: a run ended before it could show this" in result.flags and "bound only" in result.flags
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        {"observable": "plateau", "variant": "weak", "at_least": 1},
+        {"observable": "plateau_Pa", "variant": "weak"},
+        {"observable": "plateau_ratio", "variant": "weak", "at_least": 1},
+        {"observable": "plateau_Pa", "variant": "weak", "against": "perfect", "at_least": 1},
+    ],
+)
+def test_cases_that_could_not_fail_are_refused(case: dict[str, Any]) -> None:
+    with pytest.raises(BadClaim):
+        case_of(case, "plateau_Pa", "here")
+
+
+def test_every_claim_of_the_study_is_there_once() -> None:
+    ids = [claim["id"] for scene in SCENES for claim in claims_of(scene)]
+    assert ids == [f"{number}{letter}" for number, letters in STUDY.items() for letter in letters]
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.stem)
+def test_claims_name_variants_that_exist(scene: Path) -> None:
+    names = {path.stem: set(tomllib.loads(path.read_text())["variants"]) for path in SCENES}
+    for claim in claims_of(scene):
+        for case in [*claim["case"], *(case for reading in claim.get("reading", []) for case in reading["case"])]:
+            case_of(case, claim["observable"], scene.stem)
+            assert case["variant"] in names[scene.stem]
+            assert case.get("against", "perfect") in names[case.get("against_scene", scene.stem)]
+
+
+def test_all_claims_without_runs_as_json(tmp_path: Path) -> None:
+    results = evaluate_all(EXPERIMENTS, tmp_path)
+    content = json.loads(as_json(results))["claims"]
+    assert {claim["verdict"] for claim in content} == {NOT_EVALUATED}
+    assert all(case["meaning"] and "value" in case for claim in content for case in claim["cases"])
+
+
+TWO = '[{rock = "stiff", thickness_m = 10.0}, {rock = "stiff", thickness_m = 10.0}, {rock = "stiff", thickness_m = 60.0}]'
+
+
+def write_study(tmp_path: Path) -> None:
+    """Made-up runs of Experiments 1 and 3 that do what the study says."""
+    one, three = tmp_path / "exp1_single_interface", tmp_path / "exp3_two_interfaces"
+    failed = [(2.0 * MPA, 0.0), (2.40 * MPA, 6.0)]
+    write_run(one / "perfect", climb())
+    write_run(one / "friction", climb(2.37 * MPA))
+    write_run(one / "weak", climb(plateaus={10.0: 0.2 * MPA}), friction_J=10.0, failed_m=failed)
+    write_run(one / "soft", climb(plateaus={10.0: 0.18 * MPA}), friction_J=10.0)
+    write_run(three / "perfect", climb(), layers=TWO)
+    write_run(three / "weak_soft", climb(to_m=24.0, plateaus={10.0: 0.4 * MPA, 20.0: 0.5 * MPA}), end_Pa=4 * MPA, layers=TWO, friction_J=90.0)
+    write_run(three / "soft_weak", climb(to_m=24.0, plateaus={10.0: 0.3 * MPA}), end_Pa=4 * MPA, layers=TWO, friction_J=90.0)
+
+
+def verdicts(tmp_path: Path) -> dict[str, str]:
+    """The verdicts on all claims, by id."""
+    return {result.id: result.verdict for result in evaluate_all(EXPERIMENTS, tmp_path)}
+
+
+def test_claims_of_experiments_1_and_3_can_be_reproduced(tmp_path: Path) -> None:
+    write_study(tmp_path)
+    found = verdicts(tmp_path)
+    assert {id: found[id] for id in ("1a", "1b", "1c", "1d", "3a", "3b", "3c")} == dict.fromkeys(
+        ("1a", "1b", "1c", "1d", "3a", "3b", "3c"), REPRODUCED
+    )
+
+
+@pytest.mark.parametrize(
+    "place, steps, claims",
+    [
+        ("exp1_single_interface/friction", climb(2.5 * MPA), ["1a"]),
+        ("exp1_single_interface/weak", climb(), ["1b", "1c", "1d"]),
+        ("exp1_single_interface/soft", climb(), ["1b", "1d"]),
+        ("exp1_single_interface/soft", climb(plateaus={10.0: 0.4 * MPA}), ["1d"]),
+    ],
+)
+def test_claims_of_experiment_1_fail_where_the_runs_do_otherwise(
+    tmp_path: Path, place: str, steps: list[tuple[float, float, float]], claims: list[str]
+) -> None:
+    write_study(tmp_path)
+    write_run(tmp_path / place, steps)
+    found = verdicts(tmp_path)
+    assert {id for id in claims if found[id] != NOT_REPRODUCED} == set()
+
+
+def test_claims_of_experiment_3_fail_where_the_order_is_swapped(tmp_path: Path) -> None:
+    write_study(tmp_path)
+    three = tmp_path / "exp3_two_interfaces"
+    for name, other in (("weak_soft", "a"), ("soft_weak", "weak_soft"), ("a", "soft_weak")):
+        (three / name).rename(three / other)
+    assert verdicts(tmp_path)["3b"] == NOT_REPRODUCED
+
+
+def test_claims_of_experiment_3_fail_where_nothing_is_held_up(tmp_path: Path) -> None:
+    write_study(tmp_path)
+    for name in ("weak_soft", "soft_weak"):
+        write_run(tmp_path / "exp3_two_interfaces" / name, climb(), layers=TWO)
+    found = verdicts(tmp_path)
+    assert {found[id] for id in ("3a", "3b", "3c")} == {NOT_REPRODUCED}

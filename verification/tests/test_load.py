@@ -1,0 +1,54 @@
+"""Run folders are read as the contract has them, and what is missing is named."""
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from verification.harness.load import LoadError, frames, load
+from verification.tests.fake_run import climb, write_run
+
+
+def test_a_whole_folder_is_read(tmp_path: Path) -> None:
+    run = load(write_run(tmp_path / "exp" / "weak", climb(to_m=20.0, plateaus={10.0: 0.1e6})))
+    assert [event.kind for event in run.summary.events] == ["start", "arrest", "restart", "arrest", "stop"]
+    assert run.interfaces_m == [10.0]
+    assert run.path.shape == (17, 2) and run.path[-1].tolist() == [40.0, 20.0]
+    assert math.isnan(run.summary.tips[0].K_II_Pa_sqrt_m), "null stands for a number that is not finite"
+    assert run.decides_by_J
+
+
+def test_frames_of_the_result_are_read(tmp_path: Path) -> None:
+    run = load(write_run(tmp_path / "exp" / "weak", climb(), failed_m=[(2.0e6, 0.0), (2.4e6, 3.0)]))
+    times, arrays = zip(*frames(run, "interfaces"))
+    assert times == pytest.approx([0.0, 0.4e6 / 0.35e6])
+    assert np.sum(arrays[1]["0/split"]) == 6
+
+
+@pytest.mark.parametrize("name", ["scene.toml", "summary.json", "history.csv"])
+def test_a_missing_file_is_named(tmp_path: Path, name: str) -> None:
+    folder = write_run(tmp_path / "exp" / "weak", climb())
+    (folder / name).unlink()
+    with pytest.raises(LoadError, match=name):
+        load(folder)
+
+
+@pytest.mark.parametrize("key", ["events", "inlet_Pa", "tips", "energy"])
+def test_a_missing_key_is_named(tmp_path: Path, key: str) -> None:
+    folder = write_run(tmp_path / "exp" / "weak", climb())
+    summary = json.loads((folder / "summary.json").read_text())
+    del summary[key]
+    (folder / "summary.json").write_text(json.dumps(summary))
+    with pytest.raises(LoadError, match=key):
+        load(folder)
+
+
+def test_a_torn_history_is_named_with_its_line(tmp_path: Path) -> None:
+    folder = write_run(tmp_path / "exp" / "weak", climb(to_m=7.0))
+    with (folder / "history.csv").open("a") as stream:
+        stream.write("1.0,2.0\n")
+    with pytest.raises(LoadError, match="history.csv:6"):
+        load(folder)

@@ -1,0 +1,102 @@
+"""Runs are made once for the same scene and solver, and a failing one is told, not raised."""
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from verification.harness.run import Job, key_of, load_outcome, run
+
+SCENE = """
+title = "a"
+[domain]
+width_m = 80
+[variants.one]
+domain.width_m = 40
+[variants.two]
+domain.width_m = 20
+[[claim]]
+id = "1a"
+"""
+
+# Stands for the solver: counts its calls and does as the variant says.
+SOLVER = """#!/bin/sh
+while [ $# -gt 0 ]; do case "$1" in --out) out=$2;; --variant) variant=$2;; esac; shift; done
+echo called >> "$(dirname "$0")/calls"
+case "$variant" in
+  two) echo 'the block is a mechanism' >&2; exit 3;;
+  crash) kill -SEGV $$;;
+esac
+echo '{"status": "completed"}' > "$out/summary.json"
+"""
+
+
+@pytest.fixture()
+def solver(tmp_path: Path) -> Path:
+    path = tmp_path / "solver" / "strata"
+    path.parent.mkdir()
+    path.write_text(SOLVER)
+    path.chmod(0o755)
+    return path
+
+
+@pytest.fixture()
+def scene(tmp_path: Path) -> Path:
+    path = tmp_path / "scene.toml"
+    path.write_text(SCENE)
+    return path
+
+
+def calls(solver: Path) -> int:
+    """How often the solver ran."""
+    path = solver.parent / "calls"
+    return len(path.read_text().splitlines()) if path.exists() else 0
+
+
+def test_a_run_is_made_once(tmp_path: Path, solver: Path, scene: Path) -> None:
+    job = Job(scene, "one", tmp_path / "out")
+    first, second = run(job, solver), run(job, solver)
+    assert (first.ok, first.skipped, second.ok, second.skipped, calls(solver)) == (True, False, True, True, 1)
+    assert load_outcome(job.out) == first
+    run(job, solver, force=True)
+    assert calls(solver) == 2
+
+
+def test_what_decides_on_a_run_changes_its_key(tmp_path: Path, solver: Path, scene: Path) -> None:
+    job = Job(scene, "one", tmp_path / "out")
+    key = key_of(job, solver)
+    assert key_of(Job(scene, "two", job.out), solver) != key
+    assert key_of(Job(scene, "one", job.out, ("numerics.cell_m=2",)), solver) != key
+    assert key_of(Job(scene, "one", job.out, threads=2), solver) == key
+    scene.write_text(SCENE.replace('"1a"', '"1b"').replace("width_m = 20", "width_m = 10").replace('"a"', '"b"'))
+    assert key_of(job, solver) == key, "title, claims and other variants do not decide on it"
+    scene.write_text(SCENE.replace("width_m = 40", "width_m = 41"))
+    assert key_of(job, solver) != key
+    scene.write_text(SCENE)
+    solver.write_text(SOLVER + "# another build\n")
+    assert key_of(job, solver) != key
+
+
+def test_numerical_failure_is_kept_with_its_reason(tmp_path: Path, solver: Path, scene: Path) -> None:
+    job = Job(scene, "two", tmp_path / "out")
+    outcome = run(job, solver)
+    assert (outcome.status, outcome.exit_status, outcome.reason) == ("failed", 3, "the block is a mechanism")
+    assert json.loads((job.out / "outcome.json").read_text())["status"] == "failed"
+
+
+def test_a_crash_is_told_and_tried_again(tmp_path: Path, solver: Path, scene: Path) -> None:
+    job = Job(scene, "crash", tmp_path / "out")
+    outcome = run(job, solver)
+    assert outcome.status == "failed" and "signal 11" in outcome.reason
+    run(job, solver)
+    assert calls(solver) == 2
+
+
+def test_a_folder_with_other_files_is_left_alone(tmp_path: Path, solver: Path, scene: Path) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "thesis.tex").write_text("years of work")
+    with pytest.raises(FileExistsError):
+        run(Job(scene, "one", out), solver)
+    assert (out / "thesis.tex").exists()
