@@ -1,0 +1,73 @@
+// The catalogue's entries for flow in a channel of given opening.
+#include "catalogue.hpp"
+#include "channel_flow.hpp"
+
+namespace strata::reference {
+namespace {
+
+std::vector<Input> fluid_inputs() {
+  return {positive_input("viscosity_Pa_s", "mu", 0.1), positive_input("bulk_modulus_Pa", "M", 1e9),
+          number_input("rate_Pa_s", "r of the inlet's ramp", 0.35e6, -1e15, 1e15)};
+}
+
+std::vector<Input> channel_inputs(const char* length_key, const char* opening_key, double opening, double time) {
+  std::vector<Input> inputs{positive_input(length_key, "from the inlet to the end", 5),
+                            positive_input(opening_key, "face to face", opening)};
+  for (Input& input : fluid_inputs()) inputs.push_back(input);
+  inputs.push_back(list_input("x_m", "from the inlet, within the channel", 2.5));
+  inputs.push_back(number_input("time_s", "since the ramp began", time, 0, 1e15));
+  return inputs;
+}
+
+Channel channel_of(const Inputs& inputs, const char* length_key, const char* opening_key) {
+  return {inputs.number(length_key), inputs.number(opening_key), inputs.number("viscosity_Pa_s"),
+          inputs.number("bulk_modulus_Pa"), inputs.number("rate_Pa_s")};
+}
+
+Answer answer_of(const Inputs& inputs, const Channel& channel, const std::function<double(double)>& pressure) {
+  Answer answer;
+  answer.values = {{"pressure_Pa", at_each(inputs, "x_m", pressure), "Pa"},
+                   {"inlet_pressure_Pa", channel.rate * inputs.number("time_s"), "Pa"},
+                   {"far_end_pressure_Pa", pressure(channel.length), "Pa"},
+                   {"diffusivity_m2_s", channel.diffusivity(), "m^2/s"}};
+  answer.relative_error = 1e-12;
+  answer.error_basis = "of the inlet's pressure; two forms of the solution compared";
+  return answer;
+}
+
+Entry ramp_entry(const char* name, const char* description, FarEnd end) {
+  return {name,
+          description,
+          channel_inputs("length_m", "opening_m", 1e-4, 2),
+          "Carslaw & Jaeger 1959, 3.5 and 12.5",
+          "constant opening, the study's linear law, rest at t = 0, any t >= 0",
+          [end](const Inputs& inputs) {
+            const Channel channel = channel_of(inputs, "length_m", "opening_m");
+            const double t = inputs.number("time_s");
+            return answer_of(inputs, channel, [&](double x) { return ramped_channel(channel, end, x, t); });
+          }};
+}
+
+Entry channel_ellipse() {
+  return {"channel_ellipse",
+          "ramped inlet, elliptic opening w0 sqrt(1 - (x/a)^2), the study's law dP/dt = (M/mu) d/dx(w^2/12 dP/dx)",
+          channel_inputs("half_length_m", "mouth_opening_m", 2e-4, 0.5),
+          "own derivation: Legendre's equation, odd polynomials",
+          "fixed elliptic opening, the study's law (no storage by opening), rest at t = 0, any t >= 0",
+          [](const Inputs& inputs) {
+            const Channel channel = channel_of(inputs, "half_length_m", "mouth_opening_m");
+            const double t = inputs.number("time_s");
+            return answer_of(inputs, channel, [&](double x) { return ramped_ellipse(channel, x, t); });
+          }};
+}
+
+}  // namespace
+
+std::vector<Entry> flow_entries() {
+  return {ramp_entry("channel_no_flux", "ramped inlet, constant opening, closed far end: pressure", FarEnd::no_flux),
+          ramp_entry("channel_zero_pressure", "ramped inlet, constant opening, zero pressure at the far end: pressure",
+                     FarEnd::zero_pressure),
+          channel_ellipse()};
+}
+
+}  // namespace strata::reference

@@ -1,0 +1,83 @@
+// What the command line offers: every entry answers with its defaults, and bad input is refused with all its problems.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <set>
+
+#include "catalogue.hpp"
+
+using namespace strata::reference;
+using Catch::Contains;
+
+namespace {
+
+double value_of(const Answer& answer, const std::string& name) {
+  for (const Value& value : answer.values)
+    if (value.name == name) return std::get<double>(value.value);
+  FAIL("no value " + name);
+  return 0;
+}
+
+Answer solve(const std::string& name, const std::vector<std::string>& settings = {}) {
+  const Entry entry = find_entry(name);
+  return entry.solve(read_inputs(entry, settings));
+}
+
+std::string refusal(const std::string& name, const std::vector<std::string>& settings) {
+  try {
+    solve(name, settings);
+  } catch (const std::invalid_argument& problem) {
+    return problem.what();
+  }
+  return "accepted";
+}
+
+}  // namespace
+
+TEST_CASE("every entry is documented and answers with its defaults") {
+  std::set<std::string> names;
+  for (const Entry& entry : catalogue()) {
+    CHECK(names.insert(entry.name).second);
+    for (const std::string& text : {entry.description, entry.source, entry.validity}) CHECK(text.size() > 10);
+    std::set<std::string> keys;
+    for (const Input& input : entry.inputs) CHECK(keys.insert(input.key).second);
+    const Answer answer = entry.solve(read_inputs(entry, {}));
+    CHECK(answer.relative_error > 0);
+    CHECK(answer.relative_error < 1e-2);
+    CHECK(answer.error_basis.size() > 5);
+    for (const Value& value : answer.values) {
+      INFO(entry.name << " " << value.name);
+      CHECK(!value.unit.empty());
+      if (const double* number = std::get_if<double>(&value.value)) CHECK(std::isfinite(*number));
+    }
+  }
+}
+
+TEST_CASE("settings reach the solution") {
+  CHECK(value_of(solve("pressurised_crack"), "K_I") == Approx(1.981664e6).epsilon(1e-6));
+  CHECK(value_of(solve("pressurised_crack", {"pressure=linear"}), "mouth_opening_m") ==
+        Approx(0.654423e-3).epsilon(1e-6));
+  CHECK(value_of(solve("pressurised_crack", {"pressure=profile", "profile_x_m=[-5, 5]", "profile_Pa=1e6,1e6"}),
+                 "K_I") == Approx(2 * 1.981664e6).epsilon(1e-6));
+  CHECK(value_of(solve("block_crack"), "critical_pressure_Pa") == Approx(2.35937e6).epsilon(1e-6));
+  CHECK(value_of(solve("block_crack", {"edges=fixed"}), "F") == Approx(0.98129).epsilon(1e-5));
+  const Answer list = solve("channel_no_flux", {"x_m=[0, 2.5]"});
+  const auto pressures = std::get<std::vector<double>>(list.values.front().value);
+  REQUIRE(pressures.size() == 2);
+  CHECK(pressures[1] == Approx(380203.53).epsilon(1e-8));
+}
+
+TEST_CASE("bad input is refused, every problem on a line") {
+  CHECK_THROWS_WITH(find_entry("block_crak"), Contains("unknown name block_crak. Did you mean block_crack?"));
+  const std::string all = refusal("block_crack", {"edgs=fixed", "poisson_ratio=0.5", "edges=fixd", "x_m=a", "width_m"});
+  CHECK_THAT(all, Contains("unknown key edgs. Did you mean edges?"));
+  CHECK_THAT(all, Contains("\n--set poisson_ratio=0.5: 0.5 is outside [0, 0.5)."));
+  CHECK_THAT(all, Contains("\n--set edges=fixd: \"fixd\" is not a choice. Did you mean fixed?"));
+  CHECK_THAT(all, Contains("\n--set x_m=a: \"a\" is not a number."));
+  CHECK_THAT(all, Contains("\n--set width_m: expected key=value."));
+  CHECK_THAT(refusal("block_crack", {"width_m=1", "width_m=2"}), Contains("set twice"));
+  CHECK_THAT(refusal("block_crack", {"half_length_m=1,2"}), Contains("not a number"));
+  CHECK_THAT(refusal("block_crack", {"half_length_m=79"}), Contains("0.9 half_height"));
+  CHECK_THAT(refusal("block_crack", {"pressure=profile", "profile_Pa=0,1,2"}), Contains("symmetric"));
+  CHECK_THAT(refusal("channel_no_flux", {"x_m=9"}), Contains("outside"));
+  CHECK_THAT(refusal("channel_no_flux", {"viscosity_Pa_s=nan"}), Contains("not a number"));
+}
