@@ -1,0 +1,245 @@
+#include "output/checkpoint.hpp"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include "output/run_folder.hpp"
+
+namespace strata {
+
+namespace {
+
+constexpr std::string_view magic = "strata-checkpoint\n";
+constexpr std::uint32_t format_version = 1;  // to be raised with every change of what is saved
+constexpr std::uint32_t byte_order = 0x01020304;
+
+std::uint64_t fnv1a(std::string_view bytes) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  return hash;
+}
+
+// Values that are saved as the bytes they are.
+template <class T>
+constexpr bool is_plain = std::is_arithmetic_v<T> || std::is_enum_v<T> || std::is_same_v<T, Stress>;
+
+template <class T, class Plain>
+concept Is = std::is_same_v<std::remove_const_t<T>, Plain>;
+
+// What belongs to each structure, for saving and loading alike. A structured binding has to name every member, so that
+// a new one cannot be left out by oversight: the compiler asks for it here. Then raise format_version.
+template <class Archive>
+void fields(Archive& ar, Is<Grid> auto& grid) {
+  auto& [nx, ny, h] = grid;
+  ar(nx, ny, h);
+}
+
+template <class Archive>
+void fields(Archive& ar, Is<Particles> auto& particles) {
+  for_each_array(particles, [&](auto& array) { ar(array); });
+  ar(particles.next_id);
+}
+
+template <class Archive>
+void fields(Archive& ar, Is<SurfacePoint> auto& point) {
+  auto& [x, n, A, arc, w, reaction, in_situ, P, slip, column, sides, split] = point;
+  ar(x, n, A, arc, w, reaction, in_situ, P, slip, column, sides, split);
+}
+
+template <class Archive>
+void fields(Archive& ar, Is<Surface> auto& surface) {
+  auto& [kind, bit, law, vertices, points] = surface;
+  ar(kind, bit, law, vertices, points);
+}
+
+template <class Archive>
+void fields(Archive& ar, Is<FluidLine> auto& fluid) {
+  auto& [P, inlet, inlet_Pa] = fluid;
+  ar(P, inlet, inlet_Pa);
+}
+
+template <class Archive>
+void fields(Archive& ar, Is<Tip> auto& tip) {
+  auto& [at_back, growing, stopped_by, K_I, K_II, J, J_spread, ring_m, kink, at_interface, last_growth_s,
+         last_growth_Pa, J_at_growth, J_spread_at_growth, has_grown, arrested, reached] = tip;
+  ar(at_back, growing, stopped_by, K_I, K_II, J, J_spread, ring_m, kink, at_interface, last_growth_s, last_growth_Pa,
+     J_at_growth, J_spread_at_growth, has_grown, arrested, reached);
+}
+
+template <class Archive>
+void fields(Archive& ar, Is<Event> auto& event) {
+  auto& [kind, time_s, inlet_Pa, tip_x_m, tip_y_m, at_interface] = event;
+  ar(kind, time_s, inlet_Pa, tip_x_m, tip_y_m, at_interface);
+}
+
+template <class Archive>
+void fields(Archive& ar, Is<Ledger> auto& ledger) {
+  auto& [kinetic, strain, interface_strain, fluid_work, in_situ_work, edge_work, damping, transfer, contact, friction,
+         largest] = ledger;
+  ar(kinetic, strain, interface_strain, fluid_work, in_situ_work, edge_work, damping, transfer, contact, friction,
+     largest);
+}
+
+template <class Archive>
+void fields(Archive& ar, Is<Monitors> auto& monitors) {
+  auto& [largest_courant, largest_penetration, contact_sweeps, contact_unconverged, largest_particle_velocity] =
+      monitors;
+  ar(largest_courant, largest_penetration, contact_sweeps, contact_unconverged, largest_particle_velocity);
+}
+
+// All of the state but what rebuild_copies() derives of it.
+template <class Archive>
+void fields(Archive& ar, Is<State> auto& state) {
+  ar(state.time, state.step, state.dt, state.grid, state.particles, state.surfaces, state.has_fracture, state.fluid);
+  ar(state.tips, state.events, state.ledger, state.monitors);
+}
+
+template <class Archive>
+void fields(Archive& ar, Is<OutputMark> auto& mark) {
+  auto& [history, outputs] = mark;
+  ar(history.rows, history.bytes, outputs);
+}
+
+class Saver {
+ public:
+  template <class... T>
+  void operator()(const T&... values) {
+    (put(values), ...);
+  }
+  std::string bytes;
+
+ private:
+  void raw(const void* from, std::size_t n) { bytes.append(static_cast<const char*>(from), n); }
+
+  template <class T>
+  void put(const T& value) {
+    if constexpr (is_plain<T>) {
+      raw(&value, sizeof value);
+    } else if constexpr (std::is_same_v<T, Vec2>) {
+      raw(value.data(), 2 * sizeof(double));
+    } else {
+      fields(*this, value);
+    }
+  }
+  void put(const std::string& text) {
+    put(std::uint64_t{text.size()});
+    raw(text.data(), text.size());
+  }
+  template <class T>
+  void put(const std::vector<T>& values) {
+    put(std::uint64_t{values.size()});
+    if constexpr (is_plain<T>) {
+      raw(values.data(), values.size() * sizeof(T));
+    } else {
+      for (const T& value : values) put(value);
+    }
+  }
+};
+
+class Loader {
+ public:
+  explicit Loader(std::string_view bytes) : rest(bytes) {}
+  template <class... T>
+  void operator()(T&... values) {
+    (get(values), ...);
+  }
+  std::string_view rest;
+
+ private:
+  void raw(void* to, std::size_t n) {
+    if (n > rest.size()) throw std::runtime_error("ends too early");
+    if (n > 0) std::memcpy(to, rest.data(), n);
+    rest.remove_prefix(n);
+  }
+  // Number of elements of at least a byte each, so that a wrong one cannot ask for more memory than the file is long.
+  std::size_t count() {
+    std::uint64_t n = 0;
+    raw(&n, sizeof n);
+    if (n > rest.size()) throw std::runtime_error("ends too early");
+    return n;
+  }
+
+  template <class T>
+  void get(T& value) {
+    if constexpr (is_plain<T>) {
+      raw(&value, sizeof value);
+    } else if constexpr (std::is_same_v<T, Vec2>) {
+      raw(value.data(), 2 * sizeof(double));
+    } else {
+      fields(*this, value);
+    }
+  }
+  void get(std::string& text) {
+    text.resize(count());
+    raw(text.data(), text.size());
+  }
+  template <class T>
+  void get(std::vector<T>& values) {
+    values.resize(count());
+    if constexpr (is_plain<T>) {
+      raw(values.data(), values.size() * sizeof(T));
+    } else {
+      for (T& value : values) get(value);
+    }
+  }
+};
+
+std::string read_file(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw std::runtime_error(fmt::format("{}: cannot be opened", file.string()));
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& file, std::string_view reason) {
+  throw std::runtime_error(fmt::format("{}: {}", file.string(), reason));
+}
+
+}  // namespace
+
+std::uint64_t scene_hash(const Scene& scene) {
+  return fnv1a(scene.resolved_toml);
+}
+
+void save_checkpoint(const std::filesystem::path& file, const Scene& scene, const State& state,
+                     const OutputMark& mark) {
+  Saver content;
+  content(mark, state);
+  Saver out;
+  out.bytes = magic;
+  out(byte_order, format_version, scene_hash(scene), std::uint64_t{content.bytes.size()}, fnv1a(content.bytes));
+  atomic_write(file, out.bytes + content.bytes);
+}
+
+Checkpoint load_checkpoint(const std::filesystem::path& file, const Scene& scene) {
+  const std::string bytes = read_file(file);
+  if (!bytes.starts_with(magic)) refuse(file, "is no checkpoint of strata");
+  Checkpoint checkpoint;
+  try {
+    Loader header(std::string_view(bytes).substr(magic.size()));
+    std::uint32_t order = 0, version = 0;
+    std::uint64_t hash = 0, size = 0, sum = 0;
+    header(order, version);
+    if (order != byte_order) refuse(file, "was written on a machine with another byte order");
+    if (version != format_version) {
+      refuse(file, fmt::format("has checkpoint format {}, this version reads {}", version, format_version));
+    }
+    header(hash, size, sum);
+    if (hash != scene_hash(scene)) refuse(file, "belongs to another scene");
+    if (header.rest.size() != size || fnv1a(header.rest) != sum) refuse(file, "is torn: its content is not complete");
+    header(checkpoint.mark, checkpoint.state);
+    if (!header.rest.empty()) refuse(file, "is torn: it holds more than a state");
+  } catch (const std::runtime_error& error) {
+    if (std::string_view(error.what()) != "ends too early") throw;
+    refuse(file, "is torn: it ends too early");
+  }
+  return checkpoint;
+}
+
+}  // namespace strata

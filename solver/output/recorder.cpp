@@ -1,0 +1,29 @@
+#include "output/recorder.hpp"
+
+namespace strata {
+
+Recorder::Recorder(const RunFolder& folder) : folder_(folder), history_(folder.history()), result_(folder.result()) {}
+
+Recorder::Recorder(const RunFolder& folder, const OutputMark& mark)
+    : folder_(folder), history_(folder.history(), mark.history), result_(folder.result(), mark.outputs) {}
+
+void Recorder::row(const Scene& scene, const State& state) {
+  history_.append(history_row(scene, state));
+}
+
+void Recorder::output(const Scene& scene, const State& state) {
+  row(scene, state);
+  history_.flush();
+  result_.write_output(scene, state);
+}
+
+void Recorder::checkpoint(const Scene& scene, const State& state) {
+  save_checkpoint(folder_.checkpoint(), scene, state, {history_.flush(), result_.outputs()});
+}
+
+void Recorder::finish() {
+  history_.flush();
+  result_.write_history(history_.rows());
+}
+
+}  // namespace strata

@@ -1,0 +1,268 @@
+#include "output/result_hdf5.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+#include "output/hdf5_io.hpp"
+#include "output/run_folder.hpp"
+
+namespace strata {
+
+namespace {
+
+// Stands on the root while the file is changed: an interrupted writing leaves it set.
+constexpr const char* writing = "writing";
+
+std::string number_of(std::size_t output) {
+  return fmt::format("{:05}", output);
+}
+
+// Unit vector along the path: the normal is on its left.
+Vec2 tangent(const SurfacePoint& s) {
+  return {s.n.y(), -s.n.x()};
+}
+
+template <class Value>
+std::vector<double> collect(const std::vector<SurfacePoint>& points, Value value) {
+  std::vector<double> values;
+  values.reserve(points.size());
+  for (const SurfacePoint& s : points) values.push_back(value(s));
+  return values;
+}
+
+void write_places(hdf5::Id group, const std::vector<SurfacePoint>& points) {
+  hdf5::write(group, "x_m", collect(points, [](const SurfacePoint& s) { return s.x.x(); }), "m");
+  hdf5::write(group, "y_m", collect(points, [](const SurfacePoint& s) { return s.x.y(); }), "m");
+  hdf5::write(group, "opening_m", collect(points, [](const SurfacePoint& s) { return s.opening(); }), "m");
+  hdf5::write(group, "slip_m", collect(points, [](const SurfacePoint& s) { return s.w.dot(tangent(s)); }), "m");
+}
+
+void write_fracture(hdf5::Id group, const Scene& scene, const State& state) {
+  const std::vector<SurfacePoint>& vertices = state.fracture().vertices;
+  if (state.fluid.P.size() != vertices.size()) {
+    throw std::logic_error(
+        fmt::format("result.h5: {} fluid pressures at {} vertices", state.fluid.P.size(), vertices.size()));
+  }
+  hdf5::set_attribute(group, ".", "time_s", state.time);
+  hdf5::set_attribute(group, ".", "inlet_Pa", state.fluid.inlet_Pa);
+  write_places(group, vertices);
+  const auto permeability = [&](const SurfacePoint& s) {
+    const double w = std::max(s.opening(), scene.fluid.minimum_opening_m);
+    return w * w / 12.0;  // between parallel plates
+  };
+  hdf5::write(group, "arc_m", collect(vertices, [](const SurfacePoint& s) { return s.arc; }), "m");
+  hdf5::write(group, "pressure_Pa", state.fluid.P, "Pa");
+  hdf5::write(group, "permeability_m2", collect(vertices, permeability), "m^2");
+}
+
+// Number in the scene of the interface that a surface is: the nearest one, since those that never act may have none.
+std::size_t interface_of(const Scene& scene, const Surface& surface) {
+  const Vec2& x = surface.vertices.front().x;
+  const double at = scene.strata.along == Strata::Along::y ? x.y() : x.x();
+  const auto& places = scene.strata.interfaces;
+  const auto nearest = std::min_element(places.begin(), places.end(), [&](const auto& a, const auto& b) {
+    return std::abs(a.at_m - at) < std::abs(b.at_m - at);
+  });
+  if (nearest == places.end()) throw std::logic_error("result.h5: a surface is no interface of the scene");
+  return static_cast<std::size_t>(nearest - places.begin());
+}
+
+void write_interface(hdf5::Id group, const Scene& scene, const Surface& surface) {
+  hdf5::set_attribute(group, ".", "law", scene.laws.at(surface.law).name);
+  hdf5::set_attribute(group, ".", "at_m", scene.strata.interfaces[interface_of(scene, surface)].at_m);
+  const std::vector<SurfacePoint>& points = surface.points;
+  write_places(group, points);
+  const auto along = [](const SurfacePoint& s) { return s.reaction.dot(tangent(s)); };
+  hdf5::write(group, "reaction_n_Pa", collect(points, [](const SurfacePoint& s) { return s.reaction.dot(s.n); }), "Pa");
+  hdf5::write(group, "reaction_t_Pa", collect(points, along), "Pa");
+  std::vector<std::int32_t> split;
+  for (const SurfacePoint& s : points) split.push_back(s.split ? 1 : 0);
+  hdf5::write(group, "split", split, "1");
+}
+
+void write_particles(hdf5::Id group, const Scene& scene, const State& state) {
+  const Particles& particles = state.particles;
+  std::vector<std::size_t> order(particles.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return particles.id[a] < particles.id[b]; });
+
+  std::vector<float> field(order.size());
+  const auto put = [&](const char* name, const char* unit, auto value) {
+    std::transform(order.begin(), order.end(), field.begin(), [&](auto p) { return static_cast<float>(value(p)); });
+    hdf5::write_compressed(group, name, field, unit);
+  };
+  const auto put_array = [&](const char* name, const char* unit, const std::vector<double>& values) {
+    put(name, unit, [&](std::size_t p) { return values[p]; });
+  };
+  put_array("x_m", "m", particles.x);
+  put_array("y_m", "m", particles.y);
+  put_array("u_x_m", "m", particles.u_x);
+  put_array("u_y_m", "m", particles.u_y);
+  put_array("v_x_m_s", "m/s", particles.v_x);
+  put_array("v_y_m_s", "m/s", particles.v_y);
+  put_array("volume_m2", "m^2", particles.V);
+  put("s_xx_Pa", "Pa", [&](std::size_t p) { return total_stress(scene, particles, p).xx; });
+  put("s_yy_Pa", "Pa", [&](std::size_t p) { return total_stress(scene, particles, p).yy; });
+  put("s_xy_Pa", "Pa", [&](std::size_t p) { return total_stress(scene, particles, p).xy; });
+
+  std::vector<std::int32_t> label(order.size());
+  std::transform(order.begin(), order.end(), label.begin(), [&](auto p) { return particles.id[p]; });
+  hdf5::write_compressed(group, "id", label, "1");
+  std::transform(order.begin(), order.end(), label.begin(), [&](auto p) { return particles.rock[p]; });
+  hdf5::write_compressed(group, "rock", label, "1");
+  hdf5::set_attribute(group, ".", "time_s", state.time);
+}
+
+template <class Outputs>
+std::vector<double> times_of(const Outputs& outputs) {
+  std::vector<double> times;
+  for (const auto& output : outputs) times.push_back(output.time_s);
+  return times;
+}
+
+// Opens the file, lets `change` write to it and closes it, with the mark set meanwhile.
+template <class Change>
+void change_file(const std::filesystem::path& path, Change change) {
+  const hdf5::Handle file = hdf5::open_file(path, true);
+  hdf5::set_attribute(file.id(), ".", writing, 1.0);
+  hdf5::flush(file);
+  change(file.id());
+  hdf5::flush(file);
+  hdf5::set_attribute(file.id(), ".", writing, 0.0);
+  hdf5::flush(file);
+}
+
+std::string grid_of(const std::string& name, const std::string& topology, std::size_t n, const std::string& group,
+                    int precision, const std::vector<const char*>& fields) {
+  const auto item = [&](const char* field) {
+    return fmt::format(
+        "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"{}\" Dimensions=\"{}\">{}/{}</DataItem>", precision,
+        n, group, field);
+  };
+  std::string text = fmt::format("        <Grid Name=\"{}\" GridType=\"Uniform\">\n          {}\n", name, topology);
+  text += fmt::format("          <Geometry GeometryType=\"X_Y\">{}{}</Geometry>\n", item("x_m"), item("y_m"));
+  for (const char* field : fields) {
+    text += fmt::format("          <Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Node\">{}</Attribute>\n",
+                        field, item(field));
+  }
+  return text + "        </Grid>\n";
+}
+
+std::string particle_grid(std::size_t n, const std::string& group) {
+  return grid_of("particles", fmt::format("<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\"/>", n), n,
+                 group, 4, {"u_x_m", "u_y_m", "v_x_m_s", "v_y_m_s", "s_xx_Pa", "s_yy_Pa", "s_xy_Pa", "volume_m2"});
+}
+
+std::string fracture_grid(std::size_t n, const std::string& group) {
+  std::string topology = fmt::format(
+      "<Topology TopologyType=\"Polyline\" NumberOfElements=\"1\" NodesPerElement=\"{0}\"><DataItem Format=\"XML\" "
+      "NumberType=\"Int\" Dimensions=\"1 {0}\">",
+      n);
+  for (std::size_t k = 0; k < n; ++k) topology += fmt::format("{}{}", k > 0 ? " " : "", k);
+  return grid_of("fracture", topology + "</DataItem></Topology>", n, group, 8,
+                 {"opening_m", "slip_m", "pressure_Pa", "permeability_m2", "arc_m"});
+}
+
+}  // namespace
+
+Stress total_stress(const Scene& scene, const Particles& particles, std::size_t p) {
+  const Rock& rock = scene.rocks[particles.rock[p]];
+  const double nu = rock.poisson_ratio;
+  const double mu = rock.youngs_modulus_Pa / (2.0 * (1.0 + nu));
+  const double lambda = 2.0 * mu * nu / (1.0 - 2.0 * nu);
+  const double trace = particles.g_xx[p] + particles.g_yy[p];
+  const Stress change{lambda * trace + 2.0 * mu * particles.g_xx[p], lambda * trace + 2.0 * mu * particles.g_yy[p],
+                      mu * (particles.g_xy[p] + particles.g_yx[p])};
+  return particles.in_situ[p] + change;
+}
+
+ResultFile::ResultFile(const std::filesystem::path& file) : file_(file) {
+  hdf5::create_file(file);
+  change_file(file, [&](hdf5::Id root) {
+    hdf5::rewrite(root, "times", {}, "s");
+    for (const char* name : {"history", "particles", "fracture", "interfaces"}) hdf5::group(root, name);
+  });
+  write_xdmf();
+}
+
+ResultFile::ResultFile(const std::filesystem::path& file, std::size_t outputs) : file_(file) {
+  {
+    const hdf5::Handle result = hdf5::open_file(file, false);
+    if (hdf5::number_attribute(result.id(), ".", writing) != 0.0) {
+      throw std::runtime_error(fmt::format("{}: its writing was interrupted", file.string()));
+    }
+    const std::vector<double> times = hdf5::read(result.id(), "times");
+    if (times.size() < outputs) {
+      throw std::runtime_error(
+          fmt::format("{}: holds {} output times where {} were expected", file.string(), times.size(), outputs));
+    }
+    for (std::size_t k = 0; k < outputs; ++k) {
+      const std::string line = "fracture/" + number_of(k) + "/x_m";
+      outputs_.push_back({times[k], hdf5::length(result.id(), "particles/" + number_of(k) + "/x_m"),
+                          hdf5::exists(result.id(), line) ? hdf5::length(result.id(), line) : 0});
+    }
+  }
+  change_file(file, [&](hdf5::Id root) {
+    for (const char* kind : {"particles", "fracture", "interfaces"}) {
+      const hdf5::Handle group = hdf5::group(root, kind);
+      for (const std::string& name : hdf5::names(group.id())) {
+        if (std::stoul(name) >= outputs) hdf5::remove(group.id(), name);
+      }
+    }
+    hdf5::rewrite(root, "times", times_of(outputs_), "s");
+  });
+  write_xdmf();
+}
+
+void ResultFile::write_output(const Scene& scene, const State& state) {
+  const std::string number = number_of(outputs_.size());
+  outputs_.push_back(
+      {state.time, state.particles.size(), state.has_fracture ? state.fracture().vertices.size() : std::size_t{0}});
+  change_file(file_, [&](hdf5::Id root) {
+    write_particles(hdf5::group(root, "particles/" + number).id(), scene, state);
+    if (state.has_fracture) write_fracture(hdf5::group(root, "fracture/" + number).id(), scene, state);
+    for (const Surface& surface : state.surfaces) {
+      if (surface.kind != Surface::Kind::interface) continue;
+      const std::string name = fmt::format("interfaces/{}/{}", number, interface_of(scene, surface));
+      write_interface(hdf5::group(root, name).id(), scene, surface);
+    }
+    hdf5::rewrite(root, "times", times_of(outputs_), "s");
+  });
+  write_xdmf();
+}
+
+void ResultFile::write_history(const std::vector<HistoryRow>& rows) {
+  change_file(file_, [&](hdf5::Id root) {
+    const hdf5::Handle group = hdf5::group(root, "history");
+    std::vector<double> values(rows.size());
+    for (const HistoryColumn& column : history_columns()) {
+      std::transform(rows.begin(), rows.end(), values.begin(), [&](const auto& row) { return row.*column.value; });
+      hdf5::rewrite(group.id(), column.name, values, column.unit);
+    }
+  });
+}
+
+void ResultFile::write_xdmf() const {
+  const std::string name = file_.filename().string();
+  std::string text =
+      "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n"
+      "    <Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+  for (std::size_t k = 0; k < outputs_.size(); ++k) {
+    const OutputSize& output = outputs_[k];
+    text += fmt::format(
+        "      <Grid Name=\"{}\" GridType=\"Collection\" CollectionType=\"Spatial\">\n        <Time Value=\"{}\"/>\n",
+        number_of(k), output.time_s);
+    text += particle_grid(output.particles, name + ":/particles/" + number_of(k));
+    if (output.vertices > 0) text += fracture_grid(output.vertices, name + ":/fracture/" + number_of(k));
+    text += "      </Grid>\n";
+  }
+  auto file = file_;
+  atomic_write(file.replace_extension(".xdmf"), text + "    </Grid>\n  </Domain>\n</Xdmf>\n");
+}
+
+}  // namespace strata

@@ -1,0 +1,123 @@
+#include "output/summary.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "output/history.hpp"
+#include "output/run_folder.hpp"
+
+namespace strata {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json energy_json(const Ledger& ledger) {
+  return {{"kinetic_J", ledger.kinetic},
+          {"strain_J", ledger.strain},
+          {"interface_strain_J", ledger.interface_strain},
+          {"fluid_work_J", ledger.fluid_work},
+          {"in_situ_work_J", ledger.in_situ_work},
+          {"edge_work_J", ledger.edge_work},
+          {"damping_J", ledger.damping},
+          {"transfer_J", ledger.transfer},
+          {"contact_J", ledger.contact},
+          {"friction_J", ledger.friction},
+          {"stored_J", ledger.stored()},
+          {"supplied_J", ledger.supplied()},
+          {"dissipated_J", ledger.dissipated()},
+          {"largest_J", ledger.largest},
+          {"closure", ledger.closure()}};
+}
+
+Json tips_json(const State& state) {
+  Json tips = Json::array();
+  for (const Tip& tip : state.tips) {
+    const Vec2 x = tip_position(state, tip);
+    tips.push_back({{"x_m", x.x()},
+                    {"y_m", x.y()},
+                    {"K_I_Pa_sqrt_m", tip.K_I},
+                    {"K_II_Pa_sqrt_m", tip.K_II},
+                    {"J_N_m", tip.J},
+                    {"J_spread", tip.J_spread},
+                    {"kink_deg", tip.kink * (180.0 / std::numbers::pi)},
+                    {"at_interface", tip.at_interface},
+                    {"growing", tip.growing},
+                    {"stopped_by", tip.stopped_by},
+                    {"ring_m", tip.ring_m}});
+  }
+  return tips;
+}
+
+Json events_json(const std::vector<Event>& events) {
+  Json list = Json::array();
+  for (const Event& event : events) {
+    list.push_back({{"kind", event.kind},
+                    {"time_s", event.time_s},
+                    {"inlet_Pa", event.inlet_Pa},
+                    {"tip_x_m", event.tip_x_m},
+                    {"tip_y_m", event.tip_y_m},
+                    {"at_interface", event.at_interface}});
+  }
+  return list;
+}
+
+Json monitors_json(const Monitors& monitors) {
+  return {{"largest_courant", monitors.largest_courant},
+          {"largest_penetration_m", monitors.largest_penetration},
+          {"contact_sweeps", monitors.contact_sweeps},
+          {"contact_unconverged", monitors.contact_unconverged},
+          {"largest_particle_velocity_m_s", monitors.largest_particle_velocity}};
+}
+
+}  // namespace
+
+std::string version() {
+  return STRATA_VERSION;
+}
+
+double peak_memory_MB() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    double kibibytes = 0.0;
+    if (word == "VmHWM:" && status >> kibibytes) return kibibytes * 1024.0 / 1e6;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string summary_json(const Scene& scene, const State& state, const RunRecord& record) {
+  Json summary;
+  summary["scene"] = record.scene_name;
+  summary["variant"] = scene.variant;
+  summary["status"] = record.status;
+  summary["reason"] = record.reason;
+  summary["mechanics"] =
+      scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics ? "explicit" : "quasistatic";
+  summary["cells"] = static_cast<std::int64_t>(state.grid.nx) * state.grid.ny;
+  summary["particles"] = state.particles.size();
+  summary["steps"] = state.step;
+  summary["time_s"] = state.time;
+  summary["inlet_Pa"] = state.has_fracture ? state.fluid.inlet_Pa : 0.0;
+  summary["wall_s"] = record.wall_s;
+  summary["particle_steps_per_s"] = record.particle_steps / record.wall_s;
+  summary["peak_memory_MB"] = peak_memory_MB();
+  summary["version"] = version();
+  summary["threads"] = record.threads;
+  summary["energy"] = energy_json(state.ledger);
+  summary["mouth_opening_m"] = mouth_opening(state);
+  summary["fracture_volume_m2"] = fracture_volume(state);
+  summary["tips"] = tips_json(state);
+  summary["events"] = events_json(state.events);
+  summary["monitors"] = monitors_json(state.monitors);
+  // The library writes numbers that are not finite as null; bytes that are no UTF-8 are replaced, not refused.
+  return summary.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+void write_summary(const std::filesystem::path& file, const Scene& scene, const State& state, const RunRecord& record) {
+  atomic_write(file, summary_json(scene, state, record));
+}
+
+}  // namespace strata

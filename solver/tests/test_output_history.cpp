@@ -1,0 +1,186 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <set>
+
+#include "output/history.hpp"
+#include "output_state.hpp"
+
+using namespace strata;
+using namespace strata::test;
+
+namespace {
+
+bool same(double a, double b) {
+  return a == b || (std::isnan(a) && std::isnan(b));
+}
+
+void require_same(const HistoryRow& a, const HistoryRow& b) {
+  for (const HistoryColumn& column : history_columns()) {
+    INFO(column.name);
+    REQUIRE(same(a.*column.value, b.*column.value));
+  }
+}
+
+HistoryRow made_row(int k) {
+  HistoryRow row;
+  Numbers number{100 * k};
+  for (const HistoryColumn& column : history_columns()) row.*column.value = std::exp(40.0 * number.next());
+  return row;
+}
+
+}  // namespace
+
+TEST_CASE("history.csv starts with the columns of the contract, in its order") {
+  const TemporaryFolder folder;
+  HistoryWriter(folder.path / "history.csv").flush();
+  REQUIRE(content_of(folder.path / "history.csv") ==
+          "time_s,inlet_Pa,tip_x_m,tip_y_m,height_m,J_N_m,K_I_Pa_sqrt_m,K_II_Pa_sqrt_m,mouth_opening_m,"
+          "fracture_volume_m2,kinetic_J,strain_J,interface_strain_J,fluid_work_J,in_situ_work_J,edge_work_J,damping_J,"
+          "transfer_J,contact_J,friction_J,energy_closure,J_spread,kink_deg,at_interface,ring_m\n");
+}
+
+TEST_CASE("a row says of the state what the state says") {
+  const Scene scene = made_scene();
+  const State state = made_state();
+  const HistoryRow row = history_row(scene, state);
+  const Tip& tip = state.tips[0];
+  CHECK(row.time_s == state.time);
+  CHECK(row.inlet_Pa == state.fluid.inlet_Pa);
+  CHECK(row.tip_x_m == 4.0);
+  CHECK(row.tip_y_m == 2.0);
+  CHECK(row.height_m == 2.0);
+  CHECK(row.J_N_m == tip.J);
+  CHECK(row.K_I_Pa_sqrt_m == tip.K_I);
+  CHECK(row.K_II_Pa_sqrt_m == tip.K_II);
+  CHECK(row.J_spread == tip.J_spread);
+  CHECK(row.ring_m == tip.ring_m);
+  CHECK(row.at_interface == 1.0);
+  CHECK(row.kink_deg * std::numbers::pi / 180.0 == Approx(tip.kink).epsilon(1e-14));
+  CHECK(row.kinetic_J == state.ledger.kinetic);
+  CHECK(row.strain_J == state.ledger.strain);
+  CHECK(row.interface_strain_J == state.ledger.interface_strain);
+  CHECK(row.fluid_work_J == state.ledger.fluid_work);
+  CHECK(row.in_situ_work_J == state.ledger.in_situ_work);
+  CHECK(row.edge_work_J == state.ledger.edge_work);
+  CHECK(row.damping_J == state.ledger.damping);
+  CHECK(row.transfer_J == state.ledger.transfer);
+  CHECK(row.contact_J == state.ledger.contact);
+  CHECK(row.friction_J == state.ledger.friction);
+  CHECK(row.energy_closure == state.ledger.closure());
+}
+
+TEST_CASE("opening is face to face along the normal, volume its integral") {
+  State state = made_state();
+  Surface& fracture = state.fracture();
+  // The normal of an upward path points to -x: the + side moves there when the fracture opens.
+  fracture.vertices[0].w = {-3e-3, 5e-4};
+  fracture.vertices[1].w = {-4e-3, 7e-4};
+  fracture.vertices[2].w = {1e-3, 0.0};
+  fracture.points[0].w = {-2e-3, 9.0};
+  fracture.points[1].w = {-1e-3, 9.0};
+  fracture.points[1].A = 0.5;
+  CHECK(mouth_opening(state) == Approx(3e-3));  // at the vertex on y = 0, although the next one is wider
+  CHECK(fracture_volume(state) == Approx(2e-3 * 1.0 + 1e-3 * 0.5));
+
+  SECTION("the symmetry line may be at the other end") {
+    fracture.vertices[0].x.y() = 2.0;
+    fracture.vertices[2].x.y() = 0.0;
+    CHECK(mouth_opening(state) == Approx(-1e-3));
+  }
+  SECTION("away from the symmetry line it is the largest one") {
+    for (SurfacePoint& s : fracture.vertices) s.x.y() += 1.0;
+    CHECK(mouth_opening(state) == Approx(4e-3));
+  }
+}
+
+TEST_CASE("the tip reported is the highest one") {
+  State state = made_state();
+  Numbers number{500};
+  state.tips.push_back(made_tip(false, number));
+  CHECK(leading_tip(state) == &state.tips[0]);
+  state.fracture().vertices[0].x = {7.0, 3.0};
+  CHECK(leading_tip(state) == &state.tips[1]);
+  const HistoryRow row = history_row(made_scene(), state);
+  CHECK(row.tip_x_m == 7.0);
+  CHECK(row.height_m == 3.0);
+  CHECK(row.J_N_m == state.tips[1].J);
+  CHECK(row.at_interface == 0.0);
+}
+
+TEST_CASE("without a fracture what belongs to a tip is nan, volume and opening are 0") {
+  State state = made_state();
+  state.has_fracture = false;
+  state.surfaces.erase(state.surfaces.begin());
+  state.tips.clear();
+  const HistoryRow row = history_row(made_scene(), state);
+  const std::set<std::string> absent = {"tip_x_m",        "tip_y_m",  "height_m", "J_N_m",        "K_I_Pa_sqrt_m",
+                                        "K_II_Pa_sqrt_m", "J_spread", "kink_deg", "at_interface", "ring_m"};
+  for (const HistoryColumn& column : history_columns()) {
+    INFO(column.name);
+    CHECK(std::isnan(row.*column.value) == absent.contains(column.name));
+  }
+  CHECK(row.mouth_opening_m == 0.0);
+  CHECK(row.fracture_volume_m2 == 0.0);
+  CHECK(row.inlet_Pa == 0.0);
+}
+
+TEST_CASE("rows are read back to the same digits, what is not finite too") {
+  const TemporaryFolder folder;
+  const auto file = folder.path / "history.csv";
+  HistoryWriter writer(file);
+  HistoryRow odd = made_row(3);
+  odd.J_N_m = std::numeric_limits<double>::quiet_NaN();
+  odd.K_I_Pa_sqrt_m = -std::numeric_limits<double>::infinity();
+  odd.kinetic_J = 5e-324;
+  odd.strain_J = -0.0;
+  const std::vector<HistoryRow> rows = {made_row(1), made_row(2), odd};
+  for (const HistoryRow& row : rows) writer.append(row);
+  const HistoryMark mark = writer.flush();
+  CHECK(mark.rows == 3);
+  CHECK(mark.bytes == std::filesystem::file_size(file));
+  const auto read = read_history(file);
+  REQUIRE(read.size() == 3);
+  for (std::size_t k = 0; k < 3; ++k) require_same(read[k], rows[k]);
+  CHECK(std::signbit(read[2].strain_J));
+}
+
+TEST_CASE("a history goes on from a mark as if it had never been written beyond") {
+  const TemporaryFolder folder;
+  const auto file = folder.path / "history.csv";
+  HistoryMark mark;
+  std::string uninterrupted;
+  {
+    HistoryWriter writer(file);
+    writer.append(made_row(1));
+    mark = writer.flush();
+    writer.append(made_row(2));
+    writer.append(made_row(3));
+    writer.flush();
+    uninterrupted = content_of(file);
+  }
+  std::ofstream(file, std::ios::app) << "0.1,0.2";  // a row cut short by the interruption
+  {
+    HistoryWriter writer(file, mark);
+    REQUIRE(writer.rows().size() == 1);
+    require_same(writer.rows()[0], made_row(1));
+    writer.append(made_row(2));
+    writer.append(made_row(3));
+    CHECK(writer.flush().bytes == uninterrupted.size());
+  }
+  CHECK(content_of(file) == uninterrupted);
+  SECTION("but not where rows are missing or the file is another") {
+    CHECK_THROWS_WITH(HistoryWriter(file, HistoryMark{2, mark.bytes}), Catch::Contains("holds 1 rows where 2"));
+    CHECK_THROWS_WITH(HistoryWriter(file, HistoryMark{1, mark.bytes - 1}),
+                      Catch::Contains("history.csv:2: not a complete row"));
+    CHECK_THROWS_WITH(HistoryWriter(file, HistoryMark{9, 1 << 20}), Catch::Contains("shorter than"));
+    CHECK_THROWS_WITH(HistoryWriter(folder.path / "none.csv", mark), Catch::Contains("none.csv"));
+    std::ofstream(file) << "time_s,inlet_Pa\n1,2\n";
+    CHECK_THROWS_WITH(read_history(file), Catch::Contains("history.csv:1: not the header"));
+  }
+}
+
+TEST_CASE("a history that cannot be written says so") {
+  CHECK_THROWS_WITH(HistoryWriter("/nowhere/history.csv"), Catch::Contains("/nowhere/history.csv: cannot be written"));
+}
