@@ -1,0 +1,98 @@
+// The command line: read a scene, run it, and say by the exit status how it went.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "output/summary.hpp"
+#include "run.hpp"
+#include "scene/check.hpp"
+#include "scene/keys.hpp"
+#include "scene/toml_reader.hpp"
+
+namespace {
+
+constexpr int done = 0, bug = 1, bad_input = 2;
+
+struct Arguments {
+  std::vector<std::string> files;
+  std::string variant;
+  std::vector<std::string> set;
+  strata::RunOptions options;
+};
+
+int report(const std::vector<std::string>& errors) {
+  for (const std::string& error : errors) fmt::print(stderr, "{}\n", error);
+  return errors.empty() ? done : bad_input;
+}
+
+int run(Arguments arguments) {
+  const std::filesystem::path file = arguments.files.front();
+  const strata::ReadResult read = strata::read_scene(file, arguments.variant, arguments.set);
+  if (!read.scene) return report(read.errors);
+  const std::string folder = arguments.variant.empty() ? "default" : arguments.variant;
+  if (arguments.options.out.empty()) arguments.options.out = std::filesystem::path("runs") / file.stem() / folder;
+  return strata::run_scene(*read.scene, arguments.options);
+}
+
+int resume(const Arguments& arguments) {
+  const std::filesystem::path dir = arguments.files.front();
+  if (std::filesystem::exists(dir / "scene.toml")) return strata::resume_run(dir, arguments.options);
+  return report({dir.string() + ": this is not the folder of a run; it holds no scene.toml."});
+}
+
+int list_variants(const Arguments& arguments) {
+  const strata::VariantList list = strata::list_variants(arguments.files.front());
+  for (const std::string& name : list.names) fmt::print("{}\n", name);
+  return report(list.errors);
+}
+
+int parse_and_do(int argc, char** argv) {
+  CLI::App app{"Hydraulic fractures in layered rock: a verification-first testbed"};
+  Arguments arguments;
+  app.set_version_flag("--version", strata::version());
+  app.require_subcommand(1);
+  CLI::App* run_command = app.add_subcommand("run", "run a scene");
+  run_command->add_option("scene", arguments.files, "scene file")->required()->expected(1);
+  run_command->add_option("--variant", arguments.variant, "one of the scene's variants");
+  run_command->add_option("--set", arguments.set, "key.path=value; acts after the variant")->allow_extra_args(false);
+  run_command->add_option("--out", arguments.options.out, "folder of the run; by default runs/SCENE/VARIANT");
+  CLI::App* check_command = app.add_subcommand("check", "all errors of scenes and their variants, nothing run");
+  check_command->add_option("scenes", arguments.files, "scene files")->required();
+  CLI::App* variants_command = app.add_subcommand("variants", "names of a scene's variants, one a line");
+  variants_command->add_option("scene", arguments.files, "scene file")->required()->expected(1);
+  CLI::App* resume_command = app.add_subcommand("resume", "go on with a run from its last checkpoint");
+  resume_command->add_option("dir", arguments.files, "folder of the run")->required()->expected(1);
+  for (CLI::App* command : {run_command, resume_command}) {
+    command->add_option("--threads", arguments.options.threads, "threads; 0, the default, for all cores")
+        ->check(CLI::NonNegativeNumber);
+    command->add_flag("--quiet", arguments.options.quiet, "no progress on the terminal");
+  }
+  CLI::App* keys_command = app.add_subcommand("keys", "all keys of a scene as a table in Markdown");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? done : bad_input;
+  }
+  if (run_command->parsed()) return run(arguments);
+  if (check_command->parsed()) return report(strata::check(arguments.files));
+  if (variants_command->parsed()) return list_variants(arguments);
+  if (resume_command->parsed()) return resume(arguments);
+  if (keys_command->parsed()) fmt::print("{}", strata::keys_as_markdown());
+  return done;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return parse_and_do(argc, argv);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "strata: a bug: {}\n", error.what());
+    return bug;
+  }
+}

@@ -221,7 +221,6 @@ void build_interfaces(const Entries& entries, const Positions& positions, Scene&
   }
 }
 
-// A fracture that ends on the symmetry line starts there, whichever way its points were typed.
 void build_path(const Entries& entries, Scene& scene) {
   const auto given = entries.values.find("fracture.path_m");
   if (given == entries.values.end() || !given->second.sound) return;
@@ -235,7 +234,6 @@ void build_path(const Entries& entries, Scene& scene) {
   for (auto* end : {&path_m.front(), &path_m.back()}) {
     if (std::abs((*end)[1]) <= tolerance) (*end)[1] = 0.0;
   }
-  if (path_m.back()[1] == 0.0 && path_m.front()[1] != 0.0) std::ranges::reverse(path_m);
 }
 
 // A rock or interface that only a variant or --set names, and that nothing uses, is a slip of the fingers.
@@ -267,6 +265,12 @@ void check_new_names(const Entries& entries, const Scene& scene, Faults& faults)
 }
 
 }  // namespace
+
+void start_at_symmetry_line(Scene& scene) {
+  if (!scene.fracture || scene.domain.bottom != Edge::symmetry) return;
+  auto& path_m = scene.fracture->path_m;
+  if (path_m.back()[1] == 0.0 && path_m.front()[1] != 0.0) std::ranges::reverse(path_m);
+}
 
 Positions positions_of(const Entries& entries, const Where& start) {
   Positions positions;

@@ -75,6 +75,12 @@ std::string as_typed(const toml::node& value) {
 void flatten_value(const std::string& path, const toml::node& value, const Where& where, const Origin& origin,
                    bool dotted, Entries& entries, Faults& faults) {
   if (!check_table_name(path, where, faults)) return;
+  const std::string_view first = std::string_view(path).substr(0, path.find('.'));
+  if (first == "variants" || first == "claim") {
+    faults.add(where, fmt::format("{}: a variant and --set may replace keys of the scene, not {}.", path,
+                                  first == "claim" ? "claims" : "variants"));
+    return;
+  }
   if (path.find('[') != std::string::npos) {  // only this list of keys writes elements so
     faults.add(where, unknown_key_message(path));
     return;

@@ -28,7 +28,7 @@ struct Faults {
   void add(const Where& where, std::string text) { list.push_back({where, std::move(text)}); }
 };
 
-// The faults as lines "where: what", in the order of the input and each once. Throws nothing but std::bad_alloc.
+/// The faults as lines "where: what", in the order of the input and each once. Throws nothing but std::bad_alloc.
 std::vector<std::string> as_lines(const Faults& faults);
 
 // Where each key of a scene ("domain.width_m"), each table ("domain") and each element of a list ("strata.layers[1]",
@@ -42,8 +42,8 @@ struct Positions {
   bool sound(std::string_view path) const { return !unsound.contains(path); }
 };
 
-// The place of `path`, or of the innermost table or list that would hold it, or the start of the file.
-// Throws nothing but std::bad_alloc.
+/// The place of `path`, or of the innermost table or list that would hold it, or the start of the file.
+/// Throws nothing but std::bad_alloc.
 Where where_is(const Positions& positions, std::string_view path);
 
 }  // namespace strata

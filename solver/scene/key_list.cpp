@@ -222,12 +222,10 @@ std::vector<Key> fracture_keys() {
           "fracture.crossing",
           {as("J", Fracture::Crossing::J),
            withheld_word("energy",
-                         "it compares equilibria and needs the mechanics \"quasistatic\", which this version "
-                         "does not offer. Use crossing = \"J\".")},
+                         "It compares equilibria and needs mechanics = \"quasistatic\". Use crossing = \"J\".")},
           [](Scene& s, std::size_t) -> Fracture::Crossing& { return s.fracture->crossing; },
           "The criterion where an interface is near the tip."),
-      withheld_key("fracture.crossing_increment_m", "m",
-                   "it belongs to crossing = \"energy\", which this version does not offer. Leave it out.",
+      withheld_key("fracture.crossing_increment_m", "m", "It belongs to crossing = \"energy\". Leave it out.",
                    "Length over which the energy of crossing is released."),
   };
 }
@@ -237,8 +235,7 @@ std::vector<Key> fluid_keys() {
       word(
           "fluid.law",
           {as("paper", Fluid::Law::paper), as("uniform", Fluid::Law::uniform),
-           withheld_word("reynolds",
-                         "this version does not offer the flow law \"reynolds\". Use \"paper\" or \"uniform\".")},
+           withheld_word("reynolds", "Use law = \"paper\" or \"uniform\".")},
           [](Scene& s, std::size_t) -> Fluid::Law& { return s.fluid.law; },
           "Pressure diffusion along the fracture by eq. (3), or the inlet's pressure everywhere in it."),
       number(
@@ -259,8 +256,7 @@ std::vector<Key> fluid_keys() {
       number(
           "fluid.inlet.rate_Pa_s", "Pa/s", finite, +[](Scene& s, std::size_t) -> double& { return s.fluid.rate_Pa_s; },
           "Rise of the inlet pressure."),
-      withheld_key("fluid.inlet.rate_m2_s", "m^2/s",
-                   "this version does not offer an inlet driven by rate. Use inlet = {start_Pa, rate_Pa_s}.",
+      withheld_key("fluid.inlet.rate_m2_s", "m^2/s", "Use inlet = {start_Pa, rate_Pa_s}.",
                    "Fluid fed into the whole fracture per metre out of plane."),
       word(
           "fluid.new_point", {as("dry", Fluid::NewPoint::dry), as("inherit", Fluid::NewPoint::inherit)},
@@ -271,7 +267,7 @@ std::vector<Key> fluid_keys() {
           {as("trapezoid", Fluid::TimeRule::trapezoid), as("backward-euler", Fluid::TimeRule::backward_euler),
            as("explicit", Fluid::TimeRule::explicit_euler)},
           [](Scene& s, std::size_t) -> Fluid::TimeRule& { return s.fluid.time_rule; }, "Time integration of the flow."),
-      withheld_key("fluid.cavitation_Pa", "Pa", "this version has no lower bound of the fluid pressure. Leave it out.",
+      withheld_key("fluid.cavitation_Pa", "Pa", "The fluid pressure has no lower bound. Leave it out.",
                    "Absolute lower bound of the fluid pressure."),
   };
 }
@@ -290,14 +286,14 @@ std::vector<Key> numerics_keys() {
           "numerics.mechanics",
           {as("explicit", Mechanics::explicit_dynamics),
            withheld_word("quasistatic",
-                         "this version does not offer \"quasistatic\". Use mechanics = \"explicit\"; for a "
+                         "Use mechanics = \"explicit\"; for a "
                          "settled state add growth = \"none\" and damping_1_s.")},
           [](Scene& s, std::size_t) -> Mechanics& { return s.numerics.mechanics; },
           "How the rock is solved: with inertia."),
       required(number(
           "numerics.cell_m", "m", positive, +[](Scene& s, std::size_t) -> double& { return s.numerics.cell_m; },
           "Side of a square cell; divides width and height of the block.")),
-      withheld_key("numerics.far_cell_m", "m", "this version has uniform grids only. Leave it out.",
+      withheld_key("numerics.far_cell_m", "m", "Grids are uniform. Leave it out.",
                    "Cells far from fracture and interfaces."),
       particles,
       word(
@@ -310,8 +306,7 @@ std::vector<Key> numerics_keys() {
           "Velocity from the grid back to particles."),
       word(
           "numerics.kinematics",
-          {as("updated", Numerics::Kinematics::updated),
-           withheld_word("total", "this version does not offer \"total\". Use kinematics = \"updated\".")},
+          {as("updated", Numerics::Kinematics::updated), withheld_word("total", "Use kinematics = \"updated\".")},
           [](Scene& s, std::size_t) -> Numerics::Kinematics& { return s.numerics.kinematics; },
           "Particles move and weights are computed again."),
       number(

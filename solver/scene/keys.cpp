@@ -107,7 +107,7 @@ std::vector<std::string> names_in_table(std::string_view path) {
   std::vector<std::string> names;
   for (const Key& key : scene_keys()) {
     const auto segments = split(key.path);
-    if (segments.size() <= given.size() || !agrees(segments, given, given.size())) continue;
+    if (segments.size() <= given.size() || !key.withheld.empty() || !agrees(segments, given, given.size())) continue;
     std::string name(segments[given.size()]);
     if (path.empty() && name.ends_with("[]")) name.resize(name.size() - 2);
     const bool listed = std::ranges::find(names, name) != names.end();
@@ -163,7 +163,7 @@ std::string keys_as_markdown() {
   for (const Key& key : scene_keys()) {
     const std::string fallback = key.required ? "required" : default_text(key);
     const std::string law = key.law.empty() ? "" : fmt::format(" (law \"{}\")", key.law);
-    const std::string withheld = key.withheld.empty() ? "" : " Not offered: " + key.withheld;
+    const std::string withheld = key.withheld.empty() ? "" : " Not offered by this version. " + key.withheld;
     text += fmt::format("| `{}` | {} | {} | {} | {}{}{} |\n", key.path, key.unit, fallback, allowed_text(key), key.help,
                         law, withheld);
   }

@@ -25,7 +25,8 @@ struct Bounds {
   bool high_open = false;
 };
 
-// A word that a key may take; `withheld` says why this version does not offer it and what to use instead.
+// A word that a key may take; `withheld` is not empty where this version does not offer it, and says what to use
+// instead.
 struct Word {
   std::string text;
   int value = 0;
@@ -58,34 +59,34 @@ struct Key {
   std::string help;
 };
 
-// All keys, in the order in which a scene is written. Throws nothing but std::bad_alloc.
+/// All keys, in the order in which a scene is written. Throws nothing but std::bad_alloc.
 const std::vector<Key>& scene_keys();
 
-// The key of which `path` is an instance ("rock.stiff.poisson_ratio"), or nullptr. Throws nothing.
+/// The key of which `path` is an instance ("rock.stiff.poisson_ratio"), or nullptr. Throws nothing.
 const Key* find_key(std::string_view path);
 
-// Whether `path` is a table that holds keys ("rock", "rock.stiff", "fluid.inlet"). Throws nothing but std::bad_alloc.
+/// Whether `path` is a table that holds keys ("rock", "rock.stiff", "fluid.inlet"). Throws nothing but std::bad_alloc.
 bool is_key_table(std::string_view path);
 
-// The names that may stand in the table `path` ("" for the top level); NAME is not among them.
-// Throws nothing but std::bad_alloc.
+/// The names that may stand in the table `path` ("" for the top level); NAME and keys not offered are not among them.
+/// Throws nothing but std::bad_alloc.
 std::vector<std::string> names_in_table(std::string_view path);
 
-// What is wrong with an unknown key, with the nearest known one: "unknown key fluid.viscosty_Pa_s. Did you mean
-// viscosity_Pa_s?". path: full path of the key. Throws nothing but std::bad_alloc.
+/// What is wrong with an unknown key, with the nearest known one: "unknown key fluid.viscosty_Pa_s. Did you mean
+/// viscosity_Pa_s?". path: full path of the key. Throws nothing but std::bad_alloc.
 std::string unknown_key_message(std::string_view path);
 
-// "[0, 0.5)", as in messages and help. Throws nothing but std::bad_alloc.
+/// "[0, 0.5)", as in messages and help. Throws nothing but std::bad_alloc.
 std::string to_text(const Bounds& bounds);
 
-// The shortest text that reads back as the same double, and as a float in TOML. Throws nothing but std::bad_alloc.
+/// The shortest text that reads back as the same double, and as a float in TOML. Throws nothing but std::bad_alloc.
 std::string number_text(double value);
 
-// The default of a key as TOML, taken from a scene of defaults; empty where there is none.
-// Throws nothing but std::bad_alloc.
+/// The default of a key as TOML, taken from a scene of defaults; empty where there is none.
+/// Throws nothing but std::bad_alloc.
 std::string default_text(const Key& key);
 
-// The table of all keys in Markdown: key, unit, default, what is allowed, help. Throws nothing but std::bad_alloc.
+/// The table of all keys in Markdown: key, unit, default, what is allowed, help. Throws nothing but std::bad_alloc.
 std::string keys_as_markdown();
 
 }  // namespace strata

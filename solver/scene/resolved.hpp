@@ -8,8 +8,8 @@
 
 namespace strata {
 
-// The scene as TOML, every key with its value, doubles to the last digit; reading it gives the same scene.
-// claims: [[claim]] tables as TOML, put at the end. Throws nothing but std::bad_alloc.
+/// The scene as TOML, every key with its value, doubles to the last digit; reading it gives the same scene.
+/// claims: [[claim]] tables as TOML, put at the end. Throws nothing but std::bad_alloc.
 std::string resolved_toml(const Scene& scene, std::string_view claims);
 
 }  // namespace strata

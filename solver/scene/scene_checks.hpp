@@ -6,9 +6,9 @@
 
 namespace strata {
 
-// Adds to `faults` where cells do not divide the block, interfaces or particles do not fit the cells, the fracture does
-// not lie in the block or meets itself, and where the run could not end; each with what to do. What depends on a value
-// that is itself missing or of no use is left out. Throws nothing but std::bad_alloc.
+/// Adds to `faults` where cells do not divide the block, interfaces or particles do not fit the cells, the fracture
+/// does not lie in the block or meets itself, and where the run could not end; each with what to do. What depends on a
+/// value that is itself missing or of no use is left out. Throws nothing but std::bad_alloc.
 void check_scene(const Scene& scene, const Positions& positions, Faults& faults);
 
 }  // namespace strata

@@ -186,6 +186,7 @@ ReadResult read_scene_text(std::string_view text, const std::string& file_name, 
   if (!variant.empty()) scene.variant = variant;
   check_scene(scene, positions, faults);
   if (!faults.list.empty()) return {std::nullopt, as_lines(faults)};
+  start_at_symmetry_line(scene);
   scene.resolved_toml = resolved_toml(scene, claims_text(parsed.table));
   return {std::move(scene), {}};
 }

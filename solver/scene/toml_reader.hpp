@@ -23,20 +23,20 @@ struct VariantList {
   std::vector<std::string> errors;
 };
 
-// Reads a scene file and applies a variant, then settings. variant: name of one of its variants, "" for none;
-// set: texts "key.path=value" whose value is TOML or a bare word, the later ones above the earlier.
-// Throws nothing but std::bad_alloc.
+/// Reads a scene file and applies a variant, then settings. variant: name of one of its variants, "" for none;
+/// set: texts "key.path=value" whose value is TOML or a bare word, the later ones above the earlier.
+/// Throws nothing but std::bad_alloc.
 ReadResult read_scene(const std::filesystem::path& file, const std::string& variant,
                       const std::vector<std::string>& set);
 
-// The same from text. file_name: what messages call it. Throws nothing but std::bad_alloc.
+/// The same from text. file_name: what messages call it. Throws nothing but std::bad_alloc.
 ReadResult read_scene_text(std::string_view text, const std::string& file_name, const std::string& variant,
                            const std::vector<std::string>& set);
 
-// The variants of a scene file; of the rest only the syntax is looked at. Throws nothing but std::bad_alloc.
+/// The variants of a scene file; of the rest only the syntax is looked at. Throws nothing but std::bad_alloc.
 VariantList list_variants(const std::filesystem::path& file);
 
-// The same from text. file_name: what messages call it. Throws nothing but std::bad_alloc.
+/// The same from text. file_name: what messages call it. Throws nothing but std::bad_alloc.
 VariantList list_variants_text(std::string_view text, const std::string& file_name);
 
 }  // namespace strata

@@ -63,7 +63,8 @@ bool check_word(const std::string& path, const Key& key, const toml::node& value
     const std::string meant = did_you_mean(text->get(), offered(key));
     return fault(faults, where, typed + " is not allowed. Use one of " + list_of_words(key) + "." + meant);
   }
-  if (!word->withheld.empty()) return fault(faults, where, typed + " is not offered: " + word->withheld);
+  if (!word->withheld.empty())
+    return fault(faults, where, typed + " is not offered by this version. " + word->withheld);
   return true;
 }
 
@@ -166,7 +167,8 @@ bool check_points(const std::string& path, const Given& given, Faults& faults) {
 
 bool check_value(const std::string& path, const Given& given, Faults& faults) {
   const Key& key = *given.key;
-  if (!key.withheld.empty()) return fault(faults, given.where, path + " is not offered: " + key.withheld);
+  if (!key.withheld.empty())
+    return fault(faults, given.where, path + " is not offered by this version. " + key.withheld);
   switch (key.type) {
     case KeyType::number:
       return check_number(path, key, *given.value, given.where, faults);
