@@ -1,0 +1,34 @@
+"""Runs that tests share: made once for the same scene and solver, also when several tests ask at the same time."""
+from __future__ import annotations
+
+import fcntl
+import hashlib
+from pathlib import Path
+
+from verification.harness.load import Run, load
+from verification.harness.paths import ROOT
+from verification.harness.run import Job, Outcome, run
+
+RUNS = ROOT / "runs" / "tests"
+
+
+def folder_of(scene: Path, variant: str, settings: tuple[str, ...]) -> Path:
+    """A folder for a run, different for different settings."""
+    tag = hashlib.sha256("\n".join(settings).encode()).hexdigest()[:8] if settings else "as_is"
+    return RUNS / scene.stem / f"{variant or 'base'}_{tag}"
+
+
+def make(scene: Path, variant: str = "", settings: tuple[str, ...] = ()) -> tuple[Outcome, Path]:
+    """Make a run unless it is there; its outcome and folder."""
+    folder = folder_of(scene, variant, settings)
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with folder.with_suffix(".lock").open("w", encoding="utf-8") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        return run(Job(scene, variant, folder, settings)), folder
+
+
+def completed(scene: Path, variant: str = "", settings: tuple[str, ...] = ()) -> Run:
+    """Make a run that has to complete, and load it."""
+    outcome, folder = make(scene, variant, settings)
+    assert outcome.ok, f"{scene.stem} {variant}: {outcome.reason}"
+    return load(folder)
