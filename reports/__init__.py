@@ -1,0 +1,1 @@
+"""The page of results: figures and tables made from run folders alone."""

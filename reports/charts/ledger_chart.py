@@ -1,0 +1,104 @@
+"""Draws the energy ledgers and the dot plot of all variants."""
+
+from __future__ import annotations
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from reports.charts.style import (
+    COLOURS, FLAG, INK, KIND_NAMES, MARKERS, new_figure, put_legend, put_title,
+)
+from reports.ledger import LedgerFigure, LedgerPanel, VariantFigure, VariantRow
+
+_FAMILIES: dict[str, tuple[str, ...]] = {
+    "supplied": ("#1f5fa8", "#5b9bd5", "#9cc3e8"),
+    "stored": ("#00845f", "#55b890", "#a5dcc5"),
+    "dissipated": ("#d04a00", "#a3397f", "#e08a3c", "#c98bb5", "#7a5230"),
+}
+_STYLES: dict[str, str] = {"supplied": "-", "stored": "--", "dissipated": ":"}
+
+
+def draw_ledger(data: LedgerFigure) -> Figure:
+    """Energies against inlet pressure, one panel a variant."""
+    count = len(data.panels)
+    figure = new_figure(max(7.0, 3.6 * count + 1.0), 4.6)
+    put_title(figure, data.title, max(75, 38 * count))
+    every = figure.subplots(1, count, sharey=True, squeeze=False)[0]
+    looks = _looks(data)
+    for axes, panel in zip(every, data.panels):
+        _draw_ledger_panel(axes, panel, looks)
+    every[0].set_ylabel("energy per metre of thickness (kJ/m)")
+    handles = [Line2D([], [], label=f"{name} ({family})", color=colour, linestyle=_STYLES[family], linewidth=1.8)
+               for (family, name), colour in looks.items()]
+    put_legend(figure, handles, max(2, min(5, count + 1)))
+    return figure
+
+
+def _looks(data: LedgerFigure) -> dict[tuple[str, str], str]:
+    """A colour for every term of every panel, by its family."""
+    looks: dict[tuple[str, str], str] = {}
+    for family, colours in _FAMILIES.items():
+        names = dict.fromkeys(term.name for panel in data.panels for term in panel.terms if term.family == family)
+        for index, name in enumerate(names):
+            looks[(family, name)] = colours[index % len(colours)]
+    return looks
+
+
+def _draw_ledger_panel(axes: Axes, panel: LedgerPanel, looks: dict[tuple[str, str], str]) -> None:
+    """One run's energies."""
+    axes.grid(True)
+    for term in panel.terms:
+        axes.plot(term.inlet_MPa, term.energy_kJ, color=looks[(term.family, term.name)],
+                  linestyle=_STYLES[term.family], linewidth=1.8)
+    axes.set_title(panel.heading)
+    axes.set_xlabel("inlet pressure (MPa)")
+
+
+def draw_variants(data: VariantFigure) -> Figure:
+    """Every variant's start, arrests, restarts and end, a line each."""
+    rows = sum(len(block) + 1.4 for _, block in data.blocks)
+    figure = new_figure(11.0, 0.255 * rows + 1.6)
+    put_title(figure, data.title, 105)
+    axes = figure.subplots()
+    axes.grid(True, axis="x")
+    at, ticks, labels = 0.0, [], []
+    for heading, block in data.blocks:
+        axes.text(-0.005, at, heading, transform=axes.get_yaxis_transform(), ha="right", va="center", fontweight="bold")
+        at += 1.0
+        for row in block:
+            _draw_row(axes, row, at)
+            ticks.append(at)
+            labels.append(row.label)
+            at += 1.0
+        at += 0.4
+    axes.set_yticks(ticks, labels)
+    axes.tick_params(axis="y", length=0)
+    axes.set_ylim(at, -0.8)
+    axes.set_xlabel("inlet pressure (MPa)")
+    handles = [Line2D([], [], marker=MARKERS[kind], color=INK, linestyle="none", label=name)
+               for kind, name in KIND_NAMES.items()]
+    handles.append(Line2D([], [], color=INK, linewidth=4, alpha=0.35, label="arrested"))
+    handles.append(Line2D([], [], marker="o", markersize=10, markerfacecolor="none", markeredgecolor=FLAG,
+                          linestyle="none", label="J at interface"))
+    put_legend(figure, handles, 7)
+    return figure
+
+
+def _draw_row(axes: Axes, row: VariantRow, at: float) -> None:
+    """One variant's marks."""
+    colour = COLOURS.get(row.variant, "#5a5a5a")
+    for dot in row.dots:
+        if dot.until_MPa is not None:
+            axes.plot([dot.inlet_MPa, dot.until_MPa], [at, at], color=colour, linewidth=4, alpha=0.35,
+                      solid_capstyle="butt", zorder=2)
+        axes.plot([dot.inlet_MPa], [at], marker=MARKERS[dot.kind], color=colour, markersize=6, zorder=3,
+                  markeredgecolor=colour if dot.kind in ("stop", "reach_interface") else "white",
+                  markeredgewidth=1.5 if dot.kind in ("stop", "reach_interface") else 0.6)
+        if dot.flag and dot.kind == "arrest":
+            axes.plot([dot.inlet_MPa], [at], marker="o", markersize=11, markerfacecolor="none", markeredgecolor=FLAG,
+                      markeredgewidth=1.4, zorder=4)
+    if row.note:
+        place = row.dots[-1].inlet_MPa if row.dots else axes.get_xlim()[0]
+        axes.annotate(row.note, (place, at), xytext=(9, 0), textcoords="offset points", va="center", fontsize=7.5,
+                      color=FLAG)

@@ -1,0 +1,122 @@
+"""Colours, lines and the small drawing helpers that all charts share."""
+
+from __future__ import annotations
+
+import textwrap
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt  # noqa: E402  (after the choice of a backend without a display)
+from matplotlib.axes import Axes  # noqa: E402
+from matplotlib.figure import Figure  # noqa: E402
+from matplotlib.lines import Line2D  # noqa: E402
+
+INK = "#1c1c1c"
+PALE = "#8a8a8a"
+FLUID = "#1f5fa8"
+FLAG = "#b3003c"
+PNG_DPI = 160
+
+# Wong's palette, safe for colour-blind readers, darkened a little for thin lines on white.
+COLOURS: dict[str, str] = {
+    "perfect": "#222222",
+    "friction": "#0067a5",
+    "weak": "#d04a00",
+    "soft": "#00845f",
+    "weak_soft": "#a3397f",
+    "soft_weak": "#8a6a00",
+}
+# Nearly equal curves are drawn from wide and pale to thin and dark, so that none hides another.
+WIDTHS: dict[str, float] = {
+    "perfect": 4.2, "friction": 2.6, "weak": 1.9, "soft": 1.9, "weak_soft": 2.1, "soft_weak": 1.9,
+}
+DASHES: dict[str, str | tuple[int, tuple[float, ...]]] = {
+    "perfect": "-", "friction": (0, (5, 1.6)), "weak": "-", "soft": (0, (3, 1.2, 1, 1.2)),
+    "weak_soft": "-", "soft_weak": (0, (5, 1.6)),
+}
+ALPHAS: dict[str, float] = {"perfect": 0.35}
+MARKERS: dict[str, str] = {
+    "start": "o", "reach_interface": "|", "arrest": "s", "restart": "^", "stop": "x",
+}
+KIND_NAMES: dict[str, str] = {
+    "start": "start of growth", "reach_interface": "reaches an interface", "arrest": "arrest",
+    "restart": "restart", "stop": "end of run",
+}
+
+_SETTINGS = {
+    "font.family": "DejaVu Sans",
+    "font.size": 9.0,
+    "axes.titlesize": 9.5,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.labelsize": 9.0,
+    "axes.edgecolor": INK,
+    "axes.labelcolor": INK,
+    "axes.linewidth": 0.7,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.axisbelow": True,
+    "text.color": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "xtick.major.width": 0.7,
+    "ytick.major.width": 0.7,
+    "grid.color": "#e4e4e4",
+    "grid.linewidth": 0.6,
+    "legend.frameon": False,
+    "legend.fontsize": 8.5,
+    "legend.handlelength": 2.8,
+    "figure.facecolor": "white",
+    "savefig.facecolor": "white",
+    "svg.fonttype": "path",
+    "svg.hashsalt": "strata",
+    "mathtext.default": "regular",
+}
+plt.rcParams.update(_SETTINGS)
+
+
+def new_figure(width_in: float, height_in: float) -> Figure:
+    """An empty figure of a size in inches."""
+    return plt.figure(figsize=(width_in, height_in), layout="constrained")
+
+
+def put_title(figure: Figure, text: str, characters: int) -> None:
+    """The finding as the figure's title, wrapped at so many characters, flush left."""
+    wrapped = "\n".join(textwrap.wrap(text, characters))
+    figure.suptitle(wrapped, x=0.008, ha="left", fontsize=11, fontweight="bold")
+
+
+def line_of(variant: str) -> dict[str, object]:
+    """Colour, width and dashes of a variant's line."""
+    return {
+        "color": COLOURS.get(variant, PALE),
+        "linewidth": WIDTHS.get(variant, 1.4),
+        "linestyle": DASHES.get(variant, ":"),
+        "alpha": ALPHAS.get(variant, 1.0),
+        "solid_capstyle": "butt",
+    }
+
+
+def interface_lines(axes: Axes, heights_m: tuple[float, ...]) -> None:
+    """Horizontal lines at the heights of interfaces, m."""
+    for height in heights_m:
+        axes.axhline(height, color=PALE, linewidth=0.9, linestyle=(0, (1, 1.5)), zorder=1)
+
+
+def save(figure: Figure, folder: Path, name: str) -> None:
+    """Write a figure as SVG and PNG and let it go."""
+    folder.mkdir(parents=True, exist_ok=True)
+    figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
+    figure.savefig(folder / f"{name}.png", dpi=PNG_DPI)
+    plt.close(figure)
+
+
+def put_legend(figure: Figure, handles: list[Line2D], columns: int) -> None:
+    """A legend below the charts, with room made for it."""
+    rows = -(-len(handles) // columns)
+    bottom = (0.21 * rows + 0.12) / figure.get_figheight()
+    figure.get_layout_engine().set(rect=(0.0, bottom, 1.0, 1.0 - bottom))
+    figure.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.0, 0.0), ncol=columns)

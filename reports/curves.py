@@ -1,0 +1,335 @@
+"""Prepares Figures 3 to 8 for drawing: heights, openings and paths from run folders."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from reports.layout import Layout, layout_of
+from reports.outcome import decided_by_J, finding, longest, outcome_of, outcomes_of
+from reports.runs import NotAvailable, Run, fracture_at, output_times
+from reports.words import listed, metres, mpa, number, plain
+
+OPENING_INSTANTS = 7  # profiles a panel of Fig 7: as many as stay distinguishable in one colour scale
+
+
+@dataclass(frozen=True)
+class Mark:
+    """An event on a height curve; MPa and m."""
+
+    kind: str
+    inlet_MPa: float
+    height_m: float
+    flag: str  # "J at interface" where the criterion is not to be trusted, else empty
+
+
+@dataclass(frozen=True)
+class HeightCurve:
+    """Fracture height in m against inlet pressure in MPa."""
+
+    variant: str
+    label: str
+    inlet_MPa: np.ndarray
+    height_m: np.ndarray
+    marks: tuple[Mark, ...]
+    failed: bool
+
+
+@dataclass(frozen=True)
+class HeightFigure:
+    """One experiment: layout and heights; zoom is the range of heights about the interfaces, m."""
+
+    title: str
+    layout: Layout
+    curves: tuple[HeightCurve, ...]
+    zoom_m: tuple[float, float]
+    pressure_MPa: tuple[float, float]
+    flagged: bool
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Opening in mm along the fracture's height in m at one time in s and inlet pressure in MPa."""
+
+    height_m: np.ndarray
+    opening_mm: np.ndarray
+    time_s: float
+    inlet_MPa: float
+    shade: float  # 0 first to 1 last
+
+
+@dataclass(frozen=True)
+class ProfilePanel:
+    """The opening profiles of one variant."""
+
+    variant: str
+    heading: str
+    profiles: tuple[Profile, ...]
+    interfaces_m: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class ProfileFigure:
+    """Opening profiles of several variants on the same axes; mm and m."""
+
+    title: str
+    panels: tuple[ProfilePanel, ...]
+    opening_mm: float
+    height_m: float
+
+
+@dataclass(frozen=True)
+class Path:
+    """A fracture's final path in m with its largest turn in degrees."""
+
+    variant: str
+    label: str
+    x_m: np.ndarray
+    y_m: np.ndarray
+    kink_deg: float
+    kink_at_m: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class PathPanel:
+    """The paths of one experiment with its layout; the window is (x0, x1, y0, y1) in m."""
+
+    heading: str
+    layout: Layout
+    paths: tuple[Path, ...]
+    window_m: tuple[float, float, float, float]
+    magnified: float  # horizontal over vertical scale
+    aside: str  # where the interface is when it is outside the window
+
+
+@dataclass(frozen=True)
+class PathFigure:
+    """Paths of several experiments side by side."""
+
+    title: str
+    panels: tuple[PathPanel, ...]
+
+
+def height_figure(runs: list[Run]) -> HeightFigure:
+    """Height against inlet pressure for the study's variants of one experiment."""
+    drawn = [run for run in runs if run.is_main and run.drawable]
+    if not drawn:
+        raise NotAvailable("no run of this experiment has a history")
+    layout = layout_of(drawn[0])
+    curves = tuple(_height_curve(run) for run in drawn)
+    starts = [curve.inlet_MPa[_first_growth(curve.height_m)] for curve in curves]
+    last = max(float(curve.inlet_MPa[-1]) for curve in curves)
+    first = min(min(float(start) for start in starts), last)
+    foot = min(float(curve.height_m[0]) for curve in curves)
+    top = max(layout.heights_m, default=foot) + 8.0 * layout.cell_m
+    return HeightFigure(
+        title=finding(outcomes_of(drawn)),
+        layout=layout,
+        curves=curves,
+        zoom_m=(foot - layout.cell_m, top),
+        pressure_MPa=(first - 0.12 * (last - first) - 0.01, last + 0.04 * (last - first) + 0.01),
+        flagged=any(mark.flag for curve in curves for mark in curve.marks),
+    )
+
+
+def _first_growth(height_m: np.ndarray) -> int:
+    """Index of the last row before the height first changes."""
+    grown = np.flatnonzero(height_m > height_m[0])
+    return max(0, int(grown[0]) - 1) if grown.size else height_m.size - 1
+
+
+def _height_curve(run: Run) -> HeightCurve:
+    """One run's curve with its marked events."""
+    keep = np.isfinite(run.history["inlet_Pa"]) & np.isfinite(run.history["height_m"])
+    marks = tuple(_mark(run, event) for event in run.events if event.get("kind") in MARKED)
+    label = plain(run.variant) + (f" (failed: {run.reason})" if run.status == "failed" else "")
+    return HeightCurve(
+        variant=run.variant,
+        label=label,
+        inlet_MPa=run.history["inlet_Pa"][keep] / 1e6,
+        height_m=run.history["height_m"][keep],
+        marks=marks,
+        failed=run.status == "failed",
+    )
+
+
+MARKED: tuple[str, ...] = ("start", "reach_interface", "arrest", "restart", "stop")
+
+
+def _mark(run: Run, event: dict[str, Any]) -> Mark:
+    """An event as a mark; an arrest by J at an interface carries its flag."""
+    y_m, kind = float(event["tip_y_m"]), str(event["kind"])
+    near = kind == "arrest" and decided_by_J(run, event)
+    return Mark(kind, float(event["inlet_Pa"]) / 1e6, y_m, "J at interface" if near else "")
+
+
+def profile_figure(runs: list[Run], variants: tuple[str, ...] = ("perfect", "weak")) -> ProfileFigure:
+    """Opening profiles at several common times, variant against variant."""
+    chosen = {run.variant: run for run in runs if run.variant in variants and run.drawable}
+    if not chosen:
+        raise NotAvailable(f"no run of {listed(list(variants))} has a history")
+    times = {name: output_times(run) for name, run in chosen.items()}
+    first = min(float(run.history["time_s"][_first_growth(run.history["height_m"])]) for run in chosen.values())
+    last = max(float(value[-1]) for value in times.values())
+    wanted = np.linspace(first, last, OPENING_INSTANTS)
+    panels = tuple(_profile_panel(chosen[name], times[name], wanted) for name in variants if name in chosen)
+    profiles = [profile for panel in panels for profile in panel.profiles]
+    return ProfileFigure(
+        title=_profile_title(panels),
+        panels=panels,
+        opening_mm=max((float(profile.opening_mm.max()) for profile in profiles), default=1.0),
+        height_m=max((float(profile.height_m.max()) for profile in profiles), default=1.0),
+    )
+
+
+def _profile_panel(run: Run, times_s: np.ndarray, wanted_s: np.ndarray) -> ProfilePanel:
+    """The profiles of one run at the output times nearest to those wanted, each once."""
+    reached = wanted_s[wanted_s <= times_s[-1] * (1.0 + 1e-9)]
+    indices = sorted({int(np.argmin(np.abs(times_s - time))) for time in reached} | {times_s.size - 1})
+    profiles = tuple(_profile(run, index, float(times_s[index]), wanted_s) for index in indices)
+    outcome = outcome_of(run)
+    heading = f"{plain(run.variant)}: {metres(outcome.final_height_m)} at {mpa(outcome.final_inlet_Pa)}"
+    return ProfilePanel(run.variant, heading, profiles, layout_of(run).heights_m)
+
+
+def _profile(run: Run, index: int, time_s: float, wanted_s: np.ndarray) -> Profile:
+    """The opening profile at one output time."""
+    fields = fracture_at(run, index)
+    span = float(wanted_s[-1] - wanted_s[0]) or 1.0
+    inlet = fields.get("inlet_Pa", np.interp(time_s, run.history["time_s"], run.history["inlet_Pa"]))
+    return Profile(
+        height_m=fields["y_m"],
+        opening_mm=1e3 * fields["opening_m"],
+        time_s=time_s,
+        inlet_MPa=float(inlet) / 1e6,
+        shade=float(np.clip((time_s - wanted_s[0]) / span, 0.0, 1.0)),
+    )
+
+
+def _profile_title(panels: tuple[ProfilePanel, ...]) -> str:
+    """The widest opening of each variant at its last instant."""
+    parts = []
+    for panel in panels:
+        last = panel.profiles[-1]
+        widest = int(np.argmax(last.opening_mm))
+        parts.append(
+            f"{plain(panel.variant)} ends {metres(float(last.height_m.max()))} high and"
+            f" {number(float(last.opening_mm[widest]), 2)} mm wide at {number(last.inlet_MPa)} MPa"
+        )
+    sentence = "; ".join(parts)
+    return sentence[:1].upper() + sentence[1:]
+
+
+def path_figure(groups: list[list[Run]]) -> PathFigure:
+    """Final fracture paths of several experiments, zoomed so that their deviations are visible."""
+    panels = tuple(_path_panel(runs) for runs in groups if any(run.is_main and run.drawable for run in runs))
+    if not panels:
+        raise NotAvailable("no run of these experiments has a history")
+    return PathFigure("; ".join(panel.heading for panel in panels), panels)
+
+
+def _path_panel(runs: list[Run]) -> PathPanel:
+    """The paths of one experiment's main variants."""
+    drawn = [run for run in runs if run.is_main and run.drawable]
+    layout = layout_of(drawn[0])
+    side = _soft_side(layout)
+    paths = tuple(_path(run, side) for run in drawn)
+    window = _window(paths)
+    magnified = ((window[3] - window[2]) / (window[1] - window[0])) / PANEL_ASPECT
+    return PathPanel(
+        heading=f"Experiment {drawn[0].number}: {_drift(paths, side)}",
+        layout=layout,
+        paths=paths,
+        window_m=window,
+        magnified=max(1.0, magnified),
+        aside=_aside(layout, window),
+    )
+
+
+PANEL_ASPECT = 1.15  # height over width of a panel of Fig 8
+
+
+def _soft_side(layout: Layout) -> float:
+    """+1 where the softer rock lies at larger x of the interface next to the fracture, -1 where at smaller."""
+    if layout.along != "x" or len(layout.layers) < 2:
+        return 1.0
+    return 1.0 if layout.layers[-1].stiffness < layout.layers[0].stiffness else -1.0
+
+
+def _path(run: Run, side: float) -> Path:
+    """The last path of a run, its largest turn and where that is."""
+    fields = fracture_at(run, output_times(run).size - 1)
+    x_m, y_m = fields["x_m"], fields["y_m"]
+    kink, at = largest_turn(x_m, y_m)
+    label = f"{plain(run.variant)}: {metres_signed(side * float(x_m[-1] - x_m[0]))}, {number(kink, 2)}°"
+    return Path(run.variant, label, x_m, y_m, kink, at)
+
+
+def metres_signed(length_m: float) -> str:
+    """A length in m to two decimals with its sign."""
+    return f"{length_m:+.2f} m".replace("-", "−")
+
+
+def largest_turn(x_m: np.ndarray, y_m: np.ndarray) -> tuple[float, tuple[float, float]]:
+    """The largest angle in degrees between neighbouring segments of a polyline, and its place in m."""
+    step_x, step_y = np.diff(x_m), np.diff(y_m)
+    length = np.hypot(step_x, step_y)
+    step_x, step_y = step_x[length > 0], step_y[length > 0]
+    if step_x.size < 2:
+        return 0.0, (float(x_m[0]), float(y_m[0]))
+    cross = step_x[:-1] * step_y[1:] - step_y[:-1] * step_x[1:]
+    along = step_x[:-1] * step_x[1:] + step_y[:-1] * step_y[1:]
+    turn = np.abs(np.degrees(np.arctan2(cross, along)))
+    worst = int(np.argmax(turn))
+    corners_x, corners_y = x_m[1:][length > 0], y_m[1:][length > 0]
+    return float(turn[worst]), (float(corners_x[worst]), float(corners_y[worst]))
+
+
+def _window(paths: tuple[Path, ...]) -> tuple[float, float, float, float]:
+    """A window about all paths with a margin, never narrower than a twentieth of its height nor than 0.5 m."""
+    x_m = np.concatenate([path.x_m for path in paths])
+    y_m = np.concatenate([path.y_m for path in paths])
+    y0, y1 = float(y_m.min()), float(y_m.max())
+    height = max(y1 - y0, 1.0)
+    half = 0.5 * max(1.3 * float(np.ptp(x_m)), height / 20.0, 0.5)
+    middle = 0.5 * float(x_m.min() + x_m.max())
+    half = max(half, 0.5 * height / (PANEL_ASPECT * 1.0)) if half > 0.25 * height else half
+    return (middle - half, middle + half, y0, y1 + 0.04 * height)
+
+
+def _aside(layout: Layout, window: tuple[float, float, float, float]) -> str:
+    """Where the interfaces lie that the window does not show."""
+    if layout.along != "x" or not layout.fracture_x_m:
+        return ""
+    away = [place.at_m - layout.fracture_x_m[0] for place in layout.interfaces
+            if not window[0] <= place.at_m <= window[1]]
+    return "; ".join(
+        f"interface {metres(abs(offset))} to the {'right' if offset > 0 else 'left'} of the start" for offset in away
+    )
+
+
+def _drift(paths: tuple[Path, ...], side: float) -> str:
+    """Which way each path ends, and how far, like paths told together."""
+    toward = {path.variant: side * float(path.x_m[-1] - path.x_m[0]) for path in paths}
+    soft = [name for name, shift in toward.items() if shift > 0]
+    stiff = [name for name, shift in toward.items() if shift < 0]
+    parts = []
+    for names, where in ((soft, "towards the soft rock"), (stiff, "towards the stiff rock")):
+        if names:
+            each = listed([f"{number(abs(toward[name]), 2)} m ({plain(name)})" for name in names])
+            parts.append(f"{where} by {each}")
+    still = [plain(name) for name, shift in toward.items() if shift == 0]
+    if still:
+        parts.append(f"straight ({listed(still)})")
+    return "the fracture goes " + ", ".join(parts)
+
+
+def held(run: Run) -> str:
+    """The longest arrest of a run in words, for captions; empty where there is none."""
+    arrest = longest(outcome_of(run))
+    if arrest is None:
+        return ""
+    until = "the end" if arrest.until_Pa is None else mpa(arrest.until_Pa)
+    return f"{metres(arrest.height_m)} from {mpa(arrest.from_Pa)} to {until}"

@@ -1,0 +1,221 @@
+"""The catalogue of figures: which data each is made from, what draws it, and its caption."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from reports.charts.crack_chart import draw_copies, draw_pressure
+from reports.charts.height_chart import draw_heights
+from reports.charts.ledger_chart import draw_ledger, draw_variants
+from reports.charts.profile_chart import draw_paths, draw_profiles
+from reports.charts.style import save
+from reports.crack import CopiesFigure, PressureFigure, copies_figure, index_when_tip_passes, pressure_figure
+from reports.curves import (
+    HeightFigure, PathFigure, ProfileFigure, height_figure, held, path_figure, profile_figure,
+)
+from reports.layout import layout_of
+from reports.ledger import LedgerFigure, VariantFigure, ledger_figure, variant_figure
+from reports.runs import NotAvailable, Run, output_times
+from reports.words import listed, metres, mpa, plain
+
+MAGNIFIED = 300.0  # of openings in Fig 1: a millimetre becomes a third of a 1 m cell
+
+
+@dataclass(frozen=True)
+class Spec:
+    """How one figure comes about."""
+
+    name: str
+    label: str
+    experiment: int  # 0: of no single experiment
+    prepare: Callable[[], Any]
+    draw: Callable[[Any], Any]
+    caption: Callable[[Any], str]
+
+
+@dataclass
+class Made:
+    """A figure on the page, or why there is none."""
+
+    name: str
+    label: str
+    experiment: int
+    title: str = ""
+    caption: str = ""
+    reason: str = ""
+    defect: str = field(default="", repr=False)
+
+    @property
+    def ok(self) -> bool:
+        """Whether there is a figure."""
+        return not self.reason
+
+
+def catalogue(runs: list[Run]) -> list[Spec]:
+    """Every figure of the page, in order."""
+    of = _by_number(runs)
+    specs = [
+        Spec("fig1", "Figure 1", 0, lambda: copies_figure(_crack_choices(of), MAGNIFIED), draw_copies, _copies_words),
+        Spec("fig2", "Figure 2", 0, lambda: _pressure_choice(of), draw_pressure, _pressure_words),
+    ]
+    for number in (1, 2, 3, 4):
+        group = of.get(number, [])
+        specs.append(Spec(f"fig{number + 2}", f"Figure {number + 2}", number, _bind(height_figure, group),
+                          draw_heights, _height_words(group)))
+    specs.append(Spec("fig7", "Figure 7", 4, _bind(profile_figure, of.get(4, [])), draw_profiles, _profile_words))
+    sideways = [of.get(number, []) for number in (5, 6)]
+    specs.append(Spec("fig8", "Figure 8", 5, _bind(path_figure, sideways), draw_paths, _path_words))
+    groups = [of[number] for number in sorted(of)]
+    specs.append(Spec("variants", "Figure 9", 0, _bind(variant_figure, groups), draw_variants, _variant_words))
+    for index, number in enumerate(sorted(of)):
+        specs.append(Spec(f"energy{number}", f"Figure {10 + index}", number, _bind(ledger_figure, of[number]),
+                          draw_ledger, _ledger_words))
+    return specs
+
+
+def _by_number(runs: list[Run]) -> dict[int, list[Run]]:
+    """The runs of each numbered experiment."""
+    groups: dict[int, list[Run]] = {}
+    for run in runs:
+        if run.number > 0:
+            groups.setdefault(run.number, []).append(run)
+    return groups
+
+
+def _bind(function: Callable[[Any], Any], argument: Any) -> Callable[[], Any]:
+    """The function applied to its argument, later."""
+    return lambda: function(argument)
+
+
+def make(spec: Spec, folder: Path) -> Made:
+    """Make one figure's files; whatever is missing or wrong is told on the page and stops nothing."""
+    made = Made(spec.name, spec.label, spec.experiment)
+    try:
+        data = spec.prepare()
+        save(spec.draw(data), folder, spec.name)
+        made.title, made.caption = data.title, spec.caption(data)
+    except NotAvailable as lack:
+        made.reason = str(lack)
+    except Exception as error:  # a defect in one figure must not cost the reader all the others
+        made.reason = f"could not be drawn: {type(error).__name__}: {error}"
+        made.defect = traceback.format_exc()
+    return made
+
+
+def _with_fields(runs: list[Run], variants: tuple[str, ...]) -> Run:
+    """The first of the named variants whose fields can be read."""
+    for name in variants:
+        for run in runs:
+            if run.variant == name and run.drawable and (run.folder / "result.h5").exists():
+                return run
+    raise NotAvailable(f"no run of {listed([plain(name) for name in variants])} has fields")
+
+
+def _crack_choices(of: dict[int, list[Run]]) -> list[tuple[Run, int, str]]:
+    """A crack by itself, and one that has met an interface."""
+    group = of.get(1, [])
+    alone = _with_fields(group, ("perfect",))
+    choices = [(alone, index_when_tip_passes(alone, 1.5 * max(layout_of(alone).fracture_y_m)), "tip")]
+    try:
+        met = _with_fields(group, ("friction", "weak", "soft"))
+    except NotAvailable:
+        return choices
+    beyond = max(layout_of(met).heights_m, default=0.0) + 3.0 * met.cell_m
+    return [*choices, (met, index_when_tip_passes(met, beyond), "interface")]
+
+
+def _pressure_choice(of: dict[int, list[Run]]) -> PressureFigure:
+    """Experiment 1 with a perfect interface when the tip has doubled its height."""
+    run = _with_fields(of.get(1, []), ("perfect", "friction", "weak", "soft"))
+    if output_times(run).size == 0:
+        raise NotAvailable("no output times")
+    return pressure_figure(run, index_when_tip_passes(run, 2.0 * max(layout_of(run).fracture_y_m)))
+
+
+def _copies_words(data: CopiesFigure) -> str:
+    """Caption of Fig 1."""
+    places = listed([panel.heading for panel in data.panels])
+    return (
+        f"A fracture as the solver sees it ({places}): a polyline of massless points, its faces drawn apart by the"
+        f" opening magnified {data.magnified:g} times, particles coloured by the side they lie on, and the nodes of the"
+        " grid. A node whose support holds particles on more than one side carries a copy of its fields for each:"
+        " a sector stands for one copy, grey for a node ahead of the tip that only an interface divides. All lengths in"
+        " metres."
+    )
+
+
+def _pressure_words(data: PressureFigure) -> str:
+    """Caption of Fig 2."""
+    return (
+        f"{data.source} at t = {data.time_s:.3f} s. Left: total horizontal stress in MPa, tension positive, white at its"
+        f" in-situ value of {data.centre_MPa:g} MPa. Right, against distance from the inlet in m: fluid pressure as a"
+        f" fraction of the inlet's {data.inlet_MPa:.2f} MPa, opening w in mm, permeability w²/12 in m²."
+    )
+
+
+def _height_words(runs: list[Run]) -> Callable[[HeightFigure], str]:
+    """What writes the caption of one of Figs 3 to 6."""
+
+    def words(data: HeightFigure) -> str:
+        """Caption with every variant's longest arrest."""
+        known = [run for run in runs if run.is_main and run.drawable]
+        stays = [f"{plain(run.variant)} {held(run)}" for run in known if held(run)]
+        arrests = f" Longest arrests: {listed(stays)}." if stays else " No variant was arrested."
+        places = [metres(height) for height in data.layout.heights_m]
+        flag = (
+            " A ring marks an arrest decided by a J-integral taken within a cell and a half of an interface, where it is"
+            " not to be trusted." if data.flagged else ""
+        )
+        return (
+            f"Left: layout, lengths in m, with the in-situ stress in MPa; the fracture in blue. Middle and right: height"
+            f" of the tip above the symmetry line in m against inlet pressure in MPa; dotted lines: interfaces at"
+            f" {listed(places)}.{arrests}{flag}"
+        )
+
+    return words
+
+
+def _profile_words(data: ProfileFigure) -> str:
+    """Caption of Fig 7."""
+    names = listed([plain(panel.variant) for panel in data.panels])
+    return (
+        f"Opening of the fracture in mm against height in m for {names} interfaces, from the start of growth (light) to"
+        " the end of the run (dark), at the same times in every panel as far as its run lasted, and at its end. Dotted"
+        " lines: interfaces."
+    )
+
+
+def _path_words(data: PathFigure) -> str:
+    """Caption of Fig 8."""
+    kinks = [
+        f"{panel.heading.split(':')[0]} {listed([f'{plain(path.variant)} {path.kink_deg:.2g}°' for path in panel.paths])}"
+        for panel in data.panels
+    ]
+    return (
+        "Final paths in m; the horizontal scale is magnified where the panel says so. Insets: layout, fracture in blue,"
+        f" interface in red. Diamonds: largest turn between two neighbouring segments ({'; '.join(kinks)})."
+    )
+
+
+def _variant_words(data: VariantFigure) -> str:
+    """Caption of the dot plot."""
+    count = sum(len(rows) for _, rows in data.blocks)
+    return (
+        f"Inlet pressure in MPa at which each of {count} runs starts to grow, reaches an interface, is arrested, starts"
+        " again and ends. A band is an arrest. Grey: readings of what the study leaves open; the tables below say in"
+        " which settings each differs."
+    )
+
+
+def _ledger_words(data: LedgerFigure) -> str:
+    """Caption of an energy ledger."""
+    last = max(float(panel.terms[0].inlet_MPa[-1]) for panel in data.panels)
+    return (
+        "Energy since the start in kJ per metre of thickness against inlet pressure in MPa"
+        f" (up to {mpa(1e6 * last)}): what is supplied (solid), stored (dashed) and dissipated (dotted). 'Open by' is"
+        " what supply, storage and dissipation leave unexplained at the end, as a share of the largest of them."
+    )

@@ -1,0 +1,124 @@
+"""The geometry of an experiment from its resolved scene: layers, interfaces, fracture, edges, in-situ stress."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from reports.runs import NotAvailable, Run
+from reports.words import number
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A layer between two positions on the stacking axis, m, with the label of its rock."""
+
+    rock: str
+    from_m: float
+    to_m: float
+    label: str
+    stiffness: float  # Young's modulus over the stiffest rock's
+
+
+@dataclass(frozen=True)
+class Interface:
+    """An interface's place on the stacking axis, m, its name and its law."""
+
+    at_m: float
+    name: str
+    law: str
+
+
+@dataclass(frozen=True)
+class Layout:
+    """What a scene looks like before anything happens; m and Pa, compression positive."""
+
+    width_m: float
+    height_m: float
+    along: str
+    layers: tuple[Layer, ...]
+    interfaces: tuple[Interface, ...]
+    fracture_x_m: tuple[float, ...]
+    fracture_y_m: tuple[float, ...]
+    vertical_Pa: float
+    horizontal_Pa: float
+    edges: dict[str, str]
+    cell_m: float
+
+    @property
+    def heights_m(self) -> tuple[float, ...]:
+        """Heights of the interfaces that lie across the fracture, m."""
+        return tuple(place.at_m for place in self.interfaces) if self.along == "y" else ()
+
+
+def layout_of(run: Run) -> Layout:
+    """The layout that a run's resolved scene describes."""
+    try:
+        return _layout(run.scene, run.cell_m)
+    except (KeyError, TypeError, IndexError) as error:
+        raise NotAvailable(f"{run.experiment}/{run.variant}: scene.toml lacks {error}") from error
+
+
+def _layout(scene: dict[str, Any], cell_m: float) -> Layout:
+    """The layout of a scene's table."""
+    domain, strata, in_situ = scene["domain"], scene["strata"], scene.get("in_situ", {})
+    along = str(strata.get("along", "y"))
+    span = float(domain["height_m"] if along == "y" else domain["width_m"])
+    layers = _layers(scene, span)
+    names = list(strata.get("interfaces", []))
+    path = scene.get("fracture", {}).get("path_m", [])
+    return Layout(
+        width_m=float(domain["width_m"]),
+        height_m=float(domain["height_m"]),
+        along=along,
+        layers=layers,
+        interfaces=tuple(
+            Interface(below.to_m, str(name), _law(scene, str(name))) for below, name in zip(layers[:-1], names)
+        ),
+        fracture_x_m=tuple(float(point[0]) for point in path),
+        fracture_y_m=tuple(float(point[1]) for point in path),
+        vertical_Pa=float(in_situ.get("vertical_Pa", 0.0)),
+        horizontal_Pa=float(in_situ.get("horizontal_Pa", 0.0)),
+        edges={name: str(domain.get(name, "")) for name in ("bottom", "sides", "top")},
+        cell_m=cell_m,
+    )
+
+
+def _layers(scene: dict[str, Any], span_m: float) -> tuple[Layer, ...]:
+    """The layers with their places; the last one fills what is left of the span."""
+    rocks = scene["rock"]
+    stiffest = max(float(rock["youngs_modulus_Pa"]) for rock in rocks.values())
+    layers: list[Layer] = []
+    at = 0.0
+    for entry in scene["strata"]["layers"]:
+        rock = rocks[entry["rock"]]
+        to = min(span_m, at + float(entry.get("thickness_m", span_m - at)))
+        modulus, toughness = float(rock["youngs_modulus_Pa"]), float(rock.get("toughness_Pa_sqrt_m", 0.0))
+        label = f"{entry['rock']}\nE {number(modulus / 1e9, 2)} GPa\n$K_{{Ic}}$ {number(toughness / 1e6)} MPa√m"
+        layers.append(Layer(str(entry["rock"]), at, to, label, modulus / stiffest))
+        at = to
+    return tuple(layers)
+
+
+def _law(scene: dict[str, Any], name: str) -> str:
+    """The law of an interface by its name."""
+    return str(scene.get("interface", {}).get(name, {}).get("law", name))
+
+
+def settings_between(run: Run, base: Run) -> list[tuple[str, Any, Any]]:
+    """The scene keys in which a run differs from another: key, value there, value here."""
+    here, there = _flat(run.scene), _flat(base.scene)
+    ignored = ("title", "variant", "variants", "claim", "output")
+    keys = [key for key in sorted(here.keys() | there.keys()) if key.split(".")[0] not in ignored]
+    return [(key, there.get(key), here.get(key)) for key in keys if here.get(key) != there.get(key)]
+
+
+def _flat(table: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+    """A nested table as dotted keys."""
+    flat: dict[str, Any] = {}
+    for key, value in table.items():
+        if isinstance(value, dict):
+            flat.update(_flat(value, f"{prefix}{key}."))
+        else:
+            flat[prefix + key] = value
+    return flat

@@ -1,0 +1,254 @@
+"""Prepares the energy ledger and the dot plot of every variant's events."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from reports.layout import settings_between
+from reports.outcome import Outcome, outcome_of
+from reports.runs import NotAvailable, Run
+from reports.words import listed, mpa, number, plain, quantity, share
+
+_SUPPLIED: tuple[str, ...] = ("work", "supplied")
+_STORED: tuple[str, ...] = ("kinetic", "strain")
+_NOT_A_TERM: tuple[str, ...] = ("supplied", "stored", "dissipated", "total", "residual", "closure", "largest")
+
+
+@dataclass(frozen=True)
+class Term:
+    """One energy in kJ per metre of thickness against inlet pressure in MPa."""
+
+    name: str
+    family: str  # "supplied", "stored" or "dissipated"
+    inlet_MPa: np.ndarray
+    energy_kJ: np.ndarray
+
+
+@dataclass(frozen=True)
+class LedgerPanel:
+    """The energies of one run and the share of the largest that they leave unexplained."""
+
+    variant: str
+    heading: str
+    terms: tuple[Term, ...]
+    time_s: np.ndarray
+
+
+@dataclass(frozen=True)
+class LedgerFigure:
+    """Energy ledgers of one experiment's main variants."""
+
+    title: str
+    panels: tuple[LedgerPanel, ...]
+
+
+@dataclass(frozen=True)
+class Dot:
+    """One event of one variant; MPa."""
+
+    kind: str
+    inlet_MPa: float
+    until_MPa: float | None
+    flag: str
+
+
+@dataclass(frozen=True)
+class VariantRow:
+    """A line of the dot plot: a variant, what distinguishes it, and its events."""
+
+    label: str
+    variant: str
+    is_main: bool
+    dots: tuple[Dot, ...]
+    note: str
+
+
+@dataclass(frozen=True)
+class VariantFigure:
+    """The start, arrests and restarts of every variant, experiment by experiment."""
+
+    title: str
+    blocks: tuple[tuple[str, tuple[VariantRow, ...]], ...]
+
+
+def energy_terms(run: Run) -> list[str]:
+    """Columns of the history that are energies of the ledger, not their sums."""
+    names = [name for name in run.history if name.endswith("_J") and name != "J"]
+    return [name for name in names if not any(word in name for word in _NOT_A_TERM)]
+
+
+def family_of(name: str) -> str:
+    """Whether a ledger column is supplied, stored or dissipated energy."""
+    if any(word in name for word in _SUPPLIED):
+        return "supplied"
+    return "stored" if any(word in name for word in _STORED) else "dissipated"
+
+
+def closure_of(run: Run) -> float | None:
+    """What the ledger leaves unexplained, as a fraction of its largest energy."""
+    energy = run.summary.get("energy") or {}
+    for key, value in energy.items():
+        if "closure" in key and isinstance(value, (int, float)):
+            return float(value)
+    terms = energy_terms(run)
+    if not terms or not run.drawable:
+        return None
+    sums = {"supplied": 0.0, "stored": 0.0, "dissipated": 0.0}
+    for name in terms:
+        sums[family_of(name)] += float(run.history[name][-1])
+    scale = max((float(np.nanmax(np.abs(run.history[name]))) for name in terms), default=0.0)
+    return (sums["stored"] + sums["dissipated"] - sums["supplied"]) / scale if scale > 0 else None
+
+
+def ledger_figure(runs: list[Run]) -> LedgerFigure:
+    """Energies against inlet pressure for one experiment's main variants."""
+    every = [_ledger_panel(run) for run in runs if run.is_main and run.drawable]
+    panels = tuple(panel for panel in every if panel.terms)
+    if not panels:
+        raise NotAvailable("no run of this experiment has energies in its history")
+    return LedgerFigure(_ledger_title(panels), panels)
+
+
+def _ledger_panel(run: Run) -> LedgerPanel:
+    """One run's energies."""
+    inlet = run.history["inlet_Pa"] / 1e6
+    terms = tuple(
+        Term(plain(name.removesuffix("_J")), family_of(name), inlet, run.history[name] / 1e3)
+        for name in energy_terms(run)
+        if np.nanmax(np.abs(run.history[name])) > 0.0
+    )
+    closure = closure_of(run)
+    heading = plain(run.variant) + ("" if closure is None else f": open by {share(abs(closure))}")
+    return LedgerPanel(run.variant, heading, terms, run.history["time_s"])
+
+
+def _ledger_title(panels: tuple[LedgerPanel, ...]) -> str:
+    """Where most of the dissipated energy goes in each variant."""
+    parts = []
+    for panel in panels:
+        lost = [term for term in panel.terms if term.family == "dissipated"]
+        given = sum(float(term.energy_kJ[-1]) for term in panel.terms if term.family == "supplied")
+        if not lost or given <= 0.0:
+            continue
+        most = max(lost, key=lambda term: abs(float(term.energy_kJ[-1])))
+        parts.append(f"{plain(panel.variant)} {share(float(most.energy_kJ[-1]) / given)} ({most.name})")
+    return f"Largest loss as a share of the work supplied: {listed(parts)}" if parts else "Nothing is dissipated"
+
+
+def variant_figure(groups: list[list[Run]]) -> VariantFigure:
+    """Events of every variant of every experiment."""
+    blocks = []
+    for runs in groups:
+        rows = tuple(_variant_row(run, runs) for run in runs if run.status != "missing" or run.drawable)
+        if rows:
+            blocks.append((f"Experiment {runs[0].number}", rows))
+    if not blocks:
+        raise NotAvailable("there is no run")
+    return VariantFigure(_variant_title(groups), tuple(blocks))
+
+
+def _variant_row(run: Run, runs: list[Run]) -> VariantRow:
+    """One variant's line."""
+    label = plain(run.variant)
+    if not run.drawable:
+        return VariantRow(label, run.variant, run.is_main, (), f"{run.status}: {run.reason}")
+    outcome = outcome_of(run)
+    note = "failed" if run.status == "failed" else ""
+    return VariantRow(label, run.variant, run.is_main, tuple(_dots(outcome)), note)
+
+
+def _dots(outcome: Outcome) -> list[Dot]:
+    """The marks of one variant: start, reach, each arrest with its restart, end."""
+    dots = []
+    if outcome.start_Pa is not None:
+        dots.append(Dot("start", outcome.start_Pa / 1e6, None, ""))
+    if outcome.reached_Pa is not None:
+        dots.append(Dot("reach_interface", outcome.reached_Pa / 1e6, None, ""))
+    for arrest in outcome.arrests:
+        until = outcome.final_inlet_Pa if arrest.until_Pa is None else arrest.until_Pa
+        flag = "J at interface" if arrest.by_J else ""
+        dots.append(Dot("arrest", arrest.from_Pa / 1e6, until / 1e6, flag))
+        if arrest.until_Pa is not None:
+            dots.append(Dot("restart", arrest.until_Pa / 1e6, None, flag))
+    dots.append(Dot("stop", outcome.final_inlet_Pa / 1e6, None, ""))
+    return dots
+
+
+def _variant_title(groups: list[list[Run]]) -> str:
+    """The variant that moves the start of growth most against its nearest main variant."""
+    best: tuple[float, Run, Run] | None = None
+    for runs in groups:
+        for run in runs:
+            base = base_of(run, runs)
+            if base is None or not (run.drawable and base.drawable):
+                continue
+            here, there = outcome_of(run).start_Pa, outcome_of(base).start_Pa
+            if here is not None and there is not None and (best is None or abs(here - there) > abs(best[0])):
+                best = (here - there, run, base)
+    if best is None:
+        return "No variant beside the study's interface types has started to grow"
+    shift, run, base = best
+    move = "raises" if shift > 0 else "lowers"
+    return (
+        f"Of all readings of what the study leaves open, '{plain(run.variant)}' in Experiment {run.number} {move}"
+        f" the start of growth most: by {mpa(abs(shift))} against '{plain(base.variant)}'"
+    )
+
+
+def base_of(run: Run, runs: list[Run]) -> Run | None:
+    """For a variant that is no interface type of the study, the main variant with the fewest other settings."""
+    if run.is_main or not run.scene:
+        return None
+    others = [other for other in runs if other.is_main and other.scene and other.experiment == run.experiment]
+    return min(others, key=lambda other: len(settings_between(run, other)), default=None)
+
+
+def differences(run: Run, runs: list[Run]) -> str:
+    """In words, the settings by which a variant differs from its nearest main variant."""
+    base = base_of(run, runs)
+    if base is None:
+        return ""
+    changed = settings_between(run, base)
+    parts = [f"{key} {_value(key, old)} → {_value(key, new)}" for key, old, new in changed]
+    return f"as {plain(base.variant)} but " + "; ".join(parts) if parts else f"as {plain(base.variant)}"
+
+
+def _value(key: str, value: Any) -> str:
+    """A setting's value with its unit; 'unset' where the key is absent."""
+    if value is None:
+        return "unset"
+    if isinstance(value, list):
+        return "[" + ", ".join(_value("", item) for item in value) + "]"
+    if isinstance(value, dict):
+        return " ".join(quantity(name, item) for name, item in value.items())
+    return quantity(key, value)
+
+
+def spread_of(run: Run) -> float | None:
+    """The median spread of J over its rings at growth away from interfaces, as a fraction of its mean."""
+    for name in ("J_spread", "J_spread_at_growth"):
+        if name in run.history:
+            column = run.history[name]
+            grown = np.isfinite(column) & (run.history.get("J_N_m", column) > 0.0)
+            return float(np.median(column[grown])) if grown.any() else None
+    tips = [tip.get("J_spread") for tip in run.summary.get("tips") or []]
+    known = [float(value) for value in tips if isinstance(value, (int, float))]
+    return max(known) if known else None
+
+
+def suspicions(run: Run) -> list[str]:
+    """What the run itself or its data mark as not to be trusted, in words."""
+    flags = [str(flag) for flag in run.summary.get("suspect") or run.summary.get("warnings") or []]
+    if run.drawable:
+        outcome = outcome_of(run)
+        by_J = [arrest for arrest in outcome.arrests if arrest.by_J]
+        if by_J:
+            places = list(dict.fromkeys(f"{number(arrest.height_m)} m" for arrest in by_J))
+            flags.append(f"J at interface ({listed(places)})")
+    closure = closure_of(run)
+    if closure is not None and abs(closure) > 0.01:
+        flags.append(f"energy open by {share(abs(closure))}")
+    return flags

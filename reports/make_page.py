@@ -1,0 +1,37 @@
+#!/usr/bin/python3
+"""Writes the page of results: reports/make_page.py --runs runs --out reports/out."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))
+
+from reports.figures import catalogue, make  # noqa: E402  (after the path to the project is known)
+from reports.page import write_page  # noqa: E402
+from reports.runs import add_missing, load_claims, load_runs, scene_variants  # noqa: E402
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Read the runs, make every figure, write the page; 1 where a figure met a defect."""
+    parser = argparse.ArgumentParser(description="Make figures and index.html from run folders.")
+    parser.add_argument("--runs", type=Path, default=ROOT / "runs", help="folder of runs/<scene>/<variant>/")
+    parser.add_argument("--out", type=Path, default=ROOT / "reports" / "out", help="folder for the page")
+    parser.add_argument("--experiments", type=Path, default=ROOT / "experiments",
+                        help="scenes whose variants without a run are shown as not run")
+    options = parser.parse_args(arguments)
+    runs = add_missing(load_runs(options.runs), scene_variants(options.experiments), options.runs)
+    figures = [make(spec, options.out / "figures") for spec in catalogue(runs)]
+    page = write_page(options.out, runs, load_claims(options.runs), figures)
+    for made in figures:
+        if made.reason:
+            print(f"{made.label}: {made.reason}\n{made.defect}", file=sys.stderr)
+    print(f"{page}: {sum(made.ok for made in figures)} of {len(figures)} figures, {len(runs)} runs")
+    return 1 if any(made.defect for made in figures) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

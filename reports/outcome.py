@@ -1,0 +1,152 @@
+"""What a run did, told from its events: start, arrests, restarts, end; and sentences that say so."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from reports.layout import layout_of
+from reports.runs import NotAvailable, Run
+from reports.words import listed, metres, mpa, plain
+
+
+@dataclass(frozen=True)
+class Arrest:
+    """A tip that stays: its height in m, inlet pressures in Pa from and until (None: to the end)."""
+
+    height_m: float
+    from_Pa: float
+    until_Pa: float | None
+    interface: str | None  # the interface within reach of the J rings, if any
+    by_J: bool  # the criterion there was J alone, which is not to be trusted at an interface
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A run in short; m and Pa."""
+
+    variant: str
+    status: str
+    start_Pa: float | None
+    reached_Pa: float | None
+    arrests: tuple[Arrest, ...]
+    final_height_m: float
+    final_inlet_Pa: float
+    grew: bool
+
+
+def outcome_of(run: Run) -> Outcome:
+    """What the run's events and its last history row say."""
+    if not run.drawable:
+        raise NotAvailable(f"{run.experiment}/{run.variant}: {run.reason or 'no history'}")
+    heights, inlet = run.history["height_m"], run.history["inlet_Pa"]
+    return Outcome(
+        variant=run.variant,
+        status=run.status,
+        start_Pa=event_inlet(run, "start"),
+        reached_Pa=event_inlet(run, "reach_interface"),
+        arrests=arrests_of(run),
+        final_height_m=float(heights[-1]),
+        final_inlet_Pa=float(inlet[-1]),
+        grew=float(heights[-1]) > float(heights[0]),
+    )
+
+
+def event_inlet(run: Run, kind: str) -> float | None:
+    """Inlet pressure of the first event of a kind, Pa."""
+    for event in run.events:
+        if event.get("kind") == kind:
+            return float(event["inlet_Pa"])
+    return None
+
+
+def arrests_of(run: Run) -> tuple[Arrest, ...]:
+    """Every arrest with the restart that ended it, if one did."""
+    events = [event for event in run.events if event.get("kind") in ("arrest", "restart")]
+    arrests: list[Arrest] = []
+    for index, event in enumerate(events):
+        if event["kind"] != "arrest":
+            continue
+        follower = events[index + 1] if index + 1 < len(events) else None
+        until = float(follower["inlet_Pa"]) if follower and follower["kind"] == "restart" else None
+        name = interface_near(run, float(event["tip_x_m"]), float(event["tip_y_m"]))
+        by_J = decided_by_J(run, event)
+        arrests.append(Arrest(float(event["tip_y_m"]), float(event["inlet_Pa"]), until, name, by_J))
+    return tuple(arrests)
+
+
+def decided_by_J(run: Run, event: dict[str, Any]) -> bool:
+    """Whether an event at a tip rests on a J too near to an interface to be trusted."""
+    if crossing_of(run) != "J":
+        return False
+    if "at_interface" in event:
+        return bool(event["at_interface"])
+    return interface_near(run, float(event["tip_x_m"]), float(event["tip_y_m"])) is not None
+
+
+def crossing_of(run: Run) -> str:
+    """The criterion by which the run decides growth near an interface: 'J' or 'energy'."""
+    named = run.scene.get("fracture", {}).get("crossing")
+    return str(named or ("J" if run.scene.get("numerics", {}).get("mechanics") == "explicit" else "energy"))
+
+
+def interface_near(run: Run, x_m: float, y_m: float) -> str | None:
+    """The name of the interface within a cell and a half of a point: there J is not to be trusted."""
+    layout = layout_of(run)
+    at = y_m if layout.along == "y" else x_m
+    for place in layout.interfaces:
+        if place.law != "perfect" and abs(place.at_m - at) <= 1.5 * run.cell_m:
+            return place.name
+    return None
+
+
+def outcomes_of(runs: Iterable[Run]) -> list[Outcome]:
+    """The outcomes of those runs that have a history."""
+    return [outcome_of(run) for run in runs if run.drawable]
+
+
+def longest(outcome: Outcome) -> Arrest | None:
+    """The arrest that lasts over the widest range of inlet pressure."""
+
+    def width(arrest: Arrest) -> float:
+        """Its range of inlet pressure, Pa."""
+        until = outcome.final_inlet_Pa if arrest.until_Pa is None else arrest.until_Pa
+        return until - arrest.from_Pa
+
+    return max(outcome.arrests, key=width, default=None)
+
+
+def _phrase(outcome: Outcome) -> tuple[str, str]:
+    """What happened as (words shared by like outcomes, words of this one)."""
+    end = mpa(outcome.final_inlet_Pa)
+    if outcome.status not in ("completed", "failed"):
+        return "not finished", f"at {end}"
+    if outcome.status == "failed":
+        return "failed", f"at {end}"
+    if not outcome.grew:
+        return "never grew", f"up to {end}"
+    arrest = longest(outcome)
+    if arrest is None:
+        return f"grew without arrest to {metres(outcome.final_height_m)}", f"by {end}"
+    held = f"to the end at {end}" if arrest.until_Pa is None else f"until {mpa(arrest.until_Pa)}"
+    more = len(outcome.arrests) - 1
+    extra = f" ({more} shorter arrest{'s' if more > 1 else ''} besides)" if more else ""
+    return f"stopped at {metres(arrest.height_m)}", held + extra
+
+
+def finding(outcomes: Iterable[Outcome]) -> str:
+    """One sentence on what was found, like outcomes told together."""
+    groups: dict[str, list[tuple[str, str]]] = {}
+    for outcome in outcomes:
+        shared, own = _phrase(outcome)
+        groups.setdefault(shared, []).append((plain(outcome.variant), own))
+    parts: list[str] = []
+    for shared, members in groups.items():
+        alike: dict[str, list[str]] = {}
+        for name, own in members:
+            alike.setdefault(own, []).append(name)
+        told = [(listed(names), own) for own, names in alike.items()]
+        parts.append(", ".join([f"{told[0][0]} {shared} {told[0][1]}", *(f"{names} {own}" for names, own in told[1:])]))
+    sentence = "; ".join(parts)
+    return sentence[:1].upper() + sentence[1:] if sentence else "No run to tell of"

@@ -1,0 +1,206 @@
+"""Turns runs, verdicts and figures into the page: tables as plain data, then the template."""
+
+from __future__ import annotations
+
+import platform
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import jinja2
+
+from reports.curves import held
+from reports.figures import Made
+from reports.layout import settings_between
+from reports.ledger import closure_of, differences, spread_of, suspicions
+from reports.outcome import outcome_of
+from reports.runs import Run
+from reports.verdicts import ClaimRow, claim_rows, counts
+from reports.words import listed, metres, mpa, number, plain, share
+
+COPIED: tuple[str, ...] = ("scene.toml", "summary.json", "history.csv")
+
+
+@dataclass(frozen=True)
+class Section:
+    """One experiment on the page."""
+
+    anchor: str
+    number: int
+    title: str
+    figures: list[Made]
+    claims: list[ClaimRow]
+    rows: list[dict[str, Any]]
+    failures: list[dict[str, str]]
+    missing: list[str]
+    settings: list[tuple[str, str]]
+
+
+def write_page(out: Path, runs: list[Run], claims: list[dict[str, Any]], figures: list[Made]) -> Path:
+    """Write index.html and copies of each run's small files; returns the page's path."""
+    out.mkdir(parents=True, exist_ok=True)
+    for run in runs:
+        _copy_sources(run, out)
+    loader = jinja2.FileSystemLoader(Path(__file__).parent / "templates")
+    environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
+    page = out / "index.html"
+    page.write_text(environment.get_template("page.html").render(context(runs, claims, figures)), encoding="utf-8")
+    return page
+
+
+def _copy_sources(run: Run, out: Path) -> None:
+    """Put a run's scene, summary and history beside the page, so that its links hold wherever it is moved."""
+    target = out / "data" / run.experiment / run.variant
+    for name in COPIED:
+        if (run.folder / name).exists():
+            target.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(run.folder / name, target / name)
+
+
+def context(runs: list[Run], claims: list[dict[str, Any]], figures: list[Made]) -> dict[str, Any]:
+    """Everything that the template shows."""
+    verdicts = claim_rows(claims)
+    tally = counts(verdicts)
+    experiments = sorted({(run.number, run.experiment) for run in runs})
+    sections = [section(stem, [run for run in runs if run.experiment == stem], verdicts, figures)
+                for _, stem in experiments]
+    return {
+        "claims": verdicts,
+        "counts": [entry for entry in tally if entry[2]],
+        "headline": headline(runs, tally),
+        "sections": sections,
+        "homeless": [made for made in figures if made.experiment not in (0, *(number for number, _ in experiments))],
+        "general": [made for made in figures if made.experiment == 0],
+        "figures": figures,
+        "made_of": made_of(runs),
+        "failures": [row for part in sections for row in part.failures],
+    }
+
+
+def headline(runs: list[Run], tally: list[tuple[str, str, int]]) -> str:
+    """The page's first sentence: how many claims hold and how many runs stand behind them."""
+    complete = sum(run.status == "completed" for run in runs)
+    runs_words = f"{complete} of {len(runs)} runs are complete."
+    total = sum(count for _, _, count in tally)
+    if total == 0:
+        return f"No verdict on any claim has been written yet. {runs_words}"
+    parts = [f"{count} {'is' if count == 1 else 'are'} {name}" for name, _, count in tally if count]
+    return f"Of {total} claims of the study, {listed(parts)}. {runs_words}"
+
+
+def section(stem: str, runs: list[Run], claims: list[ClaimRow], figures: list[Made]) -> Section:
+    """One experiment's part of the page."""
+    number_of = runs[0].number
+    base = next((run for run in runs if run.scene), None)
+    own = [made for made in figures if made.experiment == number_of or (made.name == "fig8" and number_of == 6)]
+    title = str(base.scene.get("title", "")) if base else ""
+    return Section(
+        anchor=stem,
+        number=number_of,
+        title=title or plain(stem),
+        figures=[made for made in own if not (made.name == "fig8" and number_of == 6)],
+        claims=[row for row in claims if row.id.startswith(str(number_of))],
+        rows=[run_row(run, runs) for run in runs],
+        failures=[
+            {"run": f"{run.experiment} / {plain(run.variant)}", "status": run.status, "reason": run.reason}
+            for run in runs if run.status not in ("completed", "missing")
+        ],
+        missing=[plain(run.variant) for run in runs if run.status == "missing"],
+        settings=settings_of(base) if base else [],
+    )
+
+
+def run_row(run: Run, runs: list[Run]) -> dict[str, Any]:
+    """One run's line in its experiment's table."""
+    summary = run.summary
+    outcome = outcome_of(run) if run.drawable else None
+    closure, spread = closure_of(run), spread_of(run)
+    return {
+        "variant": plain(run.variant),
+        "is_main": run.is_main,
+        "status": run.status,
+        "reason": "" if run.status == "completed" else run.reason,
+        "link": f"data/{run.experiment}/{run.variant}/",
+        "files": [name for name in COPIED if (run.folder / name).exists()],
+        "differs": differences(run, runs),
+        "start": mpa(outcome.start_Pa) if outcome and outcome.start_Pa is not None else "–",
+        "arrest": (held(run) or "–") if outcome else "–",
+        "end": f"{metres(outcome.final_height_m)} at {mpa(outcome.final_inlet_Pa)}" if outcome else "–",
+        "steps": _count(summary.get("steps")),
+        "wall": _seconds(summary.get("wall_s")),
+        "rate": _millions(summary.get("particle_steps_per_s")),
+        "closure": "–" if closure is None else share(abs(closure)),
+        "spread": "–" if spread is None else share(spread),
+        "suspect": suspicions(run),
+    }
+
+
+def _count(value: Any) -> str:
+    """A count with thin spaces between thousands."""
+    return f"{int(value):,}".replace(",", "\u202f") if isinstance(value, (int, float)) else "–"
+
+
+def _seconds(value: Any) -> str:
+    """A duration in s."""
+    return f"{number(float(value))} s" if isinstance(value, (int, float)) else "–"
+
+
+def _millions(value: Any) -> str:
+    """A rate in millions a second."""
+    return f"{number(float(value) / 1e6)} M/s" if isinstance(value, (int, float)) else "–"
+
+
+def settings_of(run: Run) -> list[tuple[str, str]]:
+    """The resolved scene of a run as key and value."""
+    nothing = Run(experiment="", variant="", folder=run.folder)
+    return [(key, _setting(key, value)) for key, _, value in settings_between(run, nothing)]
+
+
+def _setting(key: str, value: Any) -> str:
+    """A setting's value as the scene has it, units being in the key."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, float):
+        return f"{value:g}"
+    if isinstance(value, list):
+        return "[" + ", ".join(_setting(key, item) for item in value) + "]"
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{name} = {_setting(name, item)}" for name, item in value.items()) + "}"
+    return str(value)
+
+
+def made_of(runs: list[Run]) -> list[tuple[str, str]]:
+    """Versions, machine and run times."""
+    with_summary = [run for run in runs if run.summary]
+    versions = sorted({str(run.summary.get("version", "unknown")) for run in with_summary})
+    walls = [float(run.summary["wall_s"]) for run in with_summary
+             if isinstance(run.summary.get("wall_s"), (int, float))]
+    mechanics = sorted({str(run.summary.get("mechanics", "unknown")) for run in with_summary})
+    cells = sorted({run.cell_m for run in runs if run.scene})
+    memory = [float(run.summary["peak_memory_MB"]) for run in with_summary
+              if isinstance(run.summary.get("peak_memory_MB"), (int, float))]
+    rows = [
+        ("strata", listed(versions) or "no run has said"),
+        ("mechanics", listed(mechanics) or "no run has said"),
+        ("cells", listed([metres(cell) for cell in cells]) or "no run has said"),
+        ("runs", str(len(runs))),
+        ("run time, summed", f"{number(sum(walls))} s"),
+        ("longest run", f"{number(max(walls))} s" if walls else "–"),
+        ("largest memory of a run", f"{number(max(memory))} MB" if memory else "–"),
+        ("machine that made this page", machine()),
+        ("page made with", f"Python {platform.python_version()}, jinja2 {jinja2.__version__}"),
+    ]
+    return rows
+
+
+def machine() -> str:
+    """The processor's name and the number of its threads, and the system."""
+    names: list[str] = []
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+        names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+    except OSError:
+        pass
+    processor = f"{names[0]}, {len(names)} threads" if names else platform.processor() or platform.machine()
+    return f"{processor}; {platform.system()} {platform.release()}"

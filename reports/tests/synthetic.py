@@ -1,0 +1,222 @@
+"""Writes run folders that look like the solver's, from made-up curves: what the page's tests read."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+RATE_PA_S = 0.35e6
+START_PA = 2.0e6
+OUTPUTS = 12
+STEMS: dict[int, str] = {
+    1: "exp1_single_interface", 2: "exp2_soft_above", 3: "exp3_two_interfaces",
+    4: "exp4_soft_between", 5: "exp5_parallel_interface", 6: "exp6_stress_reversal",
+}
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a made-up run does: height in m at which it stops, inlet pressures in Pa, how far its tip drifts in m."""
+
+    variant: str
+    interfaces: tuple[str, ...] = ("perfect",)
+    start_Pa: float = 2.4e6
+    stop_at_m: float | None = None
+    restart_Pa: float | None = None
+    drift_m: float = 0.0
+    status: str = "completed"
+    reason: str = "tip at 70 m"
+    extra: str = ""
+
+
+def scene_text(number: int, plan: Plan) -> str:
+    """A resolved scene of one experiment."""
+    along = "x" if number > 4 else "y"
+    sizes = {3: "10, 10", 4: "10, 10", 5: "45", 6: "45"}.get(number, "10").split(", ")
+    rocks = {2: "stiff soft", 4: "stiff soft stiff", 5: "soft stiff", 6: "stiff soft", 3: "stiff stiff stiff"}
+    names = rocks.get(number, "stiff stiff").split()
+    layers = [f'{{rock = "{name}", thickness_m = {size}}}' for name, size in zip(names, sizes)]
+    layers.append(f'{{rock = "{names[-1]}"}}')
+    interfaces = ", ".join(f'"{name}"' for name in plan.interfaces)
+    return f"""title = "Experiment {number}: made up"
+[domain]
+width_m = 80
+height_m = 80
+bottom = "symmetry"
+sides = "fixed"
+top = "traction"
+[in_situ]
+vertical_Pa = 3.0e6
+horizontal_Pa = 2.0e6
+initialise = "uniform"
+[rock.stiff]
+youngs_modulus_Pa = 10.0e9
+poisson_ratio = 0.2
+toughness_Pa_sqrt_m = 1.45e6
+[rock.soft]
+youngs_modulus_Pa = 5.0e9
+poisson_ratio = 0.2
+toughness_Pa_sqrt_m = 1.25e6
+[interface.weak]
+law = "weak"
+[interface.friction]
+law = "friction"
+[interface.soft]
+law = "soft"
+[strata]
+along = "{along}"
+layers = [{", ".join(layers)}]
+interfaces = [{interfaces}]
+[fracture]
+path_m = [[40, 0], [40, 5]]
+growth = "J"
+increment_m = 1.0
+[numerics]
+mechanics = "explicit"
+cell_m = 2.0
+shape = "bspline2"
+{plan.extra}
+"""
+
+
+def height_at(plan: Plan, inlet_Pa: np.ndarray) -> np.ndarray:
+    """The tip's height in m, whole metres, at inlet pressures in Pa."""
+    free = 5.0 + 65.0 * np.clip((inlet_Pa - plan.start_Pa) / 0.5e6, 0.0, 1.0)
+    if plan.stop_at_m is None:
+        return np.floor(free)
+    late = np.inf if plan.restart_Pa is None else plan.restart_Pa
+    after = plan.stop_at_m + (70.0 - plan.stop_at_m) * np.clip((inlet_Pa - late) / 0.3e6, 0.0, 1.0)
+    return np.floor(np.where(inlet_Pa < late, np.minimum(free, plan.stop_at_m), after))
+
+
+def write_run(root: Path, number: int, plan: Plan) -> Path:
+    """One run's folder with all its files."""
+    folder = root / STEMS[number] / plan.variant
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "scene.toml").write_text(scene_text(number, plan), encoding="utf-8")
+    inlet = np.linspace(START_PA, 4.0e6, 120)
+    height = height_at(plan, inlet)
+    end = int(np.argmax(height >= 70.0)) if (height >= 70.0).any() else inlet.size - 1
+    if plan.status == "failed":
+        end = inlet.size // 4
+    inlet, height = inlet[: end + 1], height[: end + 1]
+    drift = plan.drift_m * ((height - 5.0) / 65.0) ** 2
+    _write_history(folder, inlet, height, drift)
+    _write_summary(folder, plan, inlet, height, drift)
+    _write_fields(folder, inlet, height, plan)
+    return folder
+
+
+def _write_history(folder: Path, inlet: np.ndarray, height: np.ndarray, drift: np.ndarray) -> None:
+    """history.csv with the ledger's columns."""
+    work = 1e3 * (height - 5.0) ** 1.5
+    columns = {
+        "time_s": (inlet - START_PA) / RATE_PA_S, "inlet_Pa": inlet, "tip_x_m": 40.0 + drift, "tip_y_m": height,
+        "height_m": height, "J_N_m": np.full_like(inlet, 200.0), "mouth_opening_m": 1e-4 * height,
+        "kinetic_J": 0.02 * work, "strain_J": 0.6 * work, "fluid_work_J": work, "damping_J": 0.3 * work,
+        "friction_J": 0.075 * work, "energy_closure": np.full_like(inlet, 0.005),
+        "J_spread": np.full_like(inlet, 0.006),
+    }
+    with (folder / "history.csv").open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(columns)
+        writer.writerows(zip(*columns.values()))
+
+
+def _event(kind: str, row: int, inlet: np.ndarray, height: np.ndarray, drift: np.ndarray) -> dict[str, float | str]:
+    """An event at a row of the history."""
+    return {
+        "kind": kind, "time_s": (inlet[row] - START_PA) / RATE_PA_S, "inlet_Pa": inlet[row],
+        "tip_x_m": 40.0 + drift[row], "tip_y_m": height[row],
+    }
+
+
+def _write_summary(folder: Path, plan: Plan, inlet: np.ndarray, height: np.ndarray, drift: np.ndarray) -> None:
+    """summary.json with the events that the curve has."""
+    here = (inlet, height, drift)
+    events = []
+    if (height > 5.0).any():
+        events.append(_event("start", int(np.argmax(height > 5.0)), *here))
+    if plan.stop_at_m is not None and (height >= plan.stop_at_m).any():
+        row = int(np.argmax(height >= plan.stop_at_m))
+        events += [_event("reach_interface", row, *here), _event("arrest", row, *here)]
+        if plan.restart_Pa is not None and (height > plan.stop_at_m).any():
+            events.append(_event("restart", int(np.argmax(height > plan.stop_at_m)), *here))
+    events.append(_event("stop", inlet.size - 1, *here))
+    summary = {
+        "scene": folder.parent.name, "variant": plan.variant, "status": plan.status, "reason": plan.reason,
+        "mechanics": "explicit", "cells": 1600, "particles": 6400, "steps": 12345, "time_s": 1.0,
+        "inlet_Pa": inlet[-1], "wall_s": 12.5, "particle_steps_per_s": 2.0e7, "peak_memory_MB": 55.0,
+        "version": "0.1.0", "energy": {"closure": 0.005}, "events": events,
+        "tips": [{"x_m": 40.0, "y_m": height[-1], "J_spread": 0.006, "kink_deg": 1.0}],
+    }
+    (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+
+
+def _write_fields(folder: Path, inlet: np.ndarray, height: np.ndarray, plan: Plan) -> None:
+    """result.h5 with fracture and particles at a few output times."""
+    rows = np.unique(np.linspace(0, inlet.size - 1, OUTPUTS).astype(int))
+    x_m, y_m = (part.ravel() for part in np.meshgrid(np.arange(0.5, 80.0), np.arange(0.5, 80.0)))
+    with h5py.File(folder / "result.h5", "w") as store:
+        store["times"] = (inlet[rows] - START_PA) / RATE_PA_S
+        for index, row in enumerate(rows):
+            group = store.create_group(f"fracture/{index:05d}")
+            group.attrs.update(time_s=(inlet[row] - START_PA) / RATE_PA_S, inlet_Pa=inlet[row])
+            points = np.arange(0.0, height[row] + 0.5)
+            group["y_m"], group["arc_m"] = points, points
+            group["x_m"] = 40.0 + plan.drift_m * (np.clip(points - 5.0, 0.0, None) / 65.0) ** 2
+            group["opening_m"] = 1e-4 * np.sqrt(np.clip(height[row] ** 2 - points**2, 0.0, None))
+            group["slip_m"] = 0.0 * points
+            group["pressure_Pa"] = inlet[row] * (1.0 - 0.5 * points / points[-1])
+            group["permeability_m2"] = np.maximum(group["opening_m"][()], 1e-4) ** 2 / 12.0
+            cloud = store.create_group(f"particles/{index:05d}")
+            cloud["x_m"], cloud["y_m"], cloud["volume_m2"] = x_m, y_m, np.ones_like(x_m)
+            near = np.exp(-np.hypot(x_m - 40.0, y_m - height[row]) / 5.0)
+            cloud["s_xx_Pa"] = -2.0e6 + 0.5e6 * near
+
+
+def write_all(root: Path) -> Path:
+    """All six experiments with their interface types, one run failed; returns the folder of runs."""
+    runs = root / "runs"
+    weak = {"stop_at_m": 10.0, "restart_Pa": 3.2e6}
+    for number in (1, 2):
+        for plan in (Plan("perfect"), Plan("friction", ("friction",)), Plan("weak", ("weak",), **weak),
+                     Plan("soft", ("soft",), stop_at_m=10.0)):
+            write_run(runs, number, plan)
+    write_run(runs, 1, Plan("uniform", start_Pa=2.36e6, extra='[fluid]\nlaw = "uniform"'))
+    for plan in (Plan("perfect", ("perfect", "perfect")), Plan("weak_soft", ("weak", "soft"), **weak),
+                 Plan("soft_weak", ("soft", "weak"), stop_at_m=10.0, restart_Pa=3.0e6)):
+        write_run(runs, 3, plan)
+    for plan in (Plan("perfect", ("perfect", "perfect")), Plan("weak", ("weak", "weak"), **weak),
+                 Plan("soft", ("soft", "soft"), status="failed", reason="a mechanism: the upper block is free")):
+        write_run(runs, 4, plan)
+    for number, sign in ((5, -1.0), (6, 1.0)):
+        for plan in (Plan("perfect", drift_m=0.4 * sign), Plan("friction", ("friction",), drift_m=0.405 * sign),
+                     Plan("soft", ("soft",), drift_m=1.3 * sign)):
+            write_run(runs, number, plan)
+    (runs / "claims.json").write_text(json.dumps({"claims": CLAIMS}), encoding="utf-8")
+    return runs
+
+
+_CASE = {
+    "observable": "plateau_Pa", "variant": "weak", "against": None, "against_scene": None, "at_least": 5e4,
+    "at_most": None, "parameters": {"interface": 1}, "unit": "Pa", "value": 6.4e5, "low": 6.4e5, "high": 6.4e5,
+    "holds": True, "evaluated": True, "note": "", "flags": [],
+}
+_OPEN = {**_CASE, "variant": "soft", "value": 1.6e6, "low": 1.6e6, "high": None, "note": "does not grow on from 10 m"}
+CLAIMS = [
+    {"id": "1b", "experiment": STEMS[1], "text": "Weak and soft stop the fracture.", "why": "0.05 MPa is an arrest.",
+     "observable": "plateau_Pa", "verdict": "reproduced", "cases": [_CASE, _OPEN], "readings": [],
+     "flags": ["J at interface"]},
+    {"id": "5a", "experiment": STEMS[5], "text": "The path turns away from the stiff rock.", "why": "Its sign.",
+     "observable": "lateral_deflection_m", "verdict": "not reproduced", "cases": [{**_CASE, "holds": False}],
+     "readings": [{"name": "loaded", "holds": None, "cases": [_OPEN]}], "flags": []},
+    {"id": "2c", "experiment": STEMS[2], "text": "The start is later.", "why": "Its pressure.",
+     "observable": "start_Pa", "verdict": "only under a variant", "cases": [{**_CASE, "holds": False}],
+     "readings": [{"name": "loaded", "holds": True, "cases": [_CASE]}], "flags": []},
+]

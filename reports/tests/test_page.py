@@ -1,0 +1,153 @@
+"""The page is made from run folders alone, holds every figure, and survives runs that failed or are missing."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from reports.make_page import main
+from reports.tests.synthetic import STEMS, Plan, write_all, write_run
+
+STUDY_FIGURES = tuple(f"fig{number}" for number in range(1, 9))
+FIGURES = (*STUDY_FIGURES, "variants", *(f"energy{number}" for number in range(1, 7)))
+
+
+class Links(HTMLParser):
+    """Collects what a page refers to and the anchors it has."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.targets: list[str] = []
+        self.anchors: set[str] = set()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Note a tag's references and id."""
+        for name, value in attrs:
+            if name in ("href", "src") and value:
+                self.targets.append(value)
+            if name == "id" and value:
+                self.anchors.add(value)
+
+
+def links_of(page: Path) -> Links:
+    """The references and anchors of a page."""
+    links = Links()
+    links.feed(page.read_text(encoding="utf-8"))
+    return links
+
+
+def make(runs: Path, out: Path, experiments: Path | None = None) -> int:
+    """Make a page; its exit status."""
+    where = experiments or runs.parent / "no_scenes"
+    return main(["--runs", str(runs), "--out", str(out), "--experiments", str(where)])
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A page of all six experiments, one run of which failed."""
+    root = tmp_path_factory.mktemp("page")
+    assert make(write_all(root), root / "out") == 0
+    return root / "out"
+
+
+def test_every_figure_is_written_and_shown(made: Path) -> None:
+    """Each figure exists as SVG and PNG and stands on the page."""
+    page = (made / "index.html").read_text(encoding="utf-8")
+    for name in FIGURES:
+        assert (made / "figures" / f"{name}.svg").stat().st_size > 1000
+        assert (made / "figures" / f"{name}.png").stat().st_size > 1000
+        assert f'src="figures/{name}.svg"' in page
+
+
+def test_every_link_is_relative_and_leads_somewhere(made: Path) -> None:
+    """Nothing on the page needs a network or a place outside its folder."""
+    links = links_of(made / "index.html")
+    assert len(links.targets) > 60
+    for target in links.targets:
+        if target.startswith("#"):
+            assert target[1:] in links.anchors, target
+        else:
+            assert not re.match(r"[a-z]+:|/|\.\.", target), target
+            assert (made / target).is_file(), target
+
+
+def test_a_moved_page_still_holds_together(made: Path, tmp_path: Path) -> None:
+    """The folder can be copied elsewhere without the runs."""
+    copy = shutil.copytree(made, tmp_path / "elsewhere")
+    assert all((copy / target).is_file() for target in links_of(copy / "index.html").targets if target[0] != "#")
+
+
+def test_verdicts_come_first_with_their_numbers(made: Path) -> None:
+    """The table of claims precedes all figures and has what was measured and asked."""
+    page = (made / "index.html").read_text(encoding="utf-8")
+    assert page.index('id="verdicts"') < page.index("<figure")
+    table = page[page.index('class="claims"') : page.index("<figure")]
+    for words in ("only under a variant", "not reproduced", "0.64\u00a0MPa", "at least 1.6\u00a0MPa", "J at interface"):
+        assert words in table, words
+
+
+def test_a_failed_run_is_shown_with_its_reason(made: Path) -> None:
+    """A failed run stands in the list of failures and in its table, and its figure is still drawn."""
+    page = (made / "index.html").read_text(encoding="utf-8")
+    assert page.count("a mechanism: the upper block is free") >= 2
+    assert 'class="failed"' in page
+
+
+def test_findings_are_computed_from_the_runs(tmp_path: Path) -> None:
+    """Another arrest gives another title: nothing in it is typed."""
+    titles = []
+    for restart in (3.0e6, 3.4e6):
+        runs = tmp_path / f"runs{restart:.0f}"
+        write_run(runs, 1, Plan("weak", ("weak",), stop_at_m=10.0, restart_Pa=restart))
+        make(runs, tmp_path / "out")
+        titles += re.findall(r'alt="Figure 3: ([^"]+)"', (tmp_path / "out" / "index.html").read_text(encoding="utf-8"))
+    pressures = [float(re.search(r"until ([\d.]+) MPa", title).group(1)) for title in titles]
+    assert pressures[0] == pytest.approx(3.0, abs=0.1) and pressures[1] == pytest.approx(3.4, abs=0.1)
+
+
+def test_no_runs_at_all_still_gives_a_page(tmp_path: Path) -> None:
+    """An empty folder of runs is told, not crashed on."""
+    (tmp_path / "runs").mkdir()
+    assert make(tmp_path / "runs", tmp_path / "out") == 0
+    page = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
+    assert "No verdict on any claim" in page and "Figure 3 is not there" in page
+
+
+def test_declared_variants_without_a_run_are_shown(tmp_path: Path) -> None:
+    """A variant of a scene that was not run is listed as missing."""
+    scenes = tmp_path / "scenes"
+    scenes.mkdir()
+    (scenes / f"{STEMS[1]}.toml").write_text("[variants.perfect]\n[variants.undamped]\n", encoding="utf-8")
+    write_run(tmp_path / "runs", 1, Plan("perfect"))
+    assert make(tmp_path / "runs", tmp_path / "out", scenes) == 0
+    page = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
+    assert "not run: undamped" in page and 'class="missing"' in page
+
+
+@pytest.mark.parametrize("name", ["scene.toml", "summary.json", "history.csv", "result.h5"])
+@pytest.mark.parametrize("how", ["absent", "torn"])
+def test_a_damaged_folder_is_not_fatal(tmp_path: Path, name: str, how: str) -> None:
+    """Any one file absent or torn costs at most the figures that need it, without a defect."""
+    runs = tmp_path / "runs"
+    write_run(runs, 1, Plan("friction", ("friction",)))
+    victim = write_run(runs, 1, Plan("perfect")) / name
+    if how == "absent":
+        victim.unlink()
+    else:
+        victim.write_bytes(victim.read_bytes()[: victim.stat().st_size // 3])
+    assert make(runs, tmp_path / "out") == 0
+    page = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
+    assert 'src="figures/fig3.svg"' in page
+
+
+def test_a_run_that_never_started_is_told_from_its_outcome(tmp_path: Path) -> None:
+    """A folder with only the process's outcome is a failure with that reason."""
+    folder = tmp_path / "runs" / STEMS[2] / "weak"
+    folder.mkdir(parents=True)
+    (folder / "outcome.json").write_text('{"status": "failed", "reason": "bad input: no rock"}', encoding="utf-8")
+    assert make(tmp_path / "runs", tmp_path / "out") == 0
+    assert "bad input: no rock" in (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
