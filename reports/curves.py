@@ -96,11 +96,14 @@ class Path:
 class PathPanel:
     """The paths of one experiment with its layout; the window is (x0, x1, y0, y1) in m."""
 
+    name: str
     heading: str
     layout: Layout
     paths: tuple[Path, ...]
     window_m: tuple[float, float, float, float]
     magnified: float  # horizontal over vertical scale
+    aspect: float  # height over width of the panel
+    lean: int  # +1 where the paths end to the right of their start, -1 to the left: the other corners are free
     aside: str  # where the interface is when it is outside the window
 
 
@@ -144,7 +147,7 @@ def _height_curve(run: Run) -> HeightCurve:
     """One run's curve with its marked events."""
     keep = np.isfinite(run.history["inlet_Pa"]) & np.isfinite(run.history["height_m"])
     marks = tuple(_mark(run, event) for event in run.events if event.get("kind") in MARKED)
-    label = plain(run.variant) + (f" (failed: {run.reason})" if run.status == "failed" else "")
+    label = plain(run.variant) + ("" if run.status == "completed" else f" ({run.status})")
     return HeightCurve(
         variant=run.variant,
         label=label,
@@ -177,7 +180,7 @@ def profile_figure(runs: list[Run], variants: tuple[str, ...] = ("perfect", "wea
     panels = tuple(_profile_panel(chosen[name], times[name], wanted) for name in variants if name in chosen)
     profiles = [profile for panel in panels for profile in panel.profiles]
     return ProfileFigure(
-        title=_profile_title(panels),
+        title=finding(outcome_of(chosen[panel.variant]) for panel in panels),
         panels=panels,
         opening_mm=max((float(profile.opening_mm.max()) for profile in profiles), default=1.0),
         height_m=max((float(profile.height_m.max()) for profile in profiles), default=1.0),
@@ -189,8 +192,11 @@ def _profile_panel(run: Run, times_s: np.ndarray, wanted_s: np.ndarray) -> Profi
     reached = wanted_s[wanted_s <= times_s[-1] * (1.0 + 1e-9)]
     indices = sorted({int(np.argmin(np.abs(times_s - time))) for time in reached} | {times_s.size - 1})
     profiles = tuple(_profile(run, index, float(times_s[index]), wanted_s) for index in indices)
-    outcome = outcome_of(run)
-    heading = f"{plain(run.variant)}: {metres(outcome.final_height_m)} at {mpa(outcome.final_inlet_Pa)}"
+    end = profiles[-1]
+    heading = (
+        f"{plain(run.variant)}: at the end {metres(float(end.height_m.max()))} high,"
+        f" {number(float(end.opening_mm.max()), 2)}\u00a0mm wide"
+    )
     return ProfilePanel(run.variant, heading, profiles, layout_of(run).heights_m)
 
 
@@ -206,20 +212,6 @@ def _profile(run: Run, index: int, time_s: float, wanted_s: np.ndarray) -> Profi
         inlet_MPa=float(inlet) / 1e6,
         shade=float(np.clip((time_s - wanted_s[0]) / span, 0.0, 1.0)),
     )
-
-
-def _profile_title(panels: tuple[ProfilePanel, ...]) -> str:
-    """The widest opening of each variant at its last instant."""
-    parts = []
-    for panel in panels:
-        last = panel.profiles[-1]
-        widest = int(np.argmax(last.opening_mm))
-        parts.append(
-            f"{plain(panel.variant)} ends {metres(float(last.height_m.max()))} high and"
-            f" {number(float(last.opening_mm[widest]), 2)} mm wide at {number(last.inlet_MPa)} MPa"
-        )
-    sentence = "; ".join(parts)
-    return sentence[:1].upper() + sentence[1:]
 
 
 def path_figure(groups: list[list[Run]]) -> PathFigure:
@@ -238,12 +230,16 @@ def _path_panel(runs: list[Run]) -> PathPanel:
     paths = tuple(_path(run, side) for run in drawn)
     window = _window(paths)
     magnified = ((window[3] - window[2]) / (window[1] - window[0])) / PANEL_ASPECT
+    name = f"Experiment {drawn[0].number}"
     return PathPanel(
-        heading=f"Experiment {drawn[0].number}: {_drift(paths, side)}",
+        name=name,
+        heading=f"{name}: {_drift(paths, side)}",
         layout=layout,
         paths=paths,
         window_m=window,
         magnified=max(1.0, magnified),
+        aspect=PANEL_ASPECT,
+        lean=1 if sum(float(path.x_m[-1] - path.x_m[0]) for path in paths) > 0 else -1,
         aside=_aside(layout, window),
     )
 
@@ -269,7 +265,7 @@ def _path(run: Run, side: float) -> Path:
 
 def metres_signed(length_m: float) -> str:
     """A length in m to two decimals with its sign."""
-    return f"{length_m:+.2f} m".replace("-", "−")
+    return f"{length_m:+.2f}\u00a0m".replace("-", "−")
 
 
 def largest_turn(x_m: np.ndarray, y_m: np.ndarray) -> tuple[float, tuple[float, float]]:
@@ -291,12 +287,14 @@ def _window(paths: tuple[Path, ...]) -> tuple[float, float, float, float]:
     """A window about all paths with a margin, never narrower than a twentieth of its height nor than 0.5 m."""
     x_m = np.concatenate([path.x_m for path in paths])
     y_m = np.concatenate([path.y_m for path in paths])
-    y0, y1 = float(y_m.min()), float(y_m.max())
-    height = max(y1 - y0, 1.0)
-    half = 0.5 * max(1.3 * float(np.ptp(x_m)), height / 20.0, 0.5)
+    low = float(y_m.min())
+    height = 1.04 * max(float(y_m.max()) - low, 1.0)
+    width = max(1.3 * float(np.ptp(x_m)), height / 20.0, 0.5)
+    if width > 0.4 * height:  # so wide a path needs no magnification
+        width = max(width, height / PANEL_ASPECT)
+        height = PANEL_ASPECT * width
     middle = 0.5 * float(x_m.min() + x_m.max())
-    half = max(half, 0.5 * height / (PANEL_ASPECT * 1.0)) if half > 0.25 * height else half
-    return (middle - half, middle + half, y0, y1 + 0.04 * height)
+    return (middle - 0.5 * width, middle + 0.5 * width, low, low + height)
 
 
 def _aside(layout: Layout, window: tuple[float, float, float, float]) -> str:
@@ -318,7 +316,7 @@ def _drift(paths: tuple[Path, ...], side: float) -> str:
     parts = []
     for names, where in ((soft, "towards the soft rock"), (stiff, "towards the stiff rock")):
         if names:
-            each = listed([f"{number(abs(toward[name]), 2)} m ({plain(name)})" for name in names])
+            each = listed([f"{number(abs(toward[name]), 2)}\u00a0m ({plain(name)})" for name in names])
             parts.append(f"{where} by {each}")
     still = [plain(name) for name, shift in toward.items() if shift == 0]
     if still:

@@ -192,7 +192,7 @@ def _profile_words(data: ProfileFigure) -> str:
 def _path_words(data: PathFigure) -> str:
     """Caption of Fig 8."""
     kinks = [
-        f"{panel.heading.split(':')[0]} {listed([f'{plain(path.variant)} {path.kink_deg:.2g}°' for path in panel.paths])}"
+        f"{panel.name} {listed([f'{plain(path.variant)} {path.kink_deg:.2g}°' for path in panel.paths])}"
         for panel in data.panels
     ]
     return (

@@ -74,6 +74,7 @@ def context(runs: list[Run], claims: list[dict[str, Any]], figures: list[Made]) 
         "general": [made for made in figures if made.experiment == 0],
         "figures": figures,
         "made_of": made_of(runs),
+        "findings": [made for made in figures if made.ok and made.experiment > 0 and made.name.startswith("fig")],
         "failures": [row for part in sections for row in part.failures],
     }
 
@@ -85,8 +86,15 @@ def headline(runs: list[Run], tally: list[tuple[str, str, int]]) -> str:
     total = sum(count for _, _, count in tally)
     if total == 0:
         return f"No verdict on any claim has been written yet. {runs_words}"
-    parts = [f"{count} {'is' if count == 1 else 'are'} {name}" for name, _, count in tally if count]
+    parts = [f"{count} {_predicate(name, count)}" for name, _, count in tally if count]
     return f"Of {total} claims of the study, {listed(parts)}. {runs_words}"
+
+
+def _predicate(verdict: str, count: int) -> str:
+    """A verdict as a predicate of so many claims."""
+    if verdict == "only under a variant":
+        return f"hold{'s' if count == 1 else ''} only under a variant"
+    return f"{'is' if count == 1 else 'are'} {verdict}"
 
 
 def section(stem: str, runs: list[Run], claims: list[ClaimRow], figures: list[Made]) -> Section:

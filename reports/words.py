@@ -53,17 +53,17 @@ def _raised(exponent: int) -> str:
 
 def mpa(pressure_Pa: float) -> str:
     """A pressure in Pa written in MPa to two decimals."""
-    return f"{pressure_Pa / 1e6:.2f} MPa"
+    return f"{pressure_Pa / 1e6:.2f}\u00a0MPa"
 
 
 def metres(length_m: float) -> str:
     """A length in m to one decimal, or none where it is whole."""
-    return f"{length_m:.1f} m".replace(".0 m", " m")
+    return f"{length_m:.1f}\u00a0m".replace(".0\u00a0m", "\u00a0m")
 
 
 def share(fraction: float) -> str:
     """A fraction as a percentage."""
-    return f"{number(100.0 * fraction, 2)} %"
+    return f"{number(100.0 * fraction, 2)}\u00a0%"
 
 
 def listed(items: Sequence[str]) -> str:
@@ -74,8 +74,8 @@ def listed(items: Sequence[str]) -> str:
 
 
 def plain(name: str) -> str:
-    """A key or a variant's name as words."""
-    return name.replace("_", " ")
+    """A key or a variant's name as words; two interface types one above the other are joined by a dash."""
+    return name.replace("_", "–" if name in ("weak_soft", "soft_weak") else " ")
 
 
 def split_unit(key: str) -> tuple[str, float, str]:

@@ -63,11 +63,13 @@ def _draw_path_panel(axes: Axes, panel: PathPanel) -> None:
                   markeredgecolor="white", markeredgewidth=0.6, zorder=5)
     axes.set_xlim(x0, x1)
     axes.set_ylim(y0, y1)
+    axes.set_box_aspect(panel.aspect)
     scale = "" if panel.magnified < 1.05 else f", horizontally magnified ×{panel.magnified:.2g}"
-    axes.set_title(f"Experiment's paths{scale}".replace("Experiment's", panel.heading.split(":")[0] + ":"))
+    axes.set_title(f"{panel.name}: paths{scale}")
     axes.set_xlabel("x (m)" + (f"   [{panel.aside}]" if panel.aside else ""))
     axes.set_ylabel("height above the symmetry line (m)")
-    axes.legend(title="shift of the tip to the soft side, largest turn (◆)", loc="lower left", title_fontsize=8.5,
-                frameon=True, facecolor="white", edgecolor="none", framealpha=0.85)
-    inset = axes.inset_axes((0.72, 0.70, 0.27, 0.29))
+    corner = "lower right" if panel.lean > 0 else "lower left"
+    axes.legend(title="shift of the tip to the soft side, largest turn (◆)", loc=corner, title_fontsize=8.5, frameon=True,
+                facecolor="white", edgecolor="none", framealpha=0.85)
+    inset = axes.inset_axes((0.02 if panel.lean > 0 else 0.72, 0.70, 0.27, 0.29))
     draw_layout(inset, panel.layout, small=True)

@@ -110,6 +110,7 @@ def save(figure: Figure, folder: Path, name: str) -> None:
     """Write a figure as SVG and PNG and let it go."""
     folder.mkdir(parents=True, exist_ok=True)
     figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
+    figure.set_layout_engine("none")  # the places found for the SVG serve the PNG too
     figure.savefig(folder / f"{name}.png", dpi=PNG_DPI)
     plt.close(figure)
 

@@ -105,7 +105,7 @@ def test_findings_are_computed_from_the_runs(tmp_path: Path) -> None:
         write_run(runs, 1, Plan("weak", ("weak",), stop_at_m=10.0, restart_Pa=restart))
         make(runs, tmp_path / "out")
         titles += re.findall(r'alt="Figure 3: ([^"]+)"', (tmp_path / "out" / "index.html").read_text(encoding="utf-8"))
-    pressures = [float(re.search(r"until ([\d.]+) MPa", title).group(1)) for title in titles]
+    pressures = [float(re.search(r"until ([\d.]+)\sMPa", title).group(1)) for title in titles]
     assert pressures[0] == pytest.approx(3.0, abs=0.1) and pressures[1] == pytest.approx(3.4, abs=0.1)
 
 

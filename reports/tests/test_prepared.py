@@ -65,8 +65,8 @@ def test_like_outcomes_are_told_together(tmp_path: Path) -> None:
     for plan in (Plan("perfect"), Plan("friction", ("friction",)), Plan("soft", ("soft",), stop_at_m=10.0)):
         write_run(tmp_path, 1, plan)
     sentence = finding(outcomes_of(load_runs(tmp_path)))
-    assert sentence.startswith("Perfect and friction grew without arrest to 70 m by 2.9")
-    assert sentence.endswith("soft stopped at 10 m to the end at 4.00 MPa")
+    assert sentence.startswith("Perfect and friction grew without arrest to 70\u00a0m by 2.9")
+    assert sentence.endswith("soft stopped at 10\u00a0m to the end at 4.00\u00a0MPa")
 
 
 def test_profiles_are_taken_at_common_times(tmp_path: Path) -> None:
@@ -83,8 +83,8 @@ def test_paths_say_towards_which_rock_they_go(tmp_path: Path) -> None:
     """Experiment 5 has its soft rock on the left: a drift to the left is towards it."""
     write_run(tmp_path, 5, Plan("perfect", drift_m=-0.4))
     panel = path_figure([load_runs(tmp_path)]).panels[0]
-    assert "towards the soft rock by 0.4 m (perfect)" in panel.heading
-    assert panel.magnified > 5.0 and panel.aside == "interface 5 m to the right of the start"
+    assert "towards the soft rock by 0.4\u00a0m (perfect)" in panel.heading
+    assert panel.magnified > 5.0 and panel.aside == "interface 5\u00a0m to the right of the start"
 
 
 def test_a_raster_averages_particles(tmp_path: Path) -> None:
