@@ -19,7 +19,8 @@ namespace {
 constexpr int done = 0, bug = 1, bad_input = 2;
 
 struct Arguments {
-  std::vector<std::string> files;
+  std::string file;                // scene, or folder of a run
+  std::vector<std::string> files;  // of check
   std::string variant;
   std::vector<std::string> set;
   strata::RunOptions options;
@@ -31,7 +32,7 @@ int report(const std::vector<std::string>& errors) {
 }
 
 int run(Arguments arguments) {
-  const std::filesystem::path file = arguments.files.front();
+  const std::filesystem::path file = arguments.file;
   const strata::ReadResult read = strata::read_scene(file, arguments.variant, arguments.set);
   if (!read.scene) return report(read.errors);
   const std::string folder = arguments.variant.empty() ? "default" : arguments.variant;
@@ -40,13 +41,13 @@ int run(Arguments arguments) {
 }
 
 int resume(const Arguments& arguments) {
-  const std::filesystem::path dir = arguments.files.front();
+  const std::filesystem::path dir = arguments.file;
   if (std::filesystem::exists(dir / "scene.toml")) return strata::resume_run(dir, arguments.options);
   return report({dir.string() + ": this is not the folder of a run; it holds no scene.toml."});
 }
 
 int list_variants(const Arguments& arguments) {
-  const strata::VariantList list = strata::list_variants(arguments.files.front());
+  const strata::VariantList list = strata::list_variants(arguments.file);
   for (const std::string& name : list.names) fmt::print("{}\n", name);
   return report(list.errors);
 }
@@ -57,16 +58,16 @@ int parse_and_do(int argc, char** argv) {
   app.set_version_flag("--version", strata::version());
   app.require_subcommand(1);
   CLI::App* run_command = app.add_subcommand("run", "run a scene");
-  run_command->add_option("scene", arguments.files, "scene file")->required()->expected(1);
+  run_command->add_option("scene", arguments.file, "scene file")->required();
   run_command->add_option("--variant", arguments.variant, "one of the scene's variants");
   run_command->add_option("--set", arguments.set, "key.path=value; acts after the variant")->allow_extra_args(false);
   run_command->add_option("--out", arguments.options.out, "folder of the run; by default runs/SCENE/VARIANT");
   CLI::App* check_command = app.add_subcommand("check", "all errors of scenes and their variants, nothing run");
   check_command->add_option("scenes", arguments.files, "scene files")->required();
   CLI::App* variants_command = app.add_subcommand("variants", "names of a scene's variants, one a line");
-  variants_command->add_option("scene", arguments.files, "scene file")->required()->expected(1);
+  variants_command->add_option("scene", arguments.file, "scene file")->required();
   CLI::App* resume_command = app.add_subcommand("resume", "go on with a run from its last checkpoint");
-  resume_command->add_option("dir", arguments.files, "folder of the run")->required()->expected(1);
+  resume_command->add_option("dir", arguments.file, "folder of the run")->required();
   for (CLI::App* command : {run_command, resume_command}) {
     command->add_option("--threads", arguments.options.threads, "threads; 0, the default, for all cores")
         ->check(CLI::NonNegativeNumber);

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "output/hdf5_io.hpp"
 #include "output/run_folder.hpp"
@@ -221,7 +222,8 @@ ResultFile::ResultFile(const std::filesystem::path& file, std::size_t outputs) :
 
 void ResultFile::write_output(const Scene& scene, const State& state) {
   const std::string number = number_of(outputs_.size());
-  outputs_.push_back(
+  std::vector<OutputSize> outputs = outputs_;
+  outputs.push_back(
       {state.time, state.particles.size(), state.has_fracture ? state.fracture().vertices.size() : std::size_t{0}});
   change_file(file_, [&](hdf5::Id root) {
     write_particles(hdf5::group(root, "particles/" + number).id(), scene, state);
@@ -231,8 +233,9 @@ void ResultFile::write_output(const Scene& scene, const State& state) {
       const std::string name = fmt::format("interfaces/{}/{}", number, interface_of(scene, surface));
       write_interface(hdf5::group(root, name).id(), scene, surface);
     }
-    hdf5::rewrite(root, "times", times_of(outputs_), "s");
+    hdf5::rewrite(root, "times", times_of(outputs), "s");
   });
+  outputs_ = std::move(outputs);
   write_xdmf();
 }
 

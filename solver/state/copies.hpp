@@ -29,8 +29,13 @@ struct alignas(32) NodeMotion {
 
 struct CutNode {
   SideWord mask = 0;           // the surfaces that split this node
-  std::vector<SideWord> keys;  // the side combinations that occur
-  std::vector<int> records;    // and the record of each
+  std::vector<SideWord> entered;  // with interfaces too: the sides of them that the fracture has entered; elsewhere
+                                  // it does not split the node, although its extension passes there
+  SideWord fracture = 0;          // the fracture's bit, where it splits this node
+  std::vector<SideWord> keys;     // the side combinations that occur
+  std::vector<int> records;       // and the record of each
+
+  SideWord key(SideWord sides) const;
 };
 
 struct Copies {
@@ -52,11 +57,25 @@ struct Strip {
   int first = 0, last = 0;  // bins [first, last)
 };
 
-// A record outside a symmetric edge and the one inside that it mirrors.
-struct MirrorPair {
-  int ghost = 0;
-  int inside = 0;
-  bool x_odd = false;  // v_x changes sign (an edge normal to x); otherwise v_y does
+// Symmetric and fixed edges tie records together: the velocity of a record is that of its master, component by component
+// times x and y. Most records are their own master with factors 1; a ghost outside the edge mirrors a record inside (one
+// factor -1), and a node on the edge has a factor 0 across it.
+struct Master {
+  int record = 0;
+  double x = 1.0, y = 1.0;
+};
+
+// A particle's share in the mean stress on a piece of interface that is still bonded.
+struct StressSample {
+  int particle = 0;
+  double weight = 0.0;
+};
+
+// The nodes that a place on a surface reaches: D w = sum_i N_i (u[plus_i] - u[minus_i]).
+struct SurfaceStencil {
+  int i = 0, j = 0;  // column and row of the middle node
+  std::array<int, 9> plus{}, minus{};
+  std::array<double, 9> N{};
 };
 
 /// The copy of a node that a place with these sides belongs to: index of its record, or -1 where no such copy exists.

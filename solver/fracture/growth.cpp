@@ -1,0 +1,221 @@
+#include "fracture/growth.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fracture/j_integral.hpp"
+#include "state/rebuild.hpp"
+
+namespace strata {
+
+namespace {
+
+constexpr double edge_cells = 3.0;      // a tip nearer than this to an edge has no ring left to measure J in
+constexpr double arrest_rise_Pa = 5e4;  // the inlet's rise over which a tip that stays counts as arrested
+constexpr double sliver = 0.25;         // no growth step is shorter than this fraction of an increment
+
+double stacking_coordinate(const Scene& scene, const Vec2& x) { return scene.strata.along == Strata::Along::y ? x.y() : x.x(); }
+
+bool real_interface(const Scene& scene, std::size_t k) {
+  return scene.laws[scene.strata.interfaces[k].law].kind != InterfaceLaw::Kind::perfect || scene.strata.layers[k].rock != scene.strata.layers[k + 1].rock;
+}
+
+// Length of the next increment from `tip` along `direction`: ends on the first interface it would cross or nearly reach.
+double increment_to_interface(const Scene& scene, const Vec2& tip, const Vec2& direction) {
+  const double da = scene.fracture->increment_m;
+  double length = da;
+  for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
+    if (!real_interface(scene, k)) continue;
+    const double rate = stacking_coordinate(scene, direction);
+    const double distance = scene.strata.interfaces[k].at_m - stacking_coordinate(scene, tip);
+    if (std::abs(rate) < 1e-6) continue;
+    const double to_it = distance / rate;
+    if (to_it > sliver * da && to_it < (1.0 + sliver) * da) length = std::min(length == da ? to_it : length, to_it);
+  }
+  return length;
+}
+
+bool near_edge(const Scene& scene, const Vec2& x, double h) {
+  const double keep = edge_cells * h;
+  return x.x() < keep || x.x() > scene.domain.width_m - keep || x.y() > scene.domain.height_m - keep || x.y() < keep;
+}
+
+double rayleigh_wait(const Scene& scene, const Elasticity& rock) { return scene.fracture->increment_m / rock.c_R; }
+
+void record(State& state, const char* kind, const Tip& tip, double time, double pressure) {
+  const Vec2 at = tip_position(state, tip);
+  state.events.push_back({kind, time, pressure, at.x(), at.y(), tip.at_interface});
+}
+
+// The new vertices' pressure: nothing, or what the tip had. The front end is counted from the inlet's side.
+void lengthen_fluid(const Scene& scene, State& state, bool at_back, std::size_t pieces) {
+  std::vector<double>& P = state.fluid.P;
+  const double tip_P = at_back ? P.back() : P.front();
+  double fill = scene.fluid.new_point == Fluid::NewPoint::dry ? 0.0 : tip_P;
+  if (scene.fluid.law == Fluid::Law::uniform) fill = state.fluid.inlet_Pa;
+  P.insert(at_back ? P.end() : P.begin(), pieces, fill);
+  if (!at_back) state.fluid.inlet += pieces;
+}
+
+// Particles ahead of the old tip may change sides as the path turns; those beside the older fracture keep theirs.
+void update_particle_sides(State& state, const Tip& tip, double old_length) {
+  const Surface& fracture = state.fracture();
+  const Vec2 at = tip_position(state, tip);
+  const double near = extension(state.grid) + fracture.length() - old_length;
+  Particles& p = state.particles;
+  for (std::size_t q = 0; q < p.size(); ++q) {
+    const Vec2 x{p.x[q], p.y[q]};
+    if ((x - at).norm() > 2.0 * near) continue;
+    const Projection on = project(fracture, x, extension(state.grid));
+    const bool ahead = tip.at_back ? on.arc >= old_length - 1e-9 : on.arc <= fracture.length() - old_length + 1e-9;
+    if (!ahead) continue;
+    p.sides[q] = on.distance >= 0.0 ? p.sides[q] | fracture.mask() : p.sides[q] & ~fracture.mask();
+  }
+}
+
+void move_tip(const Scene& scene, State& state, Tip& tip) {
+  Surface& fracture = state.fracture();
+  const Vec2 from = tip_position(state, tip);
+  Vec2 direction = tip_direction(fracture, tip.at_back);
+  if (scene.fracture->direction == Fracture::Direction::max_hoop) {
+    direction = Vec2{std::cos(tip.kink) * direction.x() - std::sin(tip.kink) * direction.y(), std::sin(tip.kink) * direction.x() + std::cos(tip.kink) * direction.y()};
+  }
+  const double old_length = fracture.length();
+  const std::size_t old_points = fracture.points.size();
+  extend(fracture, tip.at_back, from + increment_to_interface(scene, from, direction) * direction, surface_spacing(state.grid));
+  const std::size_t pieces = fracture.points.size() - old_points;
+  lengthen_fluid(scene, state, tip.at_back, pieces);
+  update_particle_sides(state, tip, old_length);
+  refine_particles(state, tip.at_back ? old_points : 0, tip.at_back ? fracture.points.size() : pieces);
+  for (Surface& surface : state.surfaces) place_points(scene, state, surface);
+}
+
+struct Lattice {
+  bool on_grid_line_or_mid_cell(double x, double h) const {
+    const double halves = 2.0 * x / h;
+    return std::abs(halves - std::round(halves)) < 0.04;
+  }
+};
+
+bool off_grid(const SurfacePoint& s, double h) {
+  const Lattice lattice;
+  if (std::abs(s.n.x()) > 1.0 - 1e-6) return !lattice.on_grid_line_or_mid_cell(s.x.x(), h);
+  if (std::abs(s.n.y()) > 1.0 - 1e-6) return !lattice.on_grid_line_or_mid_cell(s.x.y(), h);
+  return true;
+}
+
+void split_particle(Particles& p, std::size_t q) {
+  const double quarter = 0.5 * p.half[q], x = p.x[q], y = p.y[q], u_x = p.u_x[q], u_y = p.u_y[q];
+  p.m[q] *= 0.25, p.V[q] *= 0.25, p.half[q] *= 0.5;
+  for (int child = 3; child >= 0; --child) {
+    std::size_t c = q;
+    if (child > 0) {
+      for_each_array(p, [q](auto& array) { array.push_back(array[q]); });
+      c = p.size() - 1;
+      p.id[c] = p.next_id++;
+    }
+    const double d_x = (child & 1) != 0 ? quarter : -quarter, d_y = (child & 2) != 0 ? quarter : -quarter;
+    p.x[c] = x + d_x, p.y[c] = y + d_y;
+    p.u_x[c] = u_x + p.g_xx[q] * d_x + p.g_xy[q] * d_y;
+    p.u_y[c] = u_y + p.g_yx[q] * d_x + p.g_yy[q] * d_y;
+  }
+}
+
+// In-situ stress at a place: that of the particles around it, which is exact where it is uniform.
+Stress in_situ_at(const Scene& scene, const State& state, const Vec2& x) {
+  if (scene.in_situ.initialise == InSitu::Initialise::uniform) return {-scene.in_situ.horizontal_Pa, -scene.in_situ.vertical_Pa, 0.0};
+  const Particles& p = state.particles;
+  Stress sum;
+  double weights = 0.0;
+  for (std::size_t q = 0; q < p.size(); ++q) {
+    const double d_x = std::abs(p.x[q] - x.x()) / state.grid.h, d_y = std::abs(p.y[q] - x.y()) / state.grid.h;
+    if (d_x >= 1.0 || d_y >= 1.0 || p.rock[q] != rock_at(scene, x)) continue;
+    const double weight = (1.0 - d_x) * (1.0 - d_y) * p.V[q];
+    sum = sum + weight * p.in_situ[q];
+    weights += weight;
+  }
+  return (1.0 / weights) * sum;
+}
+
+}  // namespace
+
+void refine_particles(State& state, std::size_t first, std::size_t last) {
+  const double h = state.grid.h, sixteenth = h * h / 16.0;
+  Particles& p = state.particles;
+  const std::size_t before = p.size();
+  for (std::size_t q = 0; q < before; ++q) {
+    for (std::size_t k = first; k < last; ++k) {
+      const SurfacePoint& s = state.fracture().points[k];
+      const Vec2 off = Vec2{p.x[q], p.y[q]} - s.x;
+      const Vec2 along{s.n.y(), -s.n.x()};
+      const double across = std::abs(off.dot(s.n)), beside = std::abs(off.dot(along)) - 0.5 * s.A;
+      const bool coarse = p.V[q] > 1.01 * sixteenth && off_grid(s, h);
+      const bool hit = across < 1e-3 * h && beside <= 1.5 * h;
+      if (!hit && !(coarse && across < 1.5 * h && beside < 1.5 * h)) continue;
+      split_particle(p, q);
+      break;
+    }
+  }
+  for (std::size_t q = 0; q < p.size(); ++q) {  // children may lie on the other side of the path ahead of the tip
+    if (q >= before || p.V[q] < 1.01 * sixteenth) {
+      const Vec2 x{p.x[q], p.y[q]};
+      if ((x - state.fracture().points[first].x).norm() > 8.0 * h && (x - state.fracture().points[last - 1].x).norm() > 8.0 * h) continue;
+      const bool plus = side(state.fracture(), x, extension(state.grid));
+      p.sides[q] = plus ? p.sides[q] | state.fracture().mask() : p.sides[q] & ~state.fracture().mask();
+    }
+  }
+}
+
+void place_points(const Scene& scene, State& state, Surface& surface) {
+  for (SurfacePoint& s : surface.points) {
+    s.sides = sides_at(state, s.x, surface.bit);
+    s.in_situ = -in_situ_at(scene, state, s.x).on(s.n);
+    if (surface.kind == Surface::Kind::fracture) s.split = true;
+  }
+  for (SurfacePoint& vertex : surface.vertices) vertex.sides = sides_at(state, vertex.x, surface.bit);
+}
+
+bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+  if (!state.has_fracture || scene.fracture->growth == Fracture::Growth::none) return false;
+  bool moved = false;
+  for (Tip& tip : state.tips) {
+    const Vec2 at = tip_position(state, tip);
+    const Elasticity& ahead = rocks[rock_at(scene, at + 1e-3 * state.grid.h * tip_direction(state.fracture(), tip.at_back))];
+    if (!tip.growing || tip.K_I <= 0.0 || tip.J <= 0.0 || tip.J < ahead.J_c) continue;
+    if (tip.last_growth_s >= 0.0 && state.time - tip.last_growth_s < rayleigh_wait(scene, ahead)) continue;
+    if (near_edge(scene, at, state.grid.h) && tip.has_grown) {
+      tip.growing = false;
+      tip.stopped_by = "within 3 cells of an edge of the block";
+      continue;
+    }
+    if (!tip.has_grown) record(state, "start", tip, state.time, state.fluid.inlet_Pa);
+    if (tip.arrested) record(state, "restart", tip, state.time, state.fluid.inlet_Pa);
+    tip.has_grown = true;
+    tip.arrested = false;
+    tip.last_growth_s = state.time;
+    tip.last_growth_Pa = state.fluid.inlet_Pa;
+    tip.J_at_growth = tip.J;
+    tip.J_spread_at_growth = tip.J_spread;
+    move_tip(scene, state, tip);
+    moved = true;
+  }
+  return moved;
+}
+
+void watch_tips(const Scene& scene, State& state) {
+  for (Tip& tip : state.tips) {
+    for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
+      const double distance = std::abs(stacking_coordinate(scene, tip_position(state, tip)) - scene.strata.interfaces[k].at_m);
+      const int id = static_cast<int>(k);
+      if (distance > 0.5 * state.grid.h || std::find(tip.reached.begin(), tip.reached.end(), id) != tip.reached.end()) continue;
+      tip.reached.push_back(id);
+      record(state, "reach_interface", tip, state.time, state.fluid.inlet_Pa);
+    }
+    if (tip.has_grown && !tip.arrested && tip.growing && state.fluid.inlet_Pa - tip.last_growth_Pa >= arrest_rise_Pa) {
+      tip.arrested = true;
+      record(state, "arrest", tip, tip.last_growth_s, tip.last_growth_Pa);
+    }
+  }
+}
+
+}  // namespace strata

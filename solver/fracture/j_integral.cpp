@@ -1,0 +1,253 @@
+#include "fracture/j_integral.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "state/shape_functions.hpp"
+
+namespace strata {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double widest_ring_cells = 4.5;
+constexpr double narrowest_ring_cells = 2.5;  // below, the tip's own error fills the ring; such a K is flagged
+constexpr double trusted_cells = 4.0;         // distance to an interface below which K is flagged
+constexpr std::array<double, 3> ring_fractions{0.75, 0.875, 1.0};
+constexpr double inner_fraction = 0.35;       // q is 1 inside this fraction of a ring's radius
+
+struct Frame {
+  Vec2 tip, e_1, e_2;
+  double sign = 1.0;  // + side of the fracture above (1) or below (-1) as the tip looks ahead
+  Vec2 local(const Vec2& a) const { return {a.dot(e_1), a.dot(e_2)}; }
+};
+
+// q and dq/dr of a ring at distance r: 1 inside, 0 outside, a cosine between, so that its slope has no jump.
+struct Ring {
+  double inner = 0.0, outer = 0.0;
+  double q(double r) const {
+    if (r <= inner) return 1.0;
+    if (r >= outer) return 0.0;
+    return 0.5 + 0.5 * std::cos(pi * (r - inner) / (outer - inner));
+  }
+  double slope(double r) const {
+    if (r <= inner || r >= outer) return 0.0;
+    return -0.5 * pi / (outer - inner) * std::sin(pi * (r - inner) / (outer - inner));
+  }
+};
+
+struct Sums {
+  double J = 0.0;
+  std::array<double, 2> I{};  // interaction with unit K_I and unit K_II
+};
+
+// Fields at a particle in the tip's frame.
+struct LocalFields {
+  double r = 0.0, theta = 0.0;
+  Vec2 at;               // position relative to the tip
+  double H[2][2] = {};   // displacement gradient, H[i][j] = u_i,j
+  Stress s;              // change of stress
+  Vec2 v, a, v_1;        // velocity, acceleration that forces gave, derivative of velocity along the fracture
+  double V = 0.0, m = 0.0;
+};
+
+struct AuxiliaryFields {
+  Stress s;   // stress for unit K
+  Vec2 u_1;   // derivative of displacement along the fracture
+};
+
+// Williams' field of mode I (mode = 0) or II (1) for unit K, plane strain.
+AuxiliaryFields williams(const Elasticity& rock, int mode, double r, double theta) {
+  const double kappa = 3.0 - 4.0 * rock.nu;
+  const double c = std::cos(0.5 * theta), s = std::sin(0.5 * theta), c3 = std::cos(1.5 * theta), s3 = std::sin(1.5 * theta);
+  const double root = 1.0 / std::sqrt(2.0 * pi * r), cos_t = std::cos(theta), sin_t = std::sin(theta);
+  double g_1 = 0.0, g_2 = 0.0, d_1 = 0.0, d_2 = 0.0;  // angular parts of u and their derivatives
+  AuxiliaryFields aux;
+  if (mode == 0) {
+    aux.s = {root * c * (1.0 - s * s3), root * c * (1.0 + s * s3), root * s * c * c3};
+    g_1 = c * (kappa - cos_t), g_2 = s * (kappa - cos_t);
+    d_1 = -0.5 * s * (kappa - cos_t) + c * sin_t, d_2 = 0.5 * c * (kappa - cos_t) + s * sin_t;
+  } else {
+    aux.s = {-root * s * (2.0 + c * c3), root * s * c * c3, root * c * (1.0 - s * s3)};
+    g_1 = s * (kappa + 2.0 + cos_t), g_2 = -c * (kappa - 2.0 + cos_t);
+    d_1 = 0.5 * c * (kappa + 2.0 + cos_t) - s * sin_t, d_2 = 0.5 * s * (kappa - 2.0 + cos_t) + c * sin_t;
+  }
+  const double scale = root / (2.0 * rock.mu);
+  aux.u_1 = scale * Vec2{0.5 * g_1 * cos_t - d_1 * sin_t, 0.5 * g_2 * cos_t - d_2 * sin_t};
+  return aux;
+}
+
+void add_domain(const Elasticity& rock, const LocalFields& p, const std::vector<Ring>& rings, std::vector<Sums>& sums) {
+  const Vec2 u_1{p.H[0][0], p.H[1][0]};
+  const double e_12 = 0.5 * (p.H[0][1] + p.H[1][0]);
+  const double W = 0.5 * (p.s.xx * p.H[0][0] + p.s.yy * p.H[1][1] + 2.0 * p.s.xy * e_12);
+  const double T = 0.5 * rock.rho * p.v.squaredNorm();
+  const Vec2 flux{p.s.on({1.0, 0.0}).dot(u_1) - W - T, p.s.on({0.0, 1.0}).dot(u_1)};
+  const double inertia = rock.rho * (p.a.dot(u_1) - p.v.dot(p.v_1));
+  const std::array<AuxiliaryFields, 2> aux{williams(rock, 0, p.r, p.theta), williams(rock, 1, p.r, p.theta)};
+  for (std::size_t k = 0; k < rings.size(); ++k) {
+    const double q = rings[k].q(p.r);
+    if (q == 0.0) continue;
+    const Vec2 grad_q = rings[k].slope(p.r) / p.r * p.at;
+    sums[k].J += p.V * (flux.dot(grad_q) + inertia * q);
+    for (std::size_t mode = 0; mode < 2; ++mode) {
+      const AuxiliaryFields& A = aux[mode];
+      const double mixed = A.s.xx * p.H[0][0] + A.s.yy * p.H[1][1] + 2.0 * A.s.xy * e_12;
+      const Vec2 I{p.s.on({1.0, 0.0}).dot(A.u_1) + A.s.on({1.0, 0.0}).dot(u_1) - mixed, p.s.on({0.0, 1.0}).dot(A.u_1) + A.s.on({0.0, 1.0}).dot(u_1)};
+      sums[k].I[mode] += p.V * (I.dot(grad_q) + rock.rho * p.a.dot(A.u_1) * q);
+    }
+  }
+}
+
+LocalFields fields_at(const State& state, const Elasticity& rock, const Frame& frame, SideWord fracture_bit, const Bin& bin, std::size_t q) {
+  const Particles& p = state.particles;
+  LocalFields f;
+  f.at = frame.local(Vec2{p.x[q], p.y[q]} - frame.tip);
+  f.r = f.at.norm();
+  f.theta = std::atan2(f.at.y(), f.at.x());
+  // Behind a kink the straight extension and the fracture differ: the side, not the angle, tells the face.
+  const bool above = ((p.sides[q] & fracture_bit) != 0) == (frame.sign > 0.0);
+  if (f.at.x() < 0.0 && above && f.theta < 0.0) f.theta += 2.0 * pi;
+  if (f.at.x() < 0.0 && !above && f.theta > 0.0) f.theta -= 2.0 * pi;
+  const double g[2][2] = {{p.g_xx[q], p.g_xy[q]}, {p.g_yx[q], p.g_yy[q]}};
+  const Vec2 e[2] = {frame.e_1, frame.e_2};
+  for (int i = 0; i < 2; ++i) {
+    for (int j = 0; j < 2; ++j) {
+      for (int k = 0; k < 2; ++k) {
+        for (int l = 0; l < 2; ++l) f.H[i][j] += e[i][k] * g[k][l] * e[j][l];
+      }
+    }
+  }
+  f.s = stress_of(rock, f.H[0][0], f.H[0][1], f.H[1][0], f.H[1][1]);
+  f.V = p.V[q], f.m = p.m[q];
+  f.v = frame.local({p.v_x[q], p.v_y[q]});
+  // Acceleration and velocity gradient are interpolated with B-splines whatever the scene's shape: they only enter here.
+  const Weights X = QuadraticBspline::at(p.x[q] / state.grid.h - bin.i, 0.0), Y = QuadraticBspline::at(p.y[q] / state.grid.h - bin.j, 0.0);
+  Vec2 a = Vec2::Zero(), v_1 = Vec2::Zero();
+  for (std::size_t n = 0; n < 9; ++n) {
+    const NodeMotion& node = state.motion[static_cast<std::size_t>(bin.record[n])];
+    const double N = X.N[n % 3] * Y.N[n / 3];
+    const Vec2 grad = Vec2{X.dN[n % 3] * Y.N[n / 3], X.N[n % 3] * Y.dN[n / 3]} / state.grid.h;
+    a += N * Vec2{node.dv_x, node.dv_y} / state.dt;
+    v_1 += grad.dot(frame.e_1) * Vec2{node.v_x, node.v_y};
+  }
+  f.a = frame.local(a);
+  f.v_1 = frame.local(v_1);
+  return f;
+}
+
+// Face terms: w . d(t q)/ds of J, and of the interaction integral + t 4/E' q/sqrt(2 pi r) dr, exact for t constant on a piece.
+void add_faces(const Elasticity& rock, const Surface& fracture, const Frame& frame, bool at_back, const std::vector<Ring>& rings, std::vector<Sums>& sums) {
+  const auto& points = fracture.points;
+  const auto n = static_cast<std::ptrdiff_t>(points.size());
+  const auto net = [&](std::ptrdiff_t k) -> Vec2 {
+    const SurfacePoint& s = points[static_cast<std::size_t>(k)];
+    return frame.sign * frame.local(s.P * s.n - s.in_situ + s.reaction);
+  };
+  for (std::ptrdiff_t k = 0; k < n; ++k) {
+    const SurfacePoint& s = points[static_cast<std::size_t>(k)];
+    const double from_tip = at_back ? fracture.length() - s.arc : s.arc;
+    if (from_tip > rings.back().outer * 1.5) continue;
+    const Vec2 w = frame.sign * frame.local(s.w), t = net(k);
+    const std::ptrdiff_t ahead = std::clamp<std::ptrdiff_t>(k + (at_back ? 1 : -1), 0, n - 1), behind = std::clamp<std::ptrdiff_t>(k + (at_back ? -1 : 1), 0, n - 1);
+    const double span = std::abs(points[static_cast<std::size_t>(ahead)].arc - points[static_cast<std::size_t>(behind)].arc);
+    const Vec2 dt_ds = span > 0.0 ? Vec2{(net(ahead) - net(behind)) / span} : Vec2{Vec2::Zero()};
+    const double near = from_tip - 0.5 * s.A, far = from_tip + 0.5 * s.A;
+    const double root = 4.0 / rock.E_prime * 2.0 * (std::sqrt(far) - std::sqrt(std::max(near, 0.0))) / std::sqrt(2.0 * pi);
+    const double r = (s.x - frame.tip).norm();
+    for (std::size_t j = 0; j < rings.size(); ++j) {
+      const double q = rings[j].q(r), dq_ds = -rings[j].slope(r);  // s runs towards the tip, r away from it
+      sums[j].J += s.A * (w.dot(t) * dq_ds + q * w.dot(dt_ds));
+      sums[j].I[0] += t.y() * q * root;
+      sums[j].I[1] += t.x() * q * root;
+    }
+  }
+}
+
+// The farthest a ring may reach from the tip, and whether an interface limits it.
+double ring_radius(const Scene& scene, const State& state, const Tip& tip, const Vec2& at, bool& near_interface) {
+  const double h = state.grid.h;
+  double radius = widest_ring_cells * h;
+  const auto keep_off = [&](double distance) { radius = std::min(radius, 0.95 * distance); };
+  keep_off(at.x()), keep_off(scene.domain.width_m - at.x());
+  keep_off(at.y()), keep_off(scene.domain.height_m - at.y());
+  for (const Tip& other : state.tips) {
+    if (other.at_back != tip.at_back) keep_off(0.5 * state.fracture().length());
+  }
+  near_interface = false;
+  for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
+    const InterfacePlace& place = scene.strata.interfaces[k];
+    const bool nothing_there = scene.laws[place.law].kind == InterfaceLaw::Kind::perfect && scene.strata.layers[k].rock == scene.strata.layers[k + 1].rock;
+    if (nothing_there) continue;
+    const double distance = std::abs((scene.strata.along == Strata::Along::y ? at.y() : at.x()) - place.at_m);
+    near_interface = near_interface || distance < (trusted_cells - 1e-3) * h;
+    if (distance < radius) radius = std::max(distance, narrowest_ring_cells * h);
+  }
+  return std::max(radius, narrowest_ring_cells * h);
+}
+
+void finish_tip(const Scene& scene, const Elasticity& rock, const State& state, const std::vector<Sums>& sums, Tip& tip) {
+  double mean = 0.0, K_I = 0.0, K_II = 0.0, least = sums[0].J, most = sums[0].J;
+  for (const Sums& sum : sums) {
+    mean += sum.J / static_cast<double>(sums.size());
+    K_I += 0.5 * rock.E_prime * sum.I[0] / static_cast<double>(sums.size());
+    K_II += 0.5 * rock.E_prime * sum.I[1] / static_cast<double>(sums.size());
+    least = std::min(least, sum.J), most = std::max(most, sum.J);
+  }
+  if (!std::isfinite(mean) || !std::isfinite(K_I) || !std::isfinite(K_II)) {
+    throw NumericalFailure("step " + std::to_string(state.step) + ": J or K is not finite at a tip; the motion has become unstable. Lower numerics.courant (now " +
+                           std::to_string(scene.numerics.courant) + ")");
+  }
+  tip.J = mean;
+  tip.J_spread = mean != 0.0 ? (most - least) / std::abs(mean) : 0.0;
+  const SurfacePoint& last = tip.at_back ? state.fracture().points.back() : state.fracture().points.front();
+  const bool closed = last.reaction.dot(last.n) > 0.0;
+  tip.K_I = closed ? 0.0 : K_I;
+  tip.K_II = K_II;
+  tip.kink = kink_angle(tip.K_I, tip.K_II);
+}
+
+}  // namespace
+
+void measure_tips(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+  if (!state.has_fracture) return;
+  const Surface& fracture = state.fracture();
+  for (Tip& tip : state.tips) {
+    Frame frame;
+    frame.tip = tip.at_back ? fracture.vertices.back().x : fracture.vertices.front().x;
+    frame.e_1 = tip_direction(fracture, tip.at_back);
+    frame.e_2 = {-frame.e_1.y(), frame.e_1.x()};
+    frame.sign = tip.at_back ? 1.0 : -1.0;
+    tip.ring_m = ring_radius(scene, state, tip, frame.tip, tip.at_interface);
+    std::vector<Ring> rings;
+    for (const double fraction : ring_fractions) rings.push_back({inner_fraction * fraction * tip.ring_m, fraction * tip.ring_m});
+    std::vector<Sums> sums(rings.size());
+    const Elasticity& rock = rocks[rock_at(scene, frame.tip + 1e-3 * state.grid.h * frame.e_1)];
+    const double reach = tip.ring_m / state.grid.h + 1.0;
+    for (const Bin& bin : state.bins) {
+      if (std::abs(bin.i - frame.tip.x() / state.grid.h) > reach || std::abs(bin.j - frame.tip.y() / state.grid.h) > reach) continue;
+      for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
+        const Vec2 off = Vec2{state.particles.x[q], state.particles.y[q]} - frame.tip;
+        if (off.norm() >= tip.ring_m) continue;
+        const Elasticity& own = rocks[state.particles.rock[q]];
+        add_domain(own, fields_at(state, own, frame, fracture.mask(), bin, q), rings, sums);
+      }
+    }
+    add_faces(rock, fracture, frame, tip.at_back, rings, sums);
+    finish_tip(scene, rock, state, sums, tip);
+  }
+}
+
+double kink_angle(double K_I, double K_II) {
+  if (K_II == 0.0) return 0.0;
+  return 2.0 * std::atan((K_I - std::sqrt(K_I * K_I + 8.0 * K_II * K_II)) / (4.0 * K_II));
+}
+
+Vec2 tip_direction(const Surface& fracture, bool at_back) {
+  const auto& v = fracture.vertices;
+  return at_back ? (v.back().x - v[v.size() - 2].x).normalized() : (v[0].x - v[1].x).normalized();
+}
+
+}  // namespace strata

@@ -1,0 +1,33 @@
+// The nodal part of an explicit step, between the two loops over particles.
+#pragma once
+
+#include "state/state.hpp"
+
+namespace strata {
+
+// Kinetic energy of the grid (J/m) at the start of a step, as mapped from the particles, and after damping.
+struct GridEnergy {
+  double mapped = 0.0;
+  double damped = 0.0;
+};
+
+/// Momentum balance at the masters: v_i = mom_i/m_i (1 - damping dt) + dt f_i/m_i, written to state.motion with the
+/// increment dt f_i/m_i beside it. Ghosts must be folded before. Adds to the ledger's damping.
+GridEnergy advance_momentum(double damping, State& state);
+
+/// Kinetic energy of the grid, sum m_i v_i^2/2 over masters (J/m).
+double grid_energy(const State& state);
+
+/// Gives tied records the motion of their masters.
+void spread_to_tied(State& state);
+
+/// Fills NodeMotion::dv with what particles take up under the scene's transfer (see grid_to_particles) and returns the
+/// share of their own velocity they keep: FLIP 1 - damping dt, PIC and XPIC(2) 0.
+double prepare_transfer(const Scene& scene, State& state);
+
+/// Time step (s): courant h/c_P of the fastest rock. The limits are 1.17 (B-spline) and 0.91 (linear) times h/c_P by the
+/// largest eigenvalue of M^-1 K, and 4/(2 - S) instead of 4 in (omega dt)^2 where the transfer smooths accelerations to
+/// the fraction S; the default of 0.6 keeps clear of both.
+double time_step(const Scene& scene, double fastest);
+
+}  // namespace strata

@@ -1,0 +1,205 @@
+#include "mechanics/interface_laws.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace strata {
+
+namespace {
+
+using Kind = InterfaceLaw::Kind;
+
+// Coulomb friction that holds the tangential jump where it was (stick), up to mu n.
+double coulomb(double mu, double n, const FreeJump& w) {
+  const double stick = w.per_t > 0.0 ? -(w.t - w.t_start) / w.per_t : 0.0;
+  return std::clamp(stick, -mu * n, mu * n);
+}
+
+Reaction react_soft(const InterfaceLaw& law, const FreeJump& w) {
+  const bool contact = law.compression == InterfaceLaw::Compression::contact && w.n < 0.0;
+  // -D w with w = w_free + per r: r = -w_free/(1/D + per); rigid contact is D = infinity.
+  const auto spring = [](double D, double w_free, double per) { return D > 0.0 ? -w_free / (1.0 / D + per) : 0.0; };
+  const double n = contact ? (w.per_n > 0.0 ? -w.n / w.per_n : 0.0) : spring(law.normal_stiffness_Pa_m, w.n, w.per_n);
+  return {n, spring(law.shear_stiffness_Pa_m, w.t, w.per_t)};
+}
+
+// A split place with its stencil folded to master records: jump = sum_k (c_x v_x, c_y v_y).
+struct Place {
+  SurfacePoint* s = nullptr;
+  const InterfaceLaw* law = nullptr;
+  std::array<int, 18> record{};
+  std::array<double, 18> c_x{}, c_y{};  // weights in the jump
+  std::array<double, 18> d_x{}, d_y{};  // velocity per unit of reaction (m/s/Pa)
+  int n = 0;
+  double per_n = 0.0, per_t = 0.0;
+};
+
+void add_entry(Place& place, const Master& master, double weight) {
+  int k = 0;
+  while (k < place.n && place.record[static_cast<std::size_t>(k)] != master.record) ++k;
+  if (k == place.n) place.record[static_cast<std::size_t>(place.n++)] = master.record;
+  place.c_x[static_cast<std::size_t>(k)] += weight * master.x;
+  place.c_y[static_cast<std::size_t>(k)] += weight * master.y;
+}
+
+Place make_place(const State& state, const SurfaceStencil& stencil, SurfacePoint& s, const InterfaceLaw& law) {
+  Place place;
+  place.s = &s;
+  place.law = &law;
+  for (std::size_t n = 0; n < 9; ++n) {
+    if (stencil.plus[n] == stencil.minus[n]) continue;
+    add_entry(place, state.masters[static_cast<std::size_t>(stencil.plus[n])], stencil.N[n]);
+    add_entry(place, state.masters[static_cast<std::size_t>(stencil.minus[n])], -stencil.N[n]);
+  }
+  double a_x = 0.0, a_y = 0.0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(place.n); ++k) {
+    const double per_mass = state.dt * s.A / state.sums[static_cast<std::size_t>(place.record[k])].m;
+    place.d_x[k] = per_mass * place.c_x[k];
+    place.d_y[k] = per_mass * place.c_y[k];
+    a_x += state.dt * place.c_x[k] * place.d_x[k];
+    a_y += state.dt * place.c_y[k] * place.d_y[k];
+  }
+  place.per_n = s.n.x() * s.n.x() * a_x + s.n.y() * s.n.y() * a_y;
+  place.per_t = s.n.y() * s.n.y() * a_x + s.n.x() * s.n.x() * a_y;
+  return place;
+}
+
+void push(const Place& place, const Vec2& r, std::vector<NodeMotion>& motion) {
+  for (std::size_t k = 0; k < static_cast<std::size_t>(place.n); ++k) {
+    NodeMotion& node = motion[static_cast<std::size_t>(place.record[k])];
+    node.v_x += place.d_x[k] * r.x(), node.dv_x += place.d_x[k] * r.x();
+    node.v_y += place.d_y[k] * r.y(), node.dv_y += place.d_y[k] * r.y();
+  }
+}
+
+Vec2 jump_rate(const Place& place, const std::vector<NodeMotion>& motion) {
+  Vec2 v = Vec2::Zero();
+  for (std::size_t k = 0; k < static_cast<std::size_t>(place.n); ++k) {
+    const NodeMotion& node = motion[static_cast<std::size_t>(place.record[k])];
+    v.x() += place.c_x[k] * node.v_x;
+    v.y() += place.c_y[k] * node.v_y;
+  }
+  return v;
+}
+
+// One Gauss-Seidel visit: the law's reaction given all others; returns how much it changed (Pa).
+double relax(const Place& place, double dt, std::vector<NodeMotion>& motion) {
+  SurfacePoint& s = *place.s;
+  const Vec2 tangent{s.n.y(), -s.n.x()};
+  const Vec2 w = s.w + dt * jump_rate(place, motion);
+  const FreeJump free{w.dot(s.n) - place.per_n * s.reaction.dot(s.n), w.dot(tangent) - place.per_t * s.reaction.dot(tangent),
+                      s.w.dot(tangent), place.per_n, place.per_t};
+  const Reaction r = react(*place.law, free);
+  const Vec2 change = r.n * s.n + r.t * tangent - s.reaction;
+  push(place, change, motion);
+  s.reaction += change;
+  return change.norm();
+}
+
+std::vector<Place> split_places(const Scene& scene, State& state, const InterfaceLaw& faces) {
+  std::vector<Place> places;
+  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
+    Surface& surface = state.surfaces[k];
+    const InterfaceLaw& law = surface.kind == Surface::Kind::fracture ? faces : scene.laws[surface.law];
+    for (std::size_t q = 0; q < surface.points.size(); ++q) {
+      if (!surface.points[q].split) continue;
+      Place place = make_place(state, state.point_stencils[k][q], surface.points[q], law);
+      if (place.n > 0) places.push_back(place);
+    }
+  }
+  return places;
+}
+
+double spring_energy_at(const InterfaceLaw& law, const SurfacePoint& s) {
+  if (law.kind != Kind::soft || !s.split) return 0.0;
+  const Vec2 tangent{s.n.y(), -s.n.x()};
+  const double w_n = s.opening(), w_t = s.w.dot(tangent);
+  const bool closed = law.compression == InterfaceLaw::Compression::contact && w_n < 0.0;
+  return 0.5 * s.A * ((closed ? 0.0 : law.normal_stiffness_Pa_m * w_n * w_n) + law.shear_stiffness_Pa_m * w_t * w_t);
+}
+
+}  // namespace
+
+Reaction react(const InterfaceLaw& law, const FreeJump& w) {
+  if (law.kind == Kind::perfect) return {};
+  if (law.kind == Kind::soft) return react_soft(law, w);
+  const double n = w.per_n > 0.0 ? std::max(0.0, -w.n / w.per_n) : 0.0;
+  return {n, coulomb(law.kind == Kind::weak ? law.residual_friction : law.coefficient, n, w)};
+}
+
+bool fails(const InterfaceLaw& law, const Reaction& r) {
+  if (law.kind == Kind::friction) return r.n < 0.0 || std::abs(r.t) > law.coefficient * r.n;
+  if (law.kind != Kind::weak) return false;
+  const double S = r.t / law.shear_strength_Pa, N = std::max(0.0, -r.n) / law.tensile_strength_Pa;
+  return S * S + N * N >= 1.0;
+}
+
+bool fail_interfaces(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+  const Particles& p = state.particles;
+  bool any = false;
+  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
+    Surface& surface = state.surfaces[k];
+    const auto& columns = state.column_samples[k];
+    if (columns.empty()) continue;
+    std::vector<Stress> mean(columns.size());
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      for (const StressSample& sample : columns[c]) {
+        const auto q = static_cast<std::size_t>(sample.particle);
+        const Stress change = stress_of(rocks[p.rock[q]], p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]);
+        mean[c] = mean[c] + sample.weight * (p.in_situ[q] + change);
+      }
+    }
+    for (SurfacePoint& s : surface.points) {
+      if (s.split) continue;
+      const Vec2 r = -mean[static_cast<std::size_t>(s.column)].on(s.n);
+      const Vec2 tangent{s.n.y(), -s.n.x()};
+      if (!fails(scene.laws[surface.law], {r.dot(s.n), r.dot(tangent)})) continue;
+      s.split = true;
+      s.reaction = std::max(0.0, r.dot(s.n)) * s.n;
+      any = true;
+    }
+  }
+  return any;
+}
+
+void solve_reactions(const Scene& scene, State& state) {
+  constexpr double tolerance = 1e-9;  // of the largest reaction; 1 Pa where there is none
+  constexpr int most_sweeps = 400;
+  InterfaceLaw faces;  // the fracture's own faces: frictionless contact
+  faces.kind = Kind::friction;
+  faces.coefficient = 0.0;
+  std::vector<Place> places = split_places(scene, state, faces);
+  for (const Place& place : places) push(place, place.s->reaction, state.motion);
+  int sweeps = 0;
+  for (double change = 1.0, largest = 0.0; sweeps < most_sweeps && !places.empty() && change > tolerance * std::max(largest, 1.0); ++sweeps) {
+    change = largest = 0.0;
+    for (const Place& place : places) {
+      change = std::max(change, relax(place, state.dt, state.motion));
+      largest = std::max(largest, place.s->reaction.norm());
+    }
+  }
+  state.monitors.contact_sweeps += sweeps;
+  if (sweeps == most_sweeps) ++state.monitors.contact_unconverged;
+  for (const Place& place : places) {
+    SurfacePoint& s = *place.s;
+    const Vec2 dw = state.dt * jump_rate(place, state.motion);
+    const Vec2 tangent{s.n.y(), -s.n.x()};
+    SurfacePoint after = s;
+    after.w += dw;
+    const double stored = spring_energy_at(*place.law, after) - spring_energy_at(*place.law, s);
+    state.ledger.friction -= s.A * s.reaction.dot(dw) + stored;
+    if (place.law->kind != Kind::soft) s.slip += std::abs(dw.dot(tangent));
+    state.monitors.largest_penetration = std::max(state.monitors.largest_penetration, -after.opening());
+  }
+}
+
+double spring_energy(const Scene& scene, const State& state) {
+  double energy = 0.0;
+  for (const Surface& surface : state.surfaces) {
+    if (surface.kind != Surface::Kind::interface) continue;
+    for (const SurfacePoint& s : surface.points) energy += spring_energy_at(scene.laws[surface.law], s);
+  }
+  return energy;
+}
+
+}  // namespace strata

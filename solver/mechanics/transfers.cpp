@@ -1,0 +1,181 @@
+#include "mechanics/transfers.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "state/shape_functions.hpp"
+
+namespace strata {
+
+namespace {
+
+// Short vectors of the compiler: a node record is one of them, so a record takes one instruction where the machine has it.
+typedef double Four __attribute__((vector_size(32)));
+typedef double Eight __attribute__((vector_size(64)));
+
+template <class Vector, class Record>
+Vector load(const Record& record) {
+  return std::bit_cast<Vector>(record);
+}
+
+struct PlaneWeights {
+  std::array<double, 9> N, N_x, N_y;
+};
+
+template <class Shape>
+inline PlaneWeights plane_weights(const Grid& g, const Bin& bin, double x, double y, double half) {
+  const double inverse_h = 1.0 / g.h;
+  const Weights X = Shape::at(x * inverse_h - bin.i, half * inverse_h);
+  const Weights Y = Shape::at(y * inverse_h - bin.j, half * inverse_h);
+  PlaneWeights w;
+  for (std::size_t b = 0; b < 3; ++b) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      w.N[3 * b + a] = X.N[a] * Y.N[b];
+      w.N_x[3 * b + a] = X.dN[a] * Y.N[b] * inverse_h;
+      w.N_y[3 * b + a] = X.N[a] * Y.dN[b] * inverse_h;
+    }
+  }
+  return w;
+}
+
+// Calls work(strip index) for all strips, one colour after the other; strips of a colour run on any number of threads.
+template <class Work>
+void for_each_strip(const State& state, Work work) {
+  const int n = static_cast<int>(state.strips.size());
+  for (int colour = 0; colour < 2; ++colour) {
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int k = colour; k < n; k += 2) work(static_cast<std::size_t>(k));
+  }
+}
+
+template <class Shape>
+void gather_bin(const std::vector<Elasticity>& rocks, const Grid& grid, const Particles& p, const Bin& bin, std::vector<NodeSums>& sums) {
+  std::array<Eight, 9> acc{};
+  for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
+    const PlaneWeights w = plane_weights<Shape>(grid, bin, p.x[q], p.y[q], p.half[q]);
+    const Stress s = stress_of(rocks[p.rock[q]], p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]);
+    const double m = p.m[q], V = p.V[q];
+    const Eight with_N = {m, m * p.v_x[q], m * p.v_y[q], 0.0, 0.0, 0.0, 0.0, 0.0};
+    const Eight with_N_x = {0.0, 0.0, 0.0, -V * s.xx, -V * s.xy, 0.0, 0.0, 0.0};
+    const Eight with_N_y = {0.0, 0.0, 0.0, -V * s.xy, -V * s.yy, 0.0, 0.0, 0.0};
+    for (std::size_t n = 0; n < 9; ++n) acc[n] += w.N[n] * with_N + w.N_x[n] * with_N_x + w.N_y[n] * with_N_y;
+  }
+  for (std::size_t n = 0; n < 9; ++n) {
+    NodeSums& record = sums[static_cast<std::size_t>(bin.record[n])];
+    record = std::bit_cast<NodeSums>(load<Eight>(record) + acc[n]);
+  }
+}
+
+struct Advance {
+  double dt, keep;
+};
+
+template <class Shape>
+void move_bin(const Grid& grid, const Bin& bin, const Advance& by, const std::vector<NodeMotion>& motion, Particles& p, ParticleEnergy& energy) {
+  std::array<Four, 9> record;
+  for (std::size_t n = 0; n < 9; ++n) record[n] = load<Four>(motion[static_cast<std::size_t>(bin.record[n])]);
+  for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
+    const PlaneWeights w = plane_weights<Shape>(grid, bin, p.x[q], p.y[q], p.half[q]);
+    Four v = {0.0, 0.0, 0.0, 0.0}, d_x = v, d_y = v;
+    for (std::size_t n = 0; n < 9; ++n) {
+      v += w.N[n] * record[n];
+      d_x += w.N_x[n] * record[n];
+      d_y += w.N_y[n] * record[n];
+    }
+    const double m = p.m[q];
+    energy.before += 0.5 * m * (p.v_x[q] * p.v_x[q] + p.v_y[q] * p.v_y[q]);
+    p.v_x[q] = by.keep * p.v_x[q] + v[2];
+    p.v_y[q] = by.keep * p.v_y[q] + v[3];
+    const double speed2 = p.v_x[q] * p.v_x[q] + p.v_y[q] * p.v_y[q];
+    energy.after += 0.5 * m * speed2;
+    energy.largest_speed2 = std::max(energy.largest_speed2, speed2);
+    p.x[q] += by.dt * v[0], p.y[q] += by.dt * v[1];
+    p.u_x[q] += by.dt * v[0], p.u_y[q] += by.dt * v[1];
+    p.g_xx[q] += by.dt * d_x[0], p.g_yx[q] += by.dt * d_x[1];
+    p.g_xy[q] += by.dt * d_y[0], p.g_yy[q] += by.dt * d_y[1];
+  }
+}
+
+template <class Shape>
+void filter_bin(const Grid& grid, const Particles& p, const Bin& bin, const std::vector<Vec2>& v, std::vector<NodeSums>& sums) {
+  for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
+    const PlaneWeights w = plane_weights<Shape>(grid, bin, p.x[q], p.y[q], p.half[q]);
+    Vec2 v_p = Vec2::Zero();
+    for (std::size_t n = 0; n < 9; ++n) v_p += w.N[n] * v[static_cast<std::size_t>(bin.record[n])];
+    for (std::size_t n = 0; n < 9; ++n) {
+      NodeSums& record = sums[static_cast<std::size_t>(bin.record[n])];
+      record.m += w.N[n] * p.m[q];
+      record.mom_x += w.N[n] * p.m[q] * v_p.x();
+      record.mom_y += w.N[n] * p.m[q] * v_p.y();
+    }
+  }
+}
+
+}  // namespace
+
+void particles_to_grid(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+  std::fill(state.sums.begin(), state.sums.end(), NodeSums{});
+  with_shape(scene.numerics.shape, [&](auto shape) {
+    for_each_strip(state, [&](std::size_t k) {
+      for (int b = state.strips[k].first; b < state.strips[k].last; ++b) {
+        gather_bin<decltype(shape)>(rocks, state.grid, state.particles, state.bins[static_cast<std::size_t>(b)], state.sums);
+      }
+    });
+  });
+}
+
+std::vector<Vec2> filter_velocity(const Scene& scene, State& state, const std::vector<Vec2>& v) {
+  std::vector<NodeSums> sums(v.size());
+  with_shape(scene.numerics.shape, [&](auto shape) {
+    for_each_strip(state, [&](std::size_t k) {
+      for (int b = state.strips[k].first; b < state.strips[k].last; ++b) {
+        filter_bin<decltype(shape)>(state.grid, state.particles, state.bins[static_cast<std::size_t>(b)], v, sums);
+      }
+    });
+  });
+  fold_to_masters(state, sums);
+  std::vector<Vec2> filtered(v.size(), Vec2::Zero());
+  for (std::size_t r = 0; r < v.size(); ++r) {
+    if (sums[r].m > 0.0) filtered[r] = Vec2{sums[r].mom_x, sums[r].mom_y} / sums[r].m;
+  }
+  return filtered;
+}
+
+ParticleEnergy grid_to_particles(const Scene& scene, State& state, double keep) {
+  std::vector<ParticleEnergy> of_strip(state.strips.size());
+  const Advance by{state.dt, keep};
+  with_shape(scene.numerics.shape, [&](auto shape) {
+    for_each_strip(state, [&](std::size_t k) {
+      for (int b = state.strips[k].first; b < state.strips[k].last; ++b) {
+        move_bin<decltype(shape)>(state.grid, state.bins[static_cast<std::size_t>(b)], by, state.motion, state.particles, of_strip[k]);
+      }
+    });
+  });
+  ParticleEnergy total;  // summed strip by strip, so that the digits do not depend on the number of threads
+  for (const ParticleEnergy& e : of_strip) {
+    total.before += e.before;
+    total.after += e.after;
+    total.largest_speed2 = std::max(total.largest_speed2, e.largest_speed2);
+  }
+  return total;
+}
+
+void fold_to_masters(const State& state, std::vector<NodeSums>& sums) {
+  for (const int record : state.tied) {
+    const Master& master = state.masters[static_cast<std::size_t>(record)];
+    NodeSums own = sums[static_cast<std::size_t>(record)];
+    own.mom_x *= master.x, own.f_x *= master.x;
+    own.mom_y *= master.y, own.f_y *= master.y;
+    if (master.record == record) {
+      sums[static_cast<std::size_t>(record)] = own;
+      continue;
+    }
+    NodeSums& inside = sums[static_cast<std::size_t>(master.record)];
+    inside.m += own.m;
+    inside.mom_x += own.mom_x, inside.mom_y += own.mom_y;
+    inside.f_x += own.f_x, inside.f_y += own.f_y;
+    sums[static_cast<std::size_t>(record)] = NodeSums{};
+  }
+}
+
+}  // namespace strata

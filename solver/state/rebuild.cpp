@@ -1,0 +1,386 @@
+#include "state/rebuild.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+namespace strata {
+
+namespace {
+
+// Surfaces follow the rock by fractions of a millimetre; places nearer than this to a threshold stand on it.
+constexpr double slack_cells = 0.02;
+// Rows of bins to a strip: two strips of one colour never share a record if this is at least 2.
+constexpr int rows_per_strip = 4;
+
+bool segment_meets_box(const Vec2& a, const Vec2& b, const Vec2& centre, double half) {
+  double from = 0.0, to = 1.0;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double d = b[axis] - a[axis];
+    double lo = (centre[axis] - half - a[axis]), hi = (centre[axis] + half - a[axis]);
+    if (d == 0.0) {
+      if (lo > 0.0 || hi < 0.0) return false;
+      continue;
+    }
+    lo /= d, hi /= d;
+    from = std::max(from, std::min(lo, hi));
+    to = std::min(to, std::max(lo, hi));
+  }
+  return from < to;
+}
+
+bool has_tip(const State& state, bool at_back) {
+  return std::any_of(state.tips.begin(), state.tips.end(), [&](const Tip& tip) { return tip.at_back == at_back; });
+}
+
+// The tip rule: the fracture splits a node within reach whose projection lies strictly behind the tip.
+void mark_fracture(const Scene& scene, const State& state, std::vector<SideWord>& mask) {
+  const Surface& s = state.fracture();
+  const Grid& g = state.grid;
+  const double half = (support_in_cells(scene) - slack_cells) * g.h;
+  const bool front = has_tip(state, false), back = has_tip(state, true);
+  for (std::size_t k = 0; k + 1 < s.vertices.size(); ++k) {
+    const Vec2 a = s.vertices[k].x, b = s.vertices[k + 1].x;
+    const int i0 = std::max(-1, g.nearest(std::min(a.x(), b.x())) - 2), i1 = std::min(g.nx + 1, g.nearest(std::max(a.x(), b.x())) + 2);
+    const int j0 = std::max(-1, g.nearest(std::min(a.y(), b.y())) - 2), j1 = std::min(g.ny + 1, g.nearest(std::max(a.y(), b.y())) + 2);
+    for (int j = j0; j <= j1; ++j) {
+      for (int i = i0; i <= i1; ++i) {
+        const Vec2 x{i * g.h, j * g.h};
+        auto& word = mask[static_cast<std::size_t>(g.node(i, j))];
+        if ((word & s.mask()) != 0 || !segment_meets_box(a, b, x, half)) continue;
+        const double arc = project(s, x, extension(g)).arc;
+        const bool behind_back = !back || arc < s.length() - slack_cells * g.h;
+        const bool behind_front = !front || arc > slack_cells * g.h;
+        if (behind_back && behind_front) word |= s.mask();
+      }
+    }
+  }
+}
+
+// An interface splits the nodes of a grid column (along y: row) whose points have split.
+void mark_interface(const Scene& scene, const State& state, const Surface& s, std::vector<SideWord>& mask) {
+  const Grid& g = state.grid;
+  const bool along_x = scene.strata.along == Strata::Along::y;  // layers stacked along y: the interface runs along x
+  const int n = along_x ? g.nx : g.ny;
+  std::vector<char> split(static_cast<std::size_t>(n) + 1, 0);
+  for (const SurfacePoint& point : s.points) {
+    if (point.split) split[static_cast<std::size_t>(point.column)] = 1;
+  }
+  const double half = support_in_cells(scene) - slack_cells;
+  const double at = (along_x ? s.vertices[0].x.y() : s.vertices[0].x.x()) / g.h;
+  for (int across = static_cast<int>(std::ceil(at - half)); across <= static_cast<int>(std::floor(at + half)); ++across) {
+    for (int k = -1; k <= n + 1; ++k) {
+      const int column = k < 0 ? 1 : (k > n ? n - 1 : k);  // ghosts as the node they mirror
+      if (split[static_cast<std::size_t>(column)] == 0) continue;
+      const int node = along_x ? g.node(k, across) : g.node(across, k);
+      mask[static_cast<std::size_t>(node)] |= s.mask();
+    }
+  }
+}
+
+struct Mirrors {
+  bool sides, bottom, top;
+};
+
+Mirrors mirrored_edges(const Scene& scene) {
+  return {scene.domain.sides != Edge::traction, scene.domain.bottom != Edge::traction,
+          scene.domain.top != Edge::traction};
+}
+
+// The node that a ghost outside a symmetric edge mirrors, across x first; -1 if `node` is no such ghost.
+int mirror_of(const Grid& g, const Mirrors& m, int node, bool across_x) {
+  const int i = g.column(node), j = g.row(node);
+  if (across_x) {
+    if (m.sides && i < 0) return g.node(1, j);
+    if (m.sides && i > g.nx) return g.node(g.nx - 1, j);
+  } else {
+    if (m.bottom && j < 0) return g.node(i, 1);
+    if (m.top && j > g.ny) return g.node(i, g.ny - 1);
+  }
+  return -1;
+}
+
+std::vector<SideWord> node_masks(const Scene& scene, const State& state) {
+  std::vector<SideWord> mask(static_cast<std::size_t>(state.grid.nodes()), 0);
+  for (const Surface& s : state.surfaces) {
+    if (s.kind == Surface::Kind::fracture) mark_fracture(scene, state, mask);
+    if (s.kind == Surface::Kind::interface) mark_interface(scene, state, s, mask);
+  }
+  const Mirrors mirrors = mirrored_edges(scene);
+  for (const bool across_x : {true, false}) {
+    for (int node = 0; node < state.grid.nodes(); ++node) {
+      const int inside = mirror_of(state.grid, mirrors, node, across_x);
+      if (inside >= 0) mask[static_cast<std::size_t>(node)] = mask[static_cast<std::size_t>(inside)];
+    }
+  }
+  return mask;
+}
+
+void make_cut_nodes(const State& state, const std::vector<SideWord>& mask, Copies& copies) {
+  copies.cut_of_node.assign(mask.size(), -1);
+  copies.cut.clear();
+  copies.node_of_record.resize(mask.size());
+  std::iota(copies.node_of_record.begin(), copies.node_of_record.end(), 0);
+  const SideWord fracture = state.has_fracture ? state.fracture().mask() : 0;
+  for (std::size_t node = 0; node < mask.size(); ++node) {
+    if (mask[node] == 0) continue;
+    copies.cut_of_node[node] = static_cast<int>(copies.cut.size());
+    CutNode cut;
+    cut.mask = mask[node];
+    cut.fracture = mask[node] & fracture;
+    const SideWord interfaces = mask[node] & ~fracture;
+    if (cut.fracture != 0 && interfaces != 0) {
+      for (const SurfacePoint& point : state.fracture().points) {
+        const SideWord entered = point.sides & interfaces;
+        if (std::find(cut.entered.begin(), cut.entered.end(), entered) == cut.entered.end()) cut.entered.push_back(entered);
+      }
+    }
+    copies.cut.push_back(std::move(cut));
+  }
+}
+
+int record_for(Copies& copies, int node, SideWord sides) {
+  const int found = record_of(copies, node, sides);
+  if (found >= 0) return found;
+  CutNode& cut = copies.cut[static_cast<std::size_t>(copies.cut_of_node[static_cast<std::size_t>(node)])];
+  int record = node;
+  if (!cut.keys.empty()) {
+    record = copies.records();
+    copies.node_of_record.push_back(node);
+  }
+  cut.keys.push_back(cut.key(sides));
+  cut.records.push_back(record);
+  return record;
+}
+
+std::array<int, 9> stencil_nodes(const Grid& g, int i, int j) {
+  std::array<int, 9> nodes{};
+  for (int b = 0; b < 3; ++b) {
+    for (int a = 0; a < 3; ++a) nodes[static_cast<std::size_t>(3 * b + a)] = g.node(i + a - 1, j + b - 1);
+  }
+  return nodes;
+}
+
+struct SortKey {
+  int j, i;
+  SideWord sides;
+  std::int32_t id;
+  std::size_t from;
+  auto order() const { return std::tie(j, i, sides, id); }
+};
+
+std::vector<SortKey> sort_keys(const State& state, const std::vector<SideWord>& mask) {
+  const Particles& p = state.particles;
+  const Grid& g = state.grid;
+  std::vector<SideWord> reach(mask.size(), 0);  // which surfaces split any node of the stencil around a node
+  for (int j = 0; j <= g.ny; ++j) {
+    for (int i = 0; i <= g.nx; ++i) {
+      for (int node : stencil_nodes(g, i, j)) reach[static_cast<std::size_t>(g.node(i, j))] |= mask[static_cast<std::size_t>(node)];
+    }
+  }
+  std::vector<SortKey> keys(p.size());
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    const int i = g.nearest(p.x[k]), j = g.nearest(p.y[k]);
+    if (i < 0 || i > g.nx || j < 0 || j > g.ny) {
+      throw NumericalFailure("a particle has left the block at x = " + std::to_string(p.x[k]) + ", y = " + std::to_string(p.y[k]) +
+                             " m: parts move freely, or the time step is too long");
+    }
+    keys[k] = {j, i, p.sides[k] & reach[static_cast<std::size_t>(g.node(i, j))], p.id[k], k};
+  }
+  return keys;
+}
+
+void sort_particles(Particles& particles, const std::vector<SortKey>& keys) {
+  for_each_array(particles, [&](auto& array) {
+    auto sorted = array;
+    for (std::size_t k = 0; k < keys.size(); ++k) sorted[k] = array[keys[k].from];
+    array.swap(sorted);
+  });
+}
+
+void make_bins(State& state, const std::vector<SortKey>& keys) {
+  state.bins.clear();
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const bool same = k > 0 && std::tie(keys[k].j, keys[k].i, keys[k].sides) == std::tie(keys[k - 1].j, keys[k - 1].i, keys[k - 1].sides);
+    if (!same) {
+      Bin bin;
+      bin.first = static_cast<int>(k);
+      bin.i = keys[k].i, bin.j = keys[k].j;
+      const auto nodes = stencil_nodes(state.grid, bin.i, bin.j);
+      for (std::size_t n = 0; n < 9; ++n) bin.record[n] = record_for(state.copies, nodes[n], keys[k].sides);
+      state.bins.push_back(bin);
+    }
+    state.bins.back().last = static_cast<int>(k) + 1;
+  }
+  state.strips.clear();
+  for (int j = 0, b = 0; j <= state.grid.ny; j += rows_per_strip) {
+    Strip strip{b, b};
+    while (b < static_cast<int>(state.bins.size()) && state.bins[static_cast<std::size_t>(b)].j < j + rows_per_strip) ++b;
+    strip.last = b;
+    state.strips.push_back(strip);
+  }
+}
+
+// The key under which a record is kept at its node; false where the record is not in use.
+bool key_of(const Copies& copies, int record, SideWord& key) {
+  const int c = copies.cut_of_node[static_cast<std::size_t>(copies.node_of_record[static_cast<std::size_t>(record)])];
+  key = 0;
+  if (c < 0) return true;
+  const CutNode& cut = copies.cut[static_cast<std::size_t>(c)];
+  const auto at = std::find(cut.records.begin(), cut.records.end(), record);
+  if (at == cut.records.end()) return false;
+  key = cut.keys[static_cast<std::size_t>(at - cut.records.begin())];
+  return true;
+}
+
+Master master_of(const Mirrors& edges, State& state, int record) {
+  const Grid& g = state.grid;
+  Master master{record, 1.0, 1.0};
+  int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
+  SideWord key = 0;
+  if (!key_of(state.copies, record, key)) return master;
+  for (const bool across_x : {true, false}) {
+    const int inside = mirror_of(g, edges, node, across_x);
+    if (inside < 0) continue;
+    node = inside;
+    (across_x ? master.x : master.y) *= -1.0;
+  }
+  if (node != state.copies.node_of_record[static_cast<std::size_t>(record)]) master.record = record_for(state.copies, node, key);
+  const int i = g.column(node), j = g.row(node);
+  if (edges.sides && (i == 0 || i == g.nx)) master.x = 0.0;
+  if ((edges.bottom && j == 0) || (edges.top && j == g.ny)) master.y = 0.0;
+  return master;
+}
+
+void make_masters(const Scene& scene, State& state) {
+  state.masters.clear();
+  state.tied.clear();
+  const Mirrors edges = mirrored_edges(scene);
+  for (int record = 0; record < state.copies.records(); ++record) {
+    const Master master = master_of(edges, state, record);  // may add the record it mirrors
+    state.masters.push_back(master);
+    if (master.record != record || master.x == 0.0 || master.y == 0.0) state.tied.push_back(record);
+  }
+}
+
+// Stress on a bonded interface is the mean over the particles around a column's middle, weighted with the quadratic
+// B-spline that stands there: exact where stress is uniform or linear.
+std::vector<std::vector<StressSample>> sample_columns(const Scene& scene, const State& state, const Surface& s) {
+  const bool along_x = scene.strata.along == Strata::Along::y;
+  const Grid& g = state.grid;
+  std::vector<std::vector<StressSample>> columns(static_cast<std::size_t>(along_x ? g.nx : g.ny) + 1);
+  const double at = along_x ? s.vertices[0].x.y() : s.vertices[0].x.x();
+  const auto spline = [](double f) {
+    f = std::abs(f);
+    if (f < 0.5) return 0.75 - f * f;
+    return f < 1.5 ? 0.5 * (1.5 - f) * (1.5 - f) : 0.0;
+  };
+  const Particles& p = state.particles;
+  for (int q = 0; q < static_cast<int>(p.size()); ++q) {
+    const auto k = static_cast<std::size_t>(q);
+    const double across = spline(((along_x ? p.y[k] : p.x[k]) - at) / g.h);
+    if (across == 0.0) continue;
+    const double along = along_x ? p.x[k] : p.y[k];
+    const int column = g.nearest(along);
+    for (int c = std::max(0, column - 1); c <= std::min(static_cast<int>(columns.size()) - 1, column + 1); ++c) {
+      const double weight = across * spline(along / g.h - c) * p.V[k];
+      if (weight > 0.0) columns[static_cast<std::size_t>(c)].push_back({q, weight});
+    }
+  }
+  for (auto& column : columns) {
+    double sum = 0.0;
+    for (const StressSample& sample : column) sum += sample.weight;
+    for (StressSample& sample : column) sample.weight /= sum;
+  }
+  return columns;
+}
+
+void make_column_samples(const Scene& scene, State& state) {
+  state.column_samples.assign(state.surfaces.size(), {});
+  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
+    const Surface& s = state.surfaces[k];
+    if (s.kind != Surface::Kind::interface) continue;
+    const auto kind = scene.laws[s.law].kind;
+    if (kind == InterfaceLaw::Kind::weak || kind == InterfaceLaw::Kind::friction) {
+      state.column_samples[k] = sample_columns(scene, state, s);
+    }
+  }
+}
+
+SurfaceStencil stencil_at(const State& state, const Surface& s, const SurfacePoint& point) {
+  SurfaceStencil stencil;
+  const Grid& g = state.grid;
+  stencil.i = std::clamp(g.nearest(point.x.x()), 0, g.nx);
+  stencil.j = std::clamp(g.nearest(point.x.y()), 0, g.ny);
+  const auto nodes = stencil_nodes(g, stencil.i, stencil.j);
+  for (std::size_t n = 0; n < 9; ++n) {
+    const int minus = record_of(state.copies, nodes[n], point.sides);
+    const int plus = record_of(state.copies, nodes[n], point.sides | s.mask());
+    // A side without particles has no record: the node does not tell the sides apart.
+    stencil.plus[n] = plus >= 0 ? plus : std::max(minus, nodes[n]);
+    stencil.minus[n] = minus >= 0 ? minus : stencil.plus[n];
+  }
+  return stencil;
+}
+
+void make_surface_stencils(State& state) {
+  state.point_stencils.clear();
+  state.vertex_stencils.clear();
+  for (const Surface& s : state.surfaces) {
+    auto& points = state.point_stencils.emplace_back();
+    for (const SurfacePoint& point : s.points) points.push_back(stencil_at(state, s, point));
+    auto& vertices = state.vertex_stencils.emplace_back();
+    for (const SurfacePoint& vertex : s.vertices) vertices.push_back(stencil_at(state, s, vertex));
+  }
+}
+
+}  // namespace
+
+double support_in_cells(const Scene& scene) {
+  switch (scene.numerics.shape) {
+    case Numerics::Shape::bspline2:
+      return 1.5;
+    case Numerics::Shape::linear:
+      return 1.0;
+    case Numerics::Shape::gimp:
+      return 1.0 + 0.5 / std::sqrt(static_cast<double>(scene.numerics.particles_per_cell));
+  }
+  return 1.5;
+}
+
+SideWord sides_at(const State& state, const Vec2& x, int except) {
+  SideWord word = 0;
+  for (const Surface& s : state.surfaces) {
+    if (s.bit != except && side(s, x, extension(state.grid))) word |= s.mask();
+  }
+  return word;
+}
+
+void rebuild_copies(const Scene& scene, State& state) {
+  const std::vector<SideWord> mask = node_masks(scene, state);
+  make_cut_nodes(state, mask, state.copies);
+  std::vector<SortKey> keys = sort_keys(state, mask);
+  std::sort(keys.begin(), keys.end(), [](const SortKey& a, const SortKey& b) { return a.order() < b.order(); });
+  sort_particles(state.particles, keys);
+  make_bins(state, keys);
+  make_masters(scene, state);
+  make_column_samples(scene, state);
+  make_surface_stencils(state);
+  state.sums.assign(static_cast<std::size_t>(state.copies.records()), NodeSums{});
+  state.motion.assign(static_cast<std::size_t>(state.copies.records()), NodeMotion{});
+}
+
+bool particles_left_bins(const State& state) {
+  constexpr double margin = 0.5 + 1e-3;
+  const Particles& p = state.particles;
+  for (const Bin& bin : state.bins) {
+    for (int k = bin.first; k < bin.last; ++k) {
+      const auto q = static_cast<std::size_t>(k);
+      if (std::abs(p.x[q] / state.grid.h - bin.i) > margin || std::abs(p.y[q] / state.grid.h - bin.j) > margin) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace strata

@@ -1,0 +1,27 @@
+// Builds everything in a State that follows from particles and surfaces: copies of nodes, bins, strips, mirror pairs and
+// surface stencils. Called at the start, after growth or failure, and when particles have changed bins.
+#pragma once
+
+#include "state/state.hpp"
+
+namespace strata {
+
+// How far a node's shape function reaches, in cells: 1.5 for the quadratic B-spline, 1 for linear, 1 + l_p/h for uGIMP.
+double support_in_cells(const Scene& scene);
+
+/// Sorts the particles into bins and rebuilds all derived members of `state` (see state.hpp); the order of particles, and
+/// with it every sum, depends on their positions, sides and ids only.
+/// Throws NumericalFailure where a particle has left the block.
+void rebuild_copies(const Scene& scene, State& state);
+
+/// True if a particle has left the bin it was sorted into, by more than a thousandth of a cell. Within that margin the
+/// polynomial pieces of the old bin still reproduce linear fields exactly and differ by less than 1e-6.
+bool particles_left_bins(const State& state);
+
+/// The side word of a place (m): the one rule side() applied to every surface but `except` (-1: to all).
+SideWord sides_at(const State& state, const Vec2& x, int except);
+
+// How far surfaces are extended straight when sides are told apart (m).
+inline double extension(const Grid& grid) { return 4.0 * grid.h; }
+
+}  // namespace strata

@@ -1,0 +1,207 @@
+#include <catch2/catch.hpp>
+
+#include "output/checkpoint.hpp"
+#include "output/run_folder.hpp"
+#include "output_state.hpp"
+
+using namespace strata;
+using namespace strata::test;
+
+namespace strata {
+inline bool operator==(const Stress& a, const Stress& b) {
+  return a.xx == b.xx && a.yy == b.yy && a.xy == b.xy;
+}
+}  // namespace strata
+
+namespace {
+
+void require_same(const SurfacePoint& a, const SurfacePoint& b) {
+  CHECK(a.x == b.x);
+  CHECK(a.n == b.n);
+  CHECK(a.A == b.A);
+  CHECK(a.arc == b.arc);
+  CHECK(a.w == b.w);
+  CHECK(a.reaction == b.reaction);
+  CHECK(a.in_situ == b.in_situ);
+  CHECK(a.P == b.P);
+  CHECK(a.slip == b.slip);
+  CHECK(a.column == b.column);
+  CHECK(a.sides == b.sides);
+  CHECK(a.split == b.split);
+}
+
+void require_same(const Surface& a, const Surface& b) {
+  CHECK(a.kind == b.kind);
+  CHECK(a.bit == b.bit);
+  CHECK(a.law == b.law);
+  REQUIRE(a.vertices.size() == b.vertices.size());
+  REQUIRE(a.points.size() == b.points.size());
+  for (std::size_t k = 0; k < a.vertices.size(); ++k) require_same(a.vertices[k], b.vertices[k]);
+  for (std::size_t k = 0; k < a.points.size(); ++k) require_same(a.points[k], b.points[k]);
+}
+
+void require_same(const Tip& a, const Tip& b) {
+  CHECK(a.at_back == b.at_back);
+  CHECK(a.growing == b.growing);
+  CHECK(a.stopped_by == b.stopped_by);
+  CHECK(a.K_I == b.K_I);
+  CHECK(a.K_II == b.K_II);
+  CHECK(a.J == b.J);
+  CHECK(a.J_spread == b.J_spread);
+  CHECK(a.ring_m == b.ring_m);
+  CHECK(a.kink == b.kink);
+  CHECK(a.at_interface == b.at_interface);
+  CHECK(a.last_growth_s == b.last_growth_s);
+  CHECK(a.last_growth_Pa == b.last_growth_Pa);
+  CHECK(a.J_at_growth == b.J_at_growth);
+  CHECK(a.J_spread_at_growth == b.J_spread_at_growth);
+  CHECK(a.has_grown == b.has_grown);
+  CHECK(a.arrested == b.arrested);
+  CHECK(a.reached == b.reached);
+}
+
+void require_same(const Event& a, const Event& b) {
+  CHECK(a.kind == b.kind);
+  CHECK(a.time_s == b.time_s);
+  CHECK(a.inlet_Pa == b.inlet_Pa);
+  CHECK(a.tip_x_m == b.tip_x_m);
+  CHECK(a.tip_y_m == b.tip_y_m);
+  CHECK(a.at_interface == b.at_interface);
+}
+
+void require_same(const Ledger& a, const Ledger& b) {
+  CHECK(a.kinetic == b.kinetic);
+  CHECK(a.strain == b.strain);
+  CHECK(a.interface_strain == b.interface_strain);
+  CHECK(a.fluid_work == b.fluid_work);
+  CHECK(a.in_situ_work == b.in_situ_work);
+  CHECK(a.edge_work == b.edge_work);
+  CHECK(a.damping == b.damping);
+  CHECK(a.transfer == b.transfer);
+  CHECK(a.contact == b.contact);
+  CHECK(a.friction == b.friction);
+  CHECK(a.largest == b.largest);
+}
+
+void require_same(const Particles& a, const Particles& b) {
+  CHECK(a.x == b.x);
+  CHECK(a.y == b.y);
+  CHECK(a.u_x == b.u_x);
+  CHECK(a.u_y == b.u_y);
+  CHECK(a.v_x == b.v_x);
+  CHECK(a.v_y == b.v_y);
+  CHECK(a.g_xx == b.g_xx);
+  CHECK(a.g_xy == b.g_xy);
+  CHECK(a.g_yx == b.g_yx);
+  CHECK(a.g_yy == b.g_yy);
+  CHECK(a.m == b.m);
+  CHECK(a.V == b.V);
+  CHECK(a.half == b.half);
+  CHECK(a.rock == b.rock);
+  CHECK(a.sides == b.sides);
+  CHECK(a.in_situ == b.in_situ);
+  CHECK(a.id == b.id);
+  CHECK(a.next_id == b.next_id);
+}
+
+void require_same(const State& a, const State& b) {
+  CHECK(a.time == b.time);
+  CHECK(a.step == b.step);
+  CHECK(a.dt == b.dt);
+  CHECK(a.grid.nx == b.grid.nx);
+  CHECK(a.grid.ny == b.grid.ny);
+  CHECK(a.grid.h == b.grid.h);
+  require_same(a.particles, b.particles);
+  CHECK(a.has_fracture == b.has_fracture);
+  REQUIRE(a.surfaces.size() == b.surfaces.size());
+  for (std::size_t k = 0; k < a.surfaces.size(); ++k) require_same(a.surfaces[k], b.surfaces[k]);
+  CHECK(a.fluid.P == b.fluid.P);
+  CHECK(a.fluid.inlet == b.fluid.inlet);
+  CHECK(a.fluid.inlet_Pa == b.fluid.inlet_Pa);
+  REQUIRE(a.tips.size() == b.tips.size());
+  for (std::size_t k = 0; k < a.tips.size(); ++k) require_same(a.tips[k], b.tips[k]);
+  REQUIRE(a.events.size() == b.events.size());
+  for (std::size_t k = 0; k < a.events.size(); ++k) require_same(a.events[k], b.events[k]);
+  require_same(a.ledger, b.ledger);
+  CHECK(a.monitors.largest_courant == b.monitors.largest_courant);
+  CHECK(a.monitors.largest_penetration == b.monitors.largest_penetration);
+  CHECK(a.monitors.contact_sweeps == b.monitors.contact_sweeps);
+  CHECK(a.monitors.contact_unconverged == b.monitors.contact_unconverged);
+  CHECK(a.monitors.largest_particle_velocity == b.monitors.largest_particle_velocity);
+}
+
+const OutputMark mark{{17, 4321}, 5};
+
+}  // namespace
+
+TEST_CASE("a checkpoint gives the state back to the same digits") {
+  const TemporaryFolder folder;
+  const auto file = folder.path / "checkpoint.bin";
+  State state = made_state();
+  Numbers number{900};
+  state.tips.push_back(made_tip(false, number));
+  save_checkpoint(file, made_scene(), state, mark);
+  const Checkpoint checkpoint = load_checkpoint(file, made_scene());
+  require_same(checkpoint.state, state);
+  CHECK(checkpoint.mark.history.rows == 17);
+  CHECK(checkpoint.mark.history.bytes == 4321);
+  CHECK(checkpoint.mark.outputs == 5);
+
+  SECTION("and the same bytes if saved again") {
+    const std::string before = content_of(file);
+    save_checkpoint(file, made_scene(), checkpoint.state, checkpoint.mark);
+    CHECK(content_of(file) == before);
+  }
+}
+
+TEST_CASE("an empty state and numbers that are not finite survive a checkpoint") {
+  const TemporaryFolder folder;
+  const auto file = folder.path / "checkpoint.bin";
+  State state;
+  state.ledger.strain = std::numeric_limits<double>::infinity();
+  state.ledger.kinetic = -0.0;
+  save_checkpoint(file, made_scene(), state, {});
+  const Checkpoint checkpoint = load_checkpoint(file, made_scene());
+  require_same(checkpoint.state, state);
+  CHECK(std::signbit(checkpoint.state.ledger.kinetic));
+}
+
+TEST_CASE("a checkpoint that was cut short or changed anywhere is refused") {
+  const TemporaryFolder folder;
+  const auto file = folder.path / "checkpoint.bin";
+  save_checkpoint(file, made_scene(), made_state(), mark);
+  const std::string whole = content_of(file);
+  for (std::size_t n = 0; n < whole.size(); n += n < 80 ? 1 : 97) {
+    INFO("cut to " << n << " of " << whole.size() << " bytes");
+    std::ofstream(file, std::ios::binary) << whole.substr(0, n);
+    CHECK_THROWS_WITH(load_checkpoint(file, made_scene()), Catch::Contains("checkpoint.bin: is "));
+  }
+  for (std::size_t n = 0; n < whole.size(); n += n < 80 ? 1 : 97) {
+    INFO("byte " << n << " changed");
+    std::string changed = whole;
+    changed[n] = static_cast<char>(changed[n] ^ 4);
+    std::ofstream(file, std::ios::binary) << changed;
+    CHECK_THROWS_AS(load_checkpoint(file, made_scene()), std::runtime_error);
+  }
+  std::ofstream(file, std::ios::binary) << whole << "more";
+  CHECK_THROWS_WITH(load_checkpoint(file, made_scene()), Catch::Contains("is torn"));
+}
+
+TEST_CASE("a checkpoint of another scene, another format or none at all is refused by name") {
+  const TemporaryFolder folder;
+  const auto file = folder.path / "checkpoint.bin";
+  CHECK_THROWS_WITH(load_checkpoint(file, made_scene()), Catch::Contains("checkpoint.bin: cannot be opened"));
+  std::ofstream(file) << "something else altogether, and long enough to be one, if only its beginning were right";
+  CHECK_THROWS_WITH(load_checkpoint(file, made_scene()), Catch::Contains("is no checkpoint of strata"));
+
+  save_checkpoint(file, made_scene(), made_state(), mark);
+  Scene other = made_scene();
+  other.resolved_toml += "height_m = 7.0\n";
+  CHECK(scene_hash(other) != scene_hash(made_scene()));
+  CHECK_THROWS_WITH(load_checkpoint(file, other), Catch::Contains("belongs to another scene"));
+
+  std::string bytes = content_of(file);
+  bytes[std::string("strata-checkpoint\n").size() + 4] = 99;
+  std::ofstream(file, std::ios::binary) << bytes;
+  CHECK_THROWS_WITH(load_checkpoint(file, made_scene()), Catch::Contains("has checkpoint format 99"));
+}

@@ -1,0 +1,303 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "output/hdf5_io.hpp"
+#include "output/recorder.hpp"
+#include "output_state.hpp"
+
+using namespace strata;
+using namespace strata::test;
+
+namespace {
+
+// What is stored in single precision.
+double stored(double value) {
+  return static_cast<double>(static_cast<float>(value));
+}
+
+// A later state, with more particles and a longer fracture.
+State later_state() {
+  State state = made_state();
+  Numbers number{3000};
+  state.particles = made_particles(25, number);
+  extend(state.fracture(), true, Vec2{4.5, 3.0}, 10.0);
+  state.fluid.P.push_back(1.5e6 / 0.7);
+  state.time += 0.1;
+  return state;
+}
+
+// All that the file says, with the paths: equal texts mean equal content.
+std::string dump(hdf5::Id parent, const std::string& path) {
+  std::string text;
+  for (const std::string& name : hdf5::names(parent)) {
+    text += path + "/" + name;
+    try {
+      const auto values = hdf5::read(parent, name);
+      text += " [" + hdf5::text_attribute(parent, name, "unit") + "]";
+      for (const double value : values) text += fmt::format(" {}", value);
+      text += "\n";
+    } catch (const std::runtime_error&) {  // a group
+      text += "\n" + dump(hdf5::group(parent, name).id(), path + "/" + name);
+    }
+  }
+  return text;
+}
+
+std::string dump(const std::filesystem::path& file) {
+  return dump(hdf5::open_file(file, false).id(), "");
+}
+
+}  // namespace
+
+TEST_CASE("the fracture's fields are those of its vertices") {
+  const TemporaryFolder folder;
+  Scene scene = made_scene();
+  State state = made_state();
+  state.fracture().vertices[0].w = {-3e-3, 5e-4};  // opens by 3 mm, the + side slips 0.5 mm up the path
+  state.fracture().vertices[1].w = {-5e-5, 0.0};   // less open than minimum_opening_m
+  ResultFile(folder.path / "result.h5").write_output(scene, state);
+  const auto file = hdf5::open_file(folder.path / "result.h5", false);
+  const auto group = hdf5::group(file.id(), "fracture/00000");
+  const hdf5::Id id = group.id();
+  CHECK(hdf5::read(id, "x_m") == std::vector<double>{4.0, 4.0, 4.0});
+  CHECK(hdf5::read(id, "y_m") == std::vector<double>{0.0, 1.0, 2.0});
+  CHECK(hdf5::read(id, "arc_m") == std::vector<double>{0.0, 1.0, 2.0});
+  CHECK(hdf5::read(id, "pressure_Pa") == state.fluid.P);
+  CHECK(hdf5::read(id, "opening_m")[0] == Approx(3e-3));
+  CHECK(hdf5::read(id, "opening_m")[1] == Approx(5e-5));
+  CHECK(hdf5::read(id, "slip_m")[0] == Approx(5e-4));
+  CHECK(hdf5::read(id, "permeability_m2")[0] == Approx(9e-6 / 12.0));
+  CHECK(hdf5::read(id, "permeability_m2")[1] == Approx(1e-8 / 12.0));
+  CHECK(hdf5::number_attribute(id, ".", "time_s") == state.time);
+  CHECK(hdf5::number_attribute(id, ".", "inlet_Pa") == state.fluid.inlet_Pa);
+  CHECK(hdf5::text_attribute(id, "permeability_m2", "unit") == "m^2");
+  CHECK(hdf5::text_attribute(id, "pressure_Pa", "unit") == "Pa");
+  CHECK(hdf5::names(id).size() == 7);
+  CHECK(hdf5::read(file.id(), "times") == std::vector<double>{state.time});
+}
+
+TEST_CASE("an interface's fields are those of its points, under its number in the scene") {
+  const TemporaryFolder folder;
+  State state = made_state();
+  SurfacePoint& first = state.surfaces[1].points[0];
+  first.w = {2e-3, 1e-3};  // normal up, tangent to the right
+  first.reaction = {3e5, 4e5};
+  ResultFile(folder.path / "result.h5").write_output(made_scene(), state);
+  const auto file = hdf5::open_file(folder.path / "result.h5", false);
+  // The surface lies at y = 5, on the second interface of the scene; the first, which never acts, has none.
+  CHECK(hdf5::names(hdf5::group(file.id(), "interfaces/00000").id()) == std::vector<std::string>{"1"});
+  const auto group = hdf5::group(file.id(), "interfaces/00000/1");
+  const hdf5::Id id = group.id();
+  CHECK(hdf5::text_attribute(id, ".", "law") == "bedding");
+  CHECK(hdf5::number_attribute(id, ".", "at_m") == 5.0);
+  CHECK(hdf5::read(id, "x_m") == std::vector<double>{1.0, 3.0, 5.0, 7.0});
+  CHECK(hdf5::read(id, "y_m") == std::vector<double>(4, 5.0));
+  CHECK(hdf5::read(id, "opening_m")[0] == Approx(1e-3));
+  CHECK(hdf5::read(id, "slip_m")[0] == Approx(2e-3));
+  CHECK(hdf5::read(id, "reaction_n_Pa")[0] == Approx(4e5));
+  CHECK(hdf5::read(id, "reaction_t_Pa")[0] == Approx(3e5));
+  const auto split = hdf5::read(id, "split");
+  for (std::size_t k = 0; k < 4; ++k) CHECK(split[k] == (state.surfaces[1].points[k].split ? 1.0 : 0.0));
+  CHECK(hdf5::text_attribute(id, "reaction_n_Pa", "unit") == "Pa");
+}
+
+TEST_CASE("total stress is the in-situ stress and plane strain's Hooke's law") {
+  const Scene scene = made_scene();
+  Numbers number;
+  Particles particles = made_particles(1, number);
+  particles.rock[0] = 0;  // 40 GPa, 0.25
+  particles.in_situ[0] = {-16e6, -20e6, 1e6};
+  particles.g_xx[0] = 1e-4, particles.g_yy[0] = -2e-4, particles.g_xy[0] = 3e-4, particles.g_yx[0] = -1e-4;
+  // By hand: strain (s - nu (s' + s'')) (1/E), with s'' = nu (s + s'); lambda = mu = 16 GPa at nu = 1/4.
+  const Stress s = total_stress(scene, particles, 0);
+  CHECK(s.xx == Approx(-16e6 + 16e9 * (3 * 1e-4 - 2e-4)));
+  CHECK(s.yy == Approx(-20e6 + 16e9 * (1e-4 - 3 * 2e-4)));
+  CHECK(s.xy == Approx(1e6 + 16e9 * 2e-4));
+}
+
+TEST_CASE("particles are written in the order of their id, and their number may change") {
+  const TemporaryFolder folder;
+  const Scene scene = made_scene();
+  ResultFile result(folder.path / "result.h5");
+  const State states[] = {made_state(), later_state()};
+  for (const State& state : states) result.write_output(scene, state);
+  CHECK(result.outputs() == 2);
+  const auto file = hdf5::open_file(folder.path / "result.h5", false);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Particles& p = states[k].particles;
+    const auto group = hdf5::group(file.id(), "particles/0000" + std::to_string(k));
+    const hdf5::Id id = group.id();
+    CHECK(hdf5::number_attribute(id, ".", "time_s") == states[k].time);
+    const auto field = [&](const char* name, const char* unit) {
+      CHECK(hdf5::text_attribute(id, name, "unit") == unit);
+      return hdf5::read(id, name);
+    };
+    const auto x = field("x_m", "m"), y = field("y_m", "m"), u_x = field("u_x_m", "m"), u_y = field("u_y_m", "m");
+    const auto v_x = field("v_x_m_s", "m/s"), v_y = field("v_y_m_s", "m/s"), V = field("volume_m2", "m^2");
+    const auto s_xx = field("s_xx_Pa", "Pa"), s_yy = field("s_yy_Pa", "Pa"), s_xy = field("s_xy_Pa", "Pa");
+    const auto rock = field("rock", "1"), ids = field("id", "1");
+    CHECK(hdf5::names(id).size() == 12);
+    REQUIRE(x.size() == p.size());
+    for (std::size_t q = 0; q < p.size(); ++q) {
+      const auto at = static_cast<std::size_t>(p.id[q]);  // ids of the made-up particles are 0 to n - 1
+      CHECK(ids[at] == static_cast<double>(at));
+      CHECK(x[at] == stored(p.x[q]));
+      CHECK(y[at] == stored(p.y[q]));
+      CHECK(u_x[at] == stored(p.u_x[q]));
+      CHECK(u_y[at] == stored(p.u_y[q]));
+      CHECK(v_x[at] == stored(p.v_x[q]));
+      CHECK(v_y[at] == stored(p.v_y[q]));
+      CHECK(V[at] == stored(p.V[q]));
+      CHECK(rock[at] == static_cast<double>(p.rock[q]));
+      CHECK(s_xx[at] == stored(total_stress(scene, p, q).xx));
+      CHECK(s_yy[at] == stored(total_stress(scene, p, q).yy));
+      CHECK(s_xy[at] == stored(total_stress(scene, p, q).xy));
+    }
+  }
+}
+
+TEST_CASE("/history holds the columns of history.csv, however often it is written") {
+  const TemporaryFolder folder;
+  ResultFile result(folder.path / "result.h5");
+  std::vector<HistoryRow> rows(3);
+  for (std::size_t k = 0; k < 3; ++k) rows[k].J_N_m = 1.0 / (3.0 + static_cast<double>(k));
+  result.write_history({});
+  result.write_history(rows);
+  rows.resize(2);
+  result.write_history(rows);
+  const auto file = hdf5::open_file(folder.path / "result.h5", false);
+  const auto group = hdf5::group(file.id(), "history");
+  CHECK(hdf5::read(group.id(), "J_N_m") == std::vector<double>{rows[0].J_N_m, rows[1].J_N_m});
+  CHECK(hdf5::text_attribute(group.id(), "J_N_m", "unit") == "N/m");
+  CHECK(hdf5::names(group.id()).size() == history_columns().size());
+}
+
+TEST_CASE("the .xdmf names data sets that exist, of the size they have") {
+  const TemporaryFolder folder;
+  ResultFile result(folder.path / "result.h5");
+  result.write_output(made_scene(), made_state());
+  result.write_output(made_scene(), later_state());
+  const std::string text = content_of(folder.path / "result.xdmf");
+  const auto file = hdf5::open_file(folder.path / "result.h5", false);
+  std::size_t items = 0;
+  for (std::size_t at = text.find("result.h5:/"); at != std::string::npos; at = text.find("result.h5:/", at + 1)) {
+    const std::string path = text.substr(at + 11, text.find('<', at) - at - 11);
+    INFO(path);
+    const std::size_t dimensions = text.rfind("Dimensions=\"", at) + 12;
+    CHECK(hdf5::length(file.id(), path) == std::stoul(text.substr(dimensions)));
+    ++items;
+  }
+  CHECK(items == 2 * (2 + 8 + 2 + 5));
+  CHECK(text.find("<Time Value=\"" + std::to_string(made_state().time).substr(0, 6)) != std::string::npos);
+  CHECK(text.find("<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"25\"/>") != std::string::npos);
+}
+
+TEST_CASE("a scene without fracture and interfaces has particles alone") {
+  const TemporaryFolder folder;
+  State state = made_state();
+  state.has_fracture = false;
+  state.surfaces.clear();
+  ResultFile(folder.path / "result.h5").write_output(made_scene(), state);
+  const auto file = hdf5::open_file(folder.path / "result.h5", false);
+  CHECK(hdf5::exists(file.id(), "particles/00000/x_m"));
+  CHECK_FALSE(hdf5::exists(file.id(), "fracture/00000"));
+  CHECK_FALSE(hdf5::exists(file.id(), "interfaces/00000"));
+  CHECK(content_of(folder.path / "result.xdmf").find("fracture") == std::string::npos);
+}
+
+TEST_CASE("equal runs write equal bytes") {
+  const TemporaryFolder a, b;
+  for (const auto& folder : {&a, &b}) {
+    Recorder recorder(RunFolder{folder->path});
+    recorder.output(made_scene(), made_state());
+    recorder.row(made_scene(), later_state());
+    recorder.checkpoint(made_scene(), later_state());
+    recorder.output(made_scene(), later_state());
+    recorder.finish();
+  }
+  for (const char* name : {"history.csv", "result.h5", "result.xdmf", "checkpoint.bin"}) {
+    INFO(name);
+    CHECK(content_of(a.path / name) == content_of(b.path / name));
+  }
+}
+
+TEST_CASE("a run that goes on from a checkpoint ends with the content of an uninterrupted one") {
+  const Scene scene = made_scene();
+  const State first = made_state(), second = later_state();
+  State third = later_state();
+  third.time += 0.1;
+  const TemporaryFolder whole, broken;
+  {
+    Recorder recorder(RunFolder{whole.path});
+    recorder.output(scene, first);
+    recorder.row(scene, second);
+    recorder.output(scene, second);
+    recorder.output(scene, third);
+    recorder.finish();
+  }
+  {
+    Recorder recorder(RunFolder{broken.path});
+    recorder.output(scene, first);
+    recorder.row(scene, second);
+    recorder.checkpoint(scene, second);
+    recorder.output(scene, third);  // cut off again: the run stops here and goes on from the checkpoint
+    recorder.row(scene, first);
+    recorder.finish();
+  }
+  const RunFolder folder{broken.path};
+  const Checkpoint checkpoint = load_checkpoint(folder.checkpoint(), scene);
+  CHECK(checkpoint.mark.history.rows == 2);
+  CHECK(checkpoint.mark.outputs == 1);
+  {
+    Recorder recorder(folder, checkpoint.mark);
+    CHECK(recorder.outputs() == 1);
+    recorder.output(scene, checkpoint.state);
+    recorder.output(scene, third);
+    recorder.finish();
+  }
+  CHECK(content_of(folder.history()) == content_of(RunFolder{whole.path}.history()));
+  CHECK(content_of(folder.xdmf()) == content_of(RunFolder{whole.path}.xdmf()));
+  CHECK(dump(folder.result()) == dump(RunFolder{whole.path}.result()));
+  CHECK(dump(folder.result()).size() > 10000);
+}
+
+TEST_CASE("a result file that is missing, interrupted, foreign or short is refused") {
+  const TemporaryFolder folder;
+  const auto path = folder.path / "result.h5";
+  CHECK_THROWS_WITH(ResultFile(path, 0), Catch::Contains("result.h5: cannot be opened"));
+  ResultFile(path).write_output(made_scene(), made_state());
+  CHECK(ResultFile(path, 1).outputs() == 1);
+  CHECK_THROWS_WITH(ResultFile(path, 2), Catch::Contains("holds 1 output times where 2 were expected"));
+  {
+    const auto file = hdf5::open_file(path, true);
+    hdf5::set_attribute(file.id(), ".", "writing", 1.0);
+  }
+  CHECK_THROWS_WITH(ResultFile(path, 1), Catch::Contains("its writing was interrupted"));
+  std::ofstream(path) << "no HDF5";
+  CHECK_THROWS_WITH(ResultFile(path, 1), Catch::Contains("result.h5: cannot be opened"));
+  CHECK_THROWS_WITH(ResultFile("/nowhere/result.h5"), Catch::Contains("/nowhere/result.h5: cannot be made"));
+}
+
+TEST_CASE("a reader that holds a lock on the result file does not stop the run") {
+  const TemporaryFolder folder;
+  ResultFile result(folder.path / "result.h5");
+  const int reader = ::open((folder.path / "result.h5").c_str(), O_RDONLY);
+  REQUIRE(::flock(reader, LOCK_SH | LOCK_NB) == 0);
+  result.write_output(made_scene(), made_state());
+  CHECK(result.outputs() == 1);
+  ::close(reader);
+}
+
+TEST_CASE("pressures that do not belong to the vertices are refused, and leave the file marked as torn") {
+  const TemporaryFolder folder;
+  ResultFile result(folder.path / "result.h5");
+  State state = made_state();
+  state.fluid.P.pop_back();
+  CHECK_THROWS_WITH(result.write_output(made_scene(), state), Catch::Contains("2 fluid pressures at 3 vertices"));
+  CHECK(result.outputs() == 0);
+  CHECK_THROWS_WITH(ResultFile(folder.path / "result.h5", 0), Catch::Contains("its writing was interrupted"));
+}
