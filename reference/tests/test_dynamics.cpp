@@ -1,0 +1,75 @@
+// Wave speeds, the suddenly pressurised crack and standing waves.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "dynamics.hpp"
+#include "quadrature.hpp"
+
+using namespace strata::reference;
+using std::numbers::pi;
+
+namespace {
+Approx near(double value, double relative) {
+  return Approx(value).epsilon(relative).margin(0);
+}
+const Rock stiff;
+}  // namespace
+
+TEST_CASE("wave speeds of the stiff rock") {
+  const WaveSpeeds c = wave_speeds(stiff, 2500);
+  CHECK(c.c_P == near(2108.185, 1e-6));
+  CHECK(c.c_S == near(1290.994, 1e-6));
+  CHECK(c.c_R == near(1176.091, 1e-6));
+  CHECK(2500 * c.c_P * c.c_P == near(10e9 * 0.8 / (1.2 * 0.6), 1e-14));
+  for (double nu : {0.0, 0.25, 0.49}) {
+    const WaveSpeeds s = wave_speeds({10e9, nu}, 2500);
+    const double alpha_S = std::sqrt(1 - std::pow(s.c_R / s.c_S, 2)),
+                 alpha_P = std::sqrt(1 - std::pow(s.c_R / s.c_P, 2));
+    CHECK(4 * alpha_P * alpha_S == near(std::pow(1 + alpha_S * alpha_S, 2), 1e-12));
+  }
+  // nu = 1/4: (c_R/c_S)^2 = 2 - 2/sqrt(3).
+  const WaveSpeeds quarter = wave_speeds({10e9, 0.25}, 2500);
+  CHECK(quarter.c_R / quarter.c_S == near(std::sqrt(2 - 2 / std::sqrt(3.0)), 1e-13));
+}
+
+TEST_CASE("Freund's step pressure") {
+  CHECK(freund_step_pressure(stiff, 2500, 1e6, 1e-4) == near(0.501643e6, 1e-6));
+  CHECK(freund_step_pressure(stiff, 2500, 1e6, 4e-4) == near(2 * 0.501643e6, 1e-6));
+  CHECK(freund_step_pressure(stiff, 2500, 1e6, 0) == 0);
+}
+
+TEST_CASE("Freund's constant from the Wiener-Hopf factor of the half-plane") {
+  // K_I = 2 p sqrt(2 t/pi) sqrt(a)/(c S+), a = 1/c_P, b = 1/c_S, c = 1/c_R,
+  // ln S+ = -(1/pi) int_a^b atan[4 h^2 sqrt((h^2-a^2)(b^2-h^2))/(b^2-2h^2)^2] dh/h (Freund 1990, eq. 2.5.30).
+  for (double nu : {0.1, 0.2, 0.35}) {
+    const WaveSpeeds s = wave_speeds({10e9, nu}, 2500);
+    const double a = 1 / s.c_P, b = 1 / s.c_S, c = 1 / s.c_R;
+    const auto f = [&](double h) {
+      const double root = std::sqrt(std::max(0.0, (h * h - a * a) * (b * b - h * h)));
+      return std::atan2(4 * h * h * root, std::pow(b * b - 2 * h * h, 2)) / h;
+    };
+    const double S = std::exp(-integrate(f, a, b, {b / std::sqrt(2.0)}, 1e-10).value / pi);
+    const double K = 2 * std::sqrt(2 * 1e-4 / pi) * std::sqrt(a) / (c * S);
+    CHECK(freund_step_pressure({10e9, nu}, 2500, 1, 1e-4) == near(K, 1e-8));
+  }
+}
+
+TEST_CASE("standing waves solve Navier's equations") {
+  const StandingWaves f = standing_waves(stiff, 2500, 1);
+  CHECK(f.dilatation == near(2981.424, 1e-6));
+  CHECK(f.shear == near(1825.742, 1e-6));
+  CHECK(standing_waves(stiff, 2500, 2).shear == near(1825.742 / 2, 1e-6));
+  // rho w^2 A = k^2 ((lambda + 3 mu) A + (lambda + mu) B) from the body force that such a motion would need.
+  const double k = 2 * pi, mu = stiff.shear_modulus(), lambda = 2 * mu * 0.2 / 0.6;
+  for (double B : {1.0, -1.0}) {
+    const double w = 2 * pi * (B > 0 ? f.dilatation : f.shear);
+    CHECK(2500 * w * w == near(k * k * (lambda + 3 * mu + (lambda + mu) * B), 1e-12));
+  }
+}
+
+TEST_CASE("rocks that cannot be meant are refused") {
+  CHECK_THROWS_AS(wave_speeds({0, 0.2}, 2500), std::invalid_argument);
+  CHECK_THROWS_AS(wave_speeds({1e9, 0.5}, 2500), std::invalid_argument);
+  CHECK_THROWS_AS(freund_step_pressure(stiff, 2500, 1, -1), std::invalid_argument);
+}
