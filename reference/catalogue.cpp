@@ -95,7 +95,7 @@ std::vector<double> Inputs::numbers(const std::string& key) const {
 
 std::vector<Entry> catalogue() {
   std::vector<Entry> all;
-  for (auto part : {crack_entries(), flow_entries()})
+  for (auto part : {crack_entries(), flow_entries(), interface_entries(), wave_entries()})
     for (Entry& entry : part) all.push_back(std::move(entry));
   return all;
 }
@@ -175,6 +175,47 @@ Input list_input(std::string key, std::string help, InputValue standard) {
   Input input{std::move(key), std::move(help), std::move(standard)};
   input.takes_list = true;
   return input;
+}
+
+std::vector<Input> rock_inputs(const std::string& prefix, double youngs_modulus, bool may_vanish) {
+  Input modulus = positive_input(prefix + "youngs_modulus_Pa", "E", youngs_modulus);
+  modulus.least_excluded = !may_vanish;
+  Input poisson = number_input(prefix + "poisson_ratio", "nu", 0.2, 0, 0.5);
+  poisson.most_excluded = true;
+  return {modulus, poisson};
+}
+
+Rock rock_of(const Inputs& inputs, const std::string& prefix) {
+  return {inputs.number(prefix + "youngs_modulus_Pa"), inputs.number(prefix + "poisson_ratio")};
+}
+
+std::vector<Input> pressure_inputs() {
+  return {number_input("pressure_Pa", "net pressure (fluid minus closing stress), at the middle where it varies", 0.5e6,
+                       -1e12, 1e12),
+          word_input("pressure", "uniform, linear: falling to 0 at the tips, or the profile below",
+                     {"uniform", "linear", "profile"}),
+          list_input("profile_x_m", "knots of the profile from -a to a; twice the same for a jump; 0 outside",
+                     std::vector<double>{-5, 0, 5}),
+          list_input("profile_Pa", "net pressure at the knots, linear between", std::vector<double>{0, 0.5e6, 0})};
+}
+
+PressureKnots knots_of(const Inputs& inputs) {
+  const double a = inputs.number("half_length_m");
+  const double p = inputs.number("pressure_Pa");
+  PressureKnots knots;
+  if (inputs.word("pressure") == "uniform")
+    knots = {{-a, a}, {p, p}};
+  else if (inputs.word("pressure") == "linear")
+    knots = {{-a, 0, a}, {0, p, 0}};
+  else
+    knots = {inputs.numbers("profile_x_m"), inputs.numbers("profile_Pa")};
+  knots.validate();
+  return knots;
+}
+
+std::vector<Input> joined(std::vector<Input> first, const std::vector<Input>& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
 }
 
 }  // namespace strata::reference

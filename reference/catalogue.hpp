@@ -9,6 +9,9 @@
 #include <variant>
 #include <vector>
 
+#include "griffith.hpp"
+#include "rock.hpp"
+
 namespace strata::reference {
 
 // A number, a list of numbers, or a word.
@@ -81,8 +84,20 @@ Input positive_input(std::string key, std::string help, double standard);
 Input word_input(std::string key, std::string help, std::vector<std::string> choices);  // the first is the default
 Input list_input(std::string key, std::string help, InputValue standard);
 
+// Inputs of a rock, keys with a prefix: E > 0 (or >= 0 where may_vanish) and nu in [0, 0.5); and the rock they give.
+std::vector<Input> rock_inputs(const std::string& prefix, double youngs_modulus, bool may_vanish = false);
+Rock rock_of(const Inputs& inputs, const std::string& prefix);
+
+// Inputs of a crack's net pressure, "uniform", "linear" or "profile"; and the knots they give for its half_length_m.
+std::vector<Input> pressure_inputs();
+PressureKnots knots_of(const Inputs& inputs);
+
+std::vector<Input> joined(std::vector<Input> first, const std::vector<Input>& second);
+
 // Parts of the catalogue, a file each.
 std::vector<Entry> crack_entries();
 std::vector<Entry> flow_entries();
+std::vector<Entry> interface_entries();
+std::vector<Entry> wave_entries();
 
 }  // namespace strata::reference

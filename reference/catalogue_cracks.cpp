@@ -12,46 +12,17 @@
 namespace strata::reference {
 namespace {
 
-std::vector<Input> rock_inputs() {
-  Input poisson = number_input("poisson_ratio", "nu", 0.2, 0, 0.5);
-  poisson.most_excluded = true;
-  return {positive_input("youngs_modulus_Pa", "E", 10e9), poisson};
-}
-
-std::vector<Input> load_inputs() {
-  return {positive_input("half_length_m", "a; the crack is 2a long", 5),
-          number_input("pressure_Pa", "net pressure (fluid minus closing stress), at the middle where it varies", 0.5e6,
-                       -1e12, 1e12),
-          word_input("pressure", "uniform, linear: falling to 0 at the tips, or the profile below",
-                     {"uniform", "linear", "profile"}),
-          list_input("profile_x_m", "knots of the profile from -a to a; twice the same for a jump; 0 outside",
-                     std::vector<double>{-5, 0, 5}),
-          list_input("profile_Pa", "net pressure at the knots, linear between", std::vector<double>{0, 0.5e6, 0}),
-          number_input("toughness_Pa_sqrt_m", "K_Ic, for the critical pressure", 1.45e6, 0, 1e12),
-          number_input("closing_stress_Pa", "added to the net critical pressure", 2e6, -1e12, 1e12),
-          list_input("x_m", "where the opening is wanted, along the crack from its middle", 0.0)};
-}
-
-std::vector<Input> joined(std::vector<Input> first, const std::vector<Input>& second) {
-  first.insert(first.end(), second.begin(), second.end());
-  return first;
-}
-
-Rock rock_of(const Inputs& inputs) {
-  return {inputs.number("youngs_modulus_Pa"), inputs.number("poisson_ratio")};
-}
-
-PressureKnots knots_of(const Inputs& inputs) {
-  const double a = inputs.number("half_length_m");
-  const double p = inputs.number("pressure_Pa");
-  if (inputs.word("pressure") == "uniform") return {{-a, a}, {p, p}};
-  if (inputs.word("pressure") == "linear") return {{-a, 0, a}, {0, p, 0}};
-  return {inputs.numbers("profile_x_m"), inputs.numbers("profile_Pa")};
+// What both entries of this file take beside the rock.
+std::vector<Input> crack_inputs() {
+  return joined(joined({positive_input("half_length_m", "a; the crack is 2a long", 5)}, pressure_inputs()),
+                {number_input("toughness_Pa_sqrt_m", "K_Ic, for the critical pressure", 1.45e6, 0, 1e12),
+                 number_input("closing_stress_Pa", "added to the net critical pressure", 2e6, -1e12, 1e12),
+                 list_input("x_m", "where the opening is wanted, along the crack from its middle", 0.0)});
 }
 
 Answer solve_pressurised_crack(const Inputs& inputs) {
   const double a = inputs.number("half_length_m");
-  const double E_prime = rock_of(inputs).E_prime();
+  const double E_prime = rock_of(inputs, "").E_prime();
   const LinearlyPressurisedCrack crack(a, E_prime, knots_of(inputs));
   const TipIntensities K = crack.K_I();
   const double critical = griffith_critical_pressure(a, inputs.number("toughness_Pa_sqrt_m"));
@@ -79,7 +50,7 @@ Entry pressurised_crack() {
   return {
       "pressurised_crack",
       "pressurised crack in an infinite plane: K_I, J, opening, volume, energy; uniform, linear or any profile",
-      joined(rock_inputs(), load_inputs()),
+      joined(rock_inputs("", 10e9), crack_inputs()),
       "Griffith 1921; Sneddon & Lowengrub 1969; Tada, Paris & Irwin 2000, 5.11",
       "plane strain, linear elastic, open everywhere; K_I at x = +a, K_I_minus at x = -a; critical pressures are for "
       "uniform pressure; volume of the whole crack 2a; w < 0 means that the faces would touch",
@@ -108,7 +79,7 @@ void require_symmetric(const PressureKnots& knots) {
 Answer solve_block_crack(const Inputs& inputs) {
   const Block block = block_of(inputs);
   const double a = block.half_crack;
-  const double E_prime = rock_of(inputs).E_prime();
+  const double E_prime = rock_of(inputs, "").E_prime();
   const BlockCrack crack(block);
   const double F = crack.F();
   const double critical = crack.critical_pressure(inputs.number("toughness_Pa_sqrt_m"));
@@ -144,7 +115,7 @@ Answer solve_block_crack(const Inputs& inputs) {
 }
 
 Entry block_crack() {
-  std::vector<Input> inputs = joined(rock_inputs(), load_inputs());
+  std::vector<Input> inputs = joined(rock_inputs("", 10e9), crack_inputs());
   inputs.push_back(positive_input("width_m", "of the block, across the crack", 80));
   inputs.push_back(
       positive_input("half_height_m", "from the crack's middle (the symmetric bottom) to the top edge", 80));

@@ -60,6 +60,18 @@ TEST_CASE("settings reach the solution") {
                  "K_I") == Approx(2 * 1.981664e6).epsilon(1e-6));
   CHECK(value_of(solve("block_crack"), "critical_pressure_Pa") == Approx(2.35937e6).epsilon(2e-6));
   CHECK(value_of(solve("block_crack", {"edges=fixed"}), "F") == Approx(0.98129).epsilon(1e-5));
+  CHECK(value_of(solve("bonded_normal"), "F_near") == Approx(1.11025).epsilon(1e-5));
+  CHECK(value_of(solve("bonded_normal", {"youngs_modulus_Pa=5e9", "beyond_youngs_modulus_Pa=10e9"}), "F_far") ==
+        Approx(0.96574).epsilon(1e-5));
+  CHECK(value_of(solve("bonded_parallel"), "kink_deg") == Approx(-6.30).epsilon(1e-3));
+  CHECK(value_of(solve("bonded_tip_exponent"), "exponent") == Approx(0.576243).epsilon(1e-6));
+  CHECK(value_of(solve("spring_interface", {"law=free"}), "F_near") == Approx(1.4637).epsilon(1e-4));
+  CHECK(value_of(solve("spring_interface", {"normal_stiffness_Pa_m=2083333333", "shear_stiffness_Pa_m=2083333333"}),
+                 "F_near") == Approx(1.0704).epsilon(1e-4));
+  CHECK(value_of(solve("coulomb_first_slip"), "ratio") == Approx(0.8122).epsilon(1e-4));
+  CHECK(value_of(solve("freund_step_pressure"), "K_I") == Approx(0.501643e6).epsilon(1e-6));
+  CHECK(value_of(solve("wave_speeds"), "c_R_m_s") == Approx(1176.091).epsilon(1e-6));
+  CHECK(value_of(solve("standing_wave"), "f_shear_Hz") == Approx(1825.742).epsilon(1e-6));
   const Answer list = solve("channel_no_flux", {"x_m=[0, 2.5]"});
   const auto pressures = std::get<std::vector<double>>(list.values.front().value);
   REQUIRE(pressures.size() == 2);
