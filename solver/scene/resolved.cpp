@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <set>
 #include <sstream>
 
@@ -45,7 +46,7 @@ std::string value_text(const Key& key, Scene& scene, std::size_t index) {
 // round-off.
 std::string thickness_text(const Layer& layer, double cell_m) {
   const double thickness = layer.to_m - layer.from_m;
-  const double rounded = std::stod(fmt::format("{:.9g}", thickness));
+  const double rounded = std::strtod(fmt::format("{:.9g}", thickness).c_str(), nullptr);
   return number_text(std::abs(rounded - thickness) < 1e-7 * cell_m ? rounded : thickness);
 }
 

@@ -1,0 +1,102 @@
+#include <catch2/catch.hpp>
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <limits>
+#include <set>
+
+#include "scene/keys.hpp"
+#include "scene/spelling.hpp"
+
+using namespace strata;
+
+TEST_CASE("Every key is declared once, has help, and leads somewhere or says why not") {
+  std::set<std::string> paths;
+  for (const Key& key : scene_keys()) {
+    CAPTURE(key.path);
+    CHECK(paths.insert(key.path).second);
+    CHECK_FALSE(key.help.empty());
+    if (key.type == KeyType::number) CHECK(key.bounds.low < key.bounds.high);
+    if (key.type == KeyType::word) CHECK_FALSE(key.words.empty());
+    if (key.type == KeyType::integer) CHECK_FALSE(key.allowed.empty());
+    const bool list = key.type == KeyType::layers || key.type == KeyType::names || key.type == KeyType::points;
+    const bool element = key.path.find('[') != std::string::npos;
+    const bool leads = !std::holds_alternative<std::monostate>(key.place);
+    CHECK((leads || list || element || !key.withheld.empty()));
+  }
+}
+
+TEST_CASE("Every default is one that its key allows") {
+  for (const Key& key : scene_keys()) {
+    const std::string text = default_text(key);
+    CAPTURE(key.path, text);
+    if (text.empty()) continue;
+    if (key.type == KeyType::number) {
+      const double value = std::stod(text);
+      CHECK((key.bounds.low_open ? value > key.bounds.low : value >= key.bounds.low));
+      CHECK((key.bounds.high_open ? value < key.bounds.high : value <= key.bounds.high));
+    }
+    if (key.type == KeyType::word) {
+      bool offered = false;
+      for (const Word& word : key.words) offered = offered || ('"' + word.text + '"' == text && word.withheld.empty());
+      CHECK(offered);
+    }
+  }
+}
+
+TEST_CASE("Defaults are those of the scene") {
+  CHECK(default_text(*find_key("rock.any.poisson_ratio")) == "0.2");
+  CHECK(default_text(*find_key("numerics.particles_per_cell")) == "4");
+  CHECK(default_text(*find_key("fluid.law")) == "\"paper\"");
+  CHECK(default_text(*find_key("domain.width_m")).empty());
+  CHECK(default_text(*find_key("stop.time_s")).empty());
+}
+
+TEST_CASE("A path finds its key with any name in the place of NAME") {
+  CHECK(find_key("rock.stiff.poisson_ratio")->path == "rock.NAME.poisson_ratio");
+  CHECK(find_key("rock.stiff") == nullptr);
+  CHECK(find_key("rock.stiff.poisson") == nullptr);
+  CHECK(is_key_table("rock.stiff"));
+  CHECK(is_key_table("fluid.inlet"));
+  CHECK_FALSE(is_key_table("fluid.law"));
+  CHECK_FALSE(is_key_table("fluids"));
+}
+
+TEST_CASE("Edit distance by hand") {
+  CHECK(edit_distance("", "abc") == 3.0);
+  CHECK(edit_distance("weak", "weak") == 0.0);
+  CHECK(edit_distance("wake", "weak") == 2.0);
+  CHECK(edit_distance("kitten", "sitting") == 3.0);
+  CHECK(edit_distance("sotf", "soft") == 1.0);
+  CHECK(edit_distance("Weak", "weak") == 0.5);
+}
+
+TEST_CASE("The nearest word is suggested, and none that is far") {
+  CHECK(did_you_mean("frction", {"weak", "friction", "soft"}) == " Did you mean friction?");
+  CHECK(did_you_mean("viscosity", {"law", "viscosity_Pa_s"}) == " Did you mean viscosity_Pa_s?");
+  CHECK(did_you_mean("perfect", {"weak", "friction", "soft"}).empty());
+  CHECK(did_you_mean("x", {}).empty());
+}
+
+TEST_CASE("An unknown key names the nearest one, or the table it belongs in, or what there is") {
+  CHECK(unknown_key_message("fluid.viscosty_Pa_s") == "unknown key fluid.viscosty_Pa_s. Did you mean viscosity_Pa_s?");
+  CHECK(unknown_key_message("domain.courant") == "unknown key domain.courant. Did you mean numerics.courant?");
+  CHECK(unknown_key_message("stop.never") == "unknown key stop.never. [stop] has tip_y_m, inlet_Pa, time_s.");
+}
+
+TEST_CASE("A number's text reads back as the same number and is a float in TOML") {
+  for (const double value : {0.1, 1.0 / 3.0, 1e300, 5e-324, -2e6, 0.0, 123456789012345680.0}) {
+    const std::string text = number_text(value);
+    CAPTURE(text);
+    CHECK(std::strtod(text.c_str(), nullptr) == value);
+    CHECK(text.find_first_of(".e") != std::string::npos);
+  }
+  CHECK(to_text({0.0, 0.5, false, true}) == "[0, 0.5)");
+  CHECK(to_text({0.0, std::numeric_limits<double>::infinity(), true, true}) == "(0, inf)");
+}
+
+TEST_CASE("The table in Markdown has a row for each key") {
+  const std::string table = keys_as_markdown();
+  for (const Key& key : scene_keys()) CHECK(table.find("| `" + key.path + "` |") != std::string::npos);
+}

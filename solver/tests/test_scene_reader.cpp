@@ -1,0 +1,137 @@
+#include "scene_text.hpp"
+
+using namespace strata;
+using namespace scene_test;
+
+TEST_CASE("A scene is read to the last key, with defaults for what it leaves out") {
+  const Scene scene = good(layered);
+  CHECK(scene.title == "two layers");
+  CHECK(scene.name == "scene");
+  CHECK(scene.variant.empty());
+  CHECK(scene.domain.width_m == 80.0);
+  CHECK(scene.domain.bottom == Edge::symmetry);
+  CHECK(scene.in_situ.horizontal_Pa == 2e6);
+  REQUIRE(scene.rocks.size() == 2);
+  CHECK(scene.rocks[0].name == "soft");
+  CHECK(scene.rocks[0].toughness_Pa_sqrt_m == 1.25e6);
+  CHECK(scene.rocks[1].poisson_ratio == Rock{}.poisson_ratio);
+  REQUIRE(scene.laws.size() == 2);
+  CHECK(scene.laws[0] == InterfaceLaw{});
+  CHECK(scene.laws[1].kind == InterfaceLaw::Kind::friction);
+  CHECK(scene.laws[1].coefficient == 0.4);
+  CHECK(scene.strata.layers == std::vector<Layer>{{1, 0.0, 10.0}, {0, 10.0, 80.0}});
+  CHECK(scene.strata.interfaces == std::vector<InterfacePlace>{{1, 10.0}});
+  REQUIRE(scene.fracture.has_value());
+  CHECK(scene.fracture->path_m == std::vector<std::array<double, 2>>{{40.0, 0.0}, {40.0, 5.0}});
+  CHECK(scene.fluid.rate_Pa_s == 0.35e6);
+  CHECK(scene.numerics == [] {
+    Numerics numerics;
+    numerics.cell_m = 1.0;
+    return numerics;
+  }());
+  CHECK(scene.stop.inlet_Pa == 4e6);
+  CHECK_FALSE(scene.stop.time_s.has_value());
+}
+
+TEST_CASE("A block of rock needs neither fracture nor fluid nor interfaces") {
+  const Scene scene = good(
+      "[domain]\nwidth_m = 4\nheight_m = 2\n[rock.a]\nyoungs_modulus_Pa = 1e9\n[strata]\nlayers = [{rock = \"a\"}]\n"
+      "[numerics]\ncell_m = 0.5\n[stop]\ntime_s = 1\n");
+  CHECK_FALSE(scene.fracture.has_value());
+  CHECK(scene.strata.layers == std::vector<Layer>{{0, 0.0, 2.0}});
+  CHECK(scene.strata.interfaces.empty());
+}
+
+TEST_CASE("Interfaces left out are perfect") {
+  const Scene scene = good(with(layered, "interfaces = [\"joint\"]\n", ""));
+  CHECK(scene.strata.interfaces == std::vector<InterfacePlace>{{0, 10.0}});
+}
+
+TEST_CASE("A fracture typed towards the symmetry line is turned to start there") {
+  CHECK(good(with(layered, "[[40, 0], [40, 5]]", "[[40, 5], [40, 0]]")).fracture->path_m.front()[1] == 0.0);
+  const Scene inside = good(with(layered, "[[40, 0], [40, 5]]", "[[40, 7], [40, 5]]"));
+  CHECK(inside.fracture->path_m.front()[1] == 7.0);
+}
+
+TEST_CASE("Layers stacked from left to right are measured along x") {
+  std::string text = with(layered, "[strata]\n", "[strata]\nalong = \"x\"\n");
+  text = with(text, "width_m = 80", "width_m = 60");
+  const Scene scene = good(with(text, "thickness_m = 10", "thickness_m = 45.5"));
+  CHECK(scene.strata.layers.back().to_m == 60.0);
+  CHECK(scene.strata.interfaces[0].at_m == 45.5);
+}
+
+TEST_CASE("Sums of thicknesses land on the grid without round-off") {
+  std::string text = with(layered, "cell_m = 1", "cell_m = 0.1");
+  text = with(text, "{rock = \"stiff\", thickness_m = 10}",
+              "{rock = \"stiff\", thickness_m = 0.1}, {rock = \"stiff\", thickness_m = 0.2}");
+  const Scene scene = good(with(text, "[\"joint\"]", "[\"joint\", \"joint\"]"));
+  CHECK(scene.strata.interfaces[1].at_m == Approx(0.3).epsilon(1e-15));
+  CHECK(scene.strata.interfaces[1].at_m == 6 * 0.1 / 2.0);
+}
+
+TEST_CASE("The last thickness may be given if it adds up") {
+  CHECK(good(with(layered, "{rock = \"soft\"}", "{rock = \"soft\", thickness_m = 70}")).strata.layers[1].to_m == 80.0);
+  CHECK_THAT(errors(with(layered, "{rock = \"soft\"}", "{rock = \"soft\", thickness_m = 71}")),
+             Catch::Contains("scene.toml:17:47: strata.layers add up to 81.0 m, but the block has 80.0 m."));
+}
+
+TEST_CASE("Integers are numbers, whatever the size; other types are not") {
+  CHECK(good(with(layered, "vertical_Pa = 3e6", "vertical_Pa = 3000000")).in_situ.vertical_Pa == 3e6);
+  CHECK_THAT(errors(with(layered, "vertical_Pa = 3e6", "vertical_Pa = \"3e6\"")), Catch::Contains("is not a number"));
+  CHECK_THAT(errors(with(layered, "vertical_Pa = 3e6", "vertical_Pa = [3e6]")), Catch::Contains("is not a number"));
+  CHECK_THAT(errors(with(layered, "vertical_Pa = 3e6", "vertical_Pa = -inf")), Catch::Contains("is not finite"));
+}
+
+TEST_CASE("Bounds are open or closed as declared") {
+  const auto poisson = [](const char* value) {
+    return with(layered, "youngs_modulus_Pa = 10e9", std::string("youngs_modulus_Pa = 10e9\npoisson_ratio = ") + value);
+  };
+  CHECK(good(poisson("0")).rocks[1].poisson_ratio == 0.0);
+  CHECK(good(poisson("0.499")).rocks[1].poisson_ratio == 0.499);
+  CHECK_THAT(errors(poisson("0.5")),
+             Catch::StartsWith("scene.toml:10:1: rock.stiff.poisson_ratio = 0.5 is outside [0, 0.5)."));
+  const auto courant = [](const char* value) {
+    return with(layered, "cell_m = 1", std::string("cell_m = 1\ncourant = ") + value);
+  };
+  CHECK(good(courant("1")).numerics.courant == 1.0);
+  CHECK_THAT(errors(courant("0")), Catch::Contains("courant = 0 is outside (0, 1]"));
+}
+
+TEST_CASE("All mistakes are reported at once, in the order of the file") {
+  std::string text = with(layered, "width_m = 80", "widht_m = 80");
+  text = with(text, "law = \"friction\"", "law = \"frction\"");
+  text = with(text, "cell_m = 1", "cell_m = -1\nmechanics = \"quasistatic\"");
+  const ReadResult result = read(text);
+  REQUIRE(result.errors.size() == 5);
+  CHECK_THAT(result.errors[0], Catch::StartsWith("scene.toml:2:2: domain.width_m is missing"));
+  CHECK_THAT(result.errors[1], Catch::StartsWith("scene.toml:3:1: unknown key domain.widht_m. Did you mean width_m?"));
+  CHECK_THAT(result.errors[2], Catch::Contains("Did you mean friction?"));
+  CHECK_THAT(result.errors[3], Catch::Contains("numerics.cell_m = -1 is outside (0, inf)"));
+  CHECK_THAT(result.errors[4], Catch::Contains("numerics.mechanics = \"quasistatic\" is not offered by this version."));
+}
+
+TEST_CASE("Half-cell interfaces are allowed, others name the nearest place") {
+  CHECK(good(with(layered, "thickness_m = 10", "thickness_m = 10.5")).strata.interfaces[0].at_m == 10.5);
+  CHECK_THAT(errors(with(layered, "thickness_m = 10", "thickness_m = 10.7")),
+             Catch::Contains("nearest place for the interface: 10.5 m"));
+}
+
+TEST_CASE("What is not TOML is said with its place; a file that is not there by its name") {
+  CHECK_THAT(errors("[domain\n"), Catch::StartsWith("scene.toml:1:8: this is not TOML"));
+  const ReadResult missing = read_scene("no/such.toml", "", {});
+  REQUIRE(missing.errors.size() == 1);
+  CHECK_THAT(missing.errors[0], Catch::StartsWith("no/such.toml: there is no such file"));
+  CHECK_THAT(read_scene(".", "", {}).errors.at(0), Catch::Contains("is a folder"));
+  CHECK_THAT(errors(""), Catch::Contains("domain.width_m is missing"));
+}
+
+TEST_CASE("A run that could not end is refused, one that ends by time is not") {
+  const std::string constant = with(layered, ", rate_Pa_s = 0.35e6", "");
+  CHECK_THAT(errors(constant), Catch::Contains("the run could never end"));
+  CHECK(good(constant + "time_s = 1\n").stop.time_s == 1.0);
+  CHECK(good(with(constant, "inlet_Pa = 4e6", "time_s = 2")).fluid.rate_Pa_s == 0.0);
+  const std::string still = with(layered, "[fracture]\n", "[fracture]\ngrowth = \"none\"\n");
+  CHECK(good(still).fracture->growth == Fracture::Growth::none);
+  CHECK_THAT(errors(with(still, "inlet_Pa = 4e6", "tip_y_m = 70")), Catch::Contains("the fracture does not grow"));
+}

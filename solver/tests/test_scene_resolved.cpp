@@ -1,0 +1,104 @@
+#include "scene/keys.hpp"
+#include "scene/path_geometry.hpp"
+#include "scene_text.hpp"
+
+using namespace strata;
+using namespace scene_test;
+
+namespace {
+
+// Reading the resolved text gives the same scene, and the same text again.
+void check_round_trip(const Scene& scene) {
+  CAPTURE(scene.resolved_toml);
+  const ReadResult again = read_scene_text(scene.resolved_toml, "runs/x/scene.toml", "", {});
+  CAPTURE(again.errors);
+  REQUIRE(again.scene.has_value());
+  CHECK(*again.scene == scene);
+}
+
+}  // namespace
+
+TEST_CASE("A resolved scene reads as the same scene") {
+  check_round_trip(good(layered));
+  check_round_trip(good(layered + "time_s = 3\ntip_y_m = 70\n[output]\nfields_every_s = 0.01\n"));
+  check_round_trip(good(layered + "[variants.v]\nnumerics.cell_m = 0.5\n", "v", {"interface.joint.law=soft"}));
+  check_round_trip(good(with(layered, "[[40, 0], [40, 5]]", "[[41.3, 7.7], [40.1, 2.2], [40, 0]]")));
+}
+
+TEST_CASE("A resolved scene without a fracture has none") {
+  std::string text = with(layered, "[fracture]\npath_m = [[40, 0], [40, 5]]\n", "");
+  text = with(text, "inlet_Pa = 4e6", "time_s = 1");
+  const Scene scene = good(text);
+  CHECK(scene.resolved_toml.find("[fracture]") == std::string::npos);
+  check_round_trip(scene);
+}
+
+TEST_CASE("Doubles survive to the last digit") {
+  const Scene scene =
+      good(layered, "",
+           {"in_situ.vertical_Pa=3000000.0000000005", "numerics.damping_1_s=0.1", "fluid.minimum_opening_m=5e-324",
+            "rock.soft.density_kg_m3=1.7976931348623157e308", "in_situ.horizontal_Pa=0.30000000000000004"});
+  CHECK(scene.in_situ.horizontal_Pa == 0.1 + 0.2);
+  check_round_trip(scene);
+}
+
+TEST_CASE("Layers at multiples of a cell that is no binary fraction survive") {
+  for (const char* cell : {"0.1", "0.7", "0.9876543209876543"}) {
+    const std::string set = std::string("numerics.cell_m=") + cell;
+    const double h = std::stod(cell);
+    const std::string extent = number_text(90 * h);
+    std::string layers = "[";
+    for (int k = 1; k < 5; ++k) layers += "{rock = \"soft\", thickness_m = " + number_text(3.5 * k * h) + "}, ";
+    const Scene scene = good(layered, "",
+                             {set, "domain.width_m=" + extent, "domain.height_m=" + extent,
+                              "fracture.path_m=[[" + number_text(45 * h) + ", 0], [" + number_text(45 * h) + ", " +
+                                  number_text(2 * h) + "]]",
+                              "strata.interfaces=[\"joint\", \"joint\", \"joint\", \"joint\"]",
+                              "strata.layers=" + layers + "{rock = \"stiff\"}]"});
+    check_round_trip(scene);
+  }
+}
+
+TEST_CASE("Titles with quotes and other letters survive") {
+  check_round_trip(good(layered, "", {"title=\"say \\\"w\\u00f6rd\\\" \\\\ and\\nnext line\\t'\""}));
+}
+
+TEST_CASE("A resolved scene holds every key that is in force, and no variants") {
+  const Scene scene = good(layered + "[variants.v]\nnumerics.cell_m = 0.5\n", "v");
+  for (const Key& key : scene_keys()) {
+    if (!key.withheld.empty() || key.path.find('[') != std::string::npos || key.path.starts_with("stop.") ||
+        key.path.starts_with("output.") || (!key.law.empty() && key.law != "friction")) {
+      continue;
+    }
+    CAPTURE(key.path, scene.resolved_toml);
+    CHECK(scene.resolved_toml.find(key.path.substr(key.path.rfind('.') + 1) + " = ") != std::string::npos);
+  }
+  CHECK(scene.resolved_toml.find("[variants") == std::string::npos);
+  CHECK(scene.resolved_toml.find("variant = \"v\"") != std::string::npos);
+}
+
+TEST_CASE("Claims are kept with all their keys") {
+  const Scene scene = good(layered +
+                           "[[claim]]\nid = \"1a\"\ntext = \"it's so\"\nobservable = \"height\"\n"
+                           "low = 0.1\nbetween = [\"weak\", \"perfect\"]\nat = {inlet_Pa = 3e6}\n"
+                           "[[claim]]\nid = \"1b\"\ntext = \"t\"\nobservable = \"o\"\n");
+  check_round_trip(scene);
+  for (const char* part : {"id = \"1a\"", "\"it's so\"", "low = 0.1", "weak", "inlet_Pa = 3000000.0", "id = \"1b\""}) {
+    CHECK_THAT(scene.resolved_toml, Catch::Contains(part));
+  }
+}
+
+TEST_CASE("Distance of segments by hand") {
+  CHECK(segment_distance({0, 0}, {2, 2}, {0, 2}, {2, 0}) == 0.0);
+  CHECK(segment_distance({0, 0}, {2, 0}, {0, 1}, {2, 1}) == 1.0);
+  CHECK(segment_distance({0, 0}, {1, 0}, {4, 4}, {4, 5}) == 5.0);
+  CHECK(segment_distance({0, 0}, {2, 0}, {1, 0}, {1, 3}) == 0.0);
+}
+
+TEST_CASE("A path that meets itself is found, one that comes near is not") {
+  CHECK_FALSE(self_contact({{0, 0}, {0, 2}, {2, 2}, {2, 1}, {0.1, 1}}, 1e-9));
+  CHECK(self_contact({{0, 0}, {0, 2}, {2, 2}, {2, 1}, {0, 1}}, 1e-9) == std::pair<std::size_t, std::size_t>(0, 3));
+  CHECK(self_contact({{0, 0}, {0, 2}, {0, 1}}, 1e-9) == std::pair<std::size_t, std::size_t>(0, 1));
+  CHECK(self_contact({{0, 0}, {0, 2}, {0, -1}}, 1e-9) == std::pair<std::size_t, std::size_t>(0, 1));
+  CHECK_FALSE(self_contact({{0, 0}, {0, 2}, {0, 3}}, 1e-9));
+}

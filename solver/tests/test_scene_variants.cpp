@@ -1,0 +1,116 @@
+#include "scene/check.hpp"
+#include "scene_text.hpp"
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+using namespace strata;
+using namespace scene_test;
+
+namespace {
+
+const std::string with_variants = layered + R"([variants.weak]
+interface.joint.law = "weak"
+interface.joint.shear_strength_Pa = 1e6
+[variants.fine]
+"numerics.cell_m" = 0.5
+numerics.shape = "linear"
+[variants.fine.rock]
+"soft.youngs_modulus_Pa" = 6e9
+[variants.bonded]
+strata.interfaces = ["perfect"]
+[variants.as_it_is]
+)";
+
+}  // namespace
+
+TEST_CASE("Variants are listed in the order of the file") {
+  CHECK(list_variants_text(with_variants, "s.toml").names ==
+        std::vector<std::string>{"weak", "fine", "bonded", "as_it_is"});
+  CHECK(list_variants_text(layered, "s.toml").names.empty());
+  CHECK(list_variants("no/such.toml").errors.size() == 1);
+}
+
+TEST_CASE("A variant replaces values, by dotted keys with and without quotes and by tables") {
+  const Scene base = good(with_variants);
+  CHECK(base.numerics.cell_m == 1.0);
+  const Scene fine = good(with_variants, "fine");
+  CHECK(fine.variant == "fine");
+  CHECK(fine.numerics.cell_m == 0.5);
+  CHECK(fine.numerics.shape == Numerics::Shape::linear);
+  CHECK(fine.rocks[0].youngs_modulus_Pa == 6e9);
+  CHECK(good(with_variants, "bonded").strata.interfaces[0].law == 0);
+  Scene same = good(with_variants, "as_it_is");
+  same.variant.clear();
+  same.resolved_toml = base.resolved_toml;
+  CHECK(same == base);
+}
+
+TEST_CASE("Keys of a law that a variant or --set replaces are let be, and leave no trace") {
+  const Scene weak = good(with_variants, "weak");
+  CHECK(weak.laws[1].kind == InterfaceLaw::Kind::weak);
+  CHECK(weak.laws[1].shear_strength_Pa == 1e6);
+  CHECK(weak.laws[1].coefficient == InterfaceLaw{}.coefficient);
+  CHECK(weak.resolved_toml.find("coefficient") == std::string::npos);
+  CHECK(good(with_variants, "weak", {"interface.joint.law=soft"}).laws[1].kind == InterfaceLaw::Kind::soft);
+  CHECK(good(with_variants, "", {"interface.joint.law=perfect"}).laws[1].kind == InterfaceLaw::Kind::perfect);
+  CHECK_THAT(errors(with_variants, "weak", {"interface.joint.coefficient=0.3"}),
+             Catch::StartsWith("--set interface.joint.coefficient=0.3: interface.joint.coefficient belongs to law = "
+                               "\"friction\", but interface.joint.law = \"weak\"."));
+}
+
+TEST_CASE("Mistakes in variants that are not chosen are mistakes too, at their own place") {
+  CHECK_THAT(errors(layered + "[variants.a]\nnumerics.cel_m = 1\n"),
+             Catch::StartsWith("scene.toml:28:10: unknown key numerics.cel_m. Did you mean cell_m?"));
+  CHECK_THAT(errors(layered + "[variants.a]\n\"numerics.cell_m\" = 0\n"),
+             Catch::StartsWith("scene.toml:28:1: numerics.cell_m = 0 is outside (0, inf)."));
+}
+
+TEST_CASE("A variant that does not exist is refused with those that do") {
+  CHECK_THAT(errors(with_variants, "wek"),
+             Catch::Contains("there is no variant wek. It has weak, fine, bonded, as_it_is. Did you mean weak?"));
+  CHECK_THAT(errors(layered, "weak"), Catch::Contains("It has no variants."));
+}
+
+TEST_CASE("--set acts after the variant, and the last one counts") {
+  CHECK(good(with_variants, "fine", {"numerics.cell_m=0.25"}).numerics.cell_m == 0.25);
+  CHECK(good(layered, "", {"numerics.cell_m=0.25", "numerics.cell_m = 0.5"}).numerics.cell_m == 0.5);
+}
+
+TEST_CASE("The value of --set is TOML, a bare word a string") {
+  CHECK(good(layered, "", {"numerics.shape=gimp"}).numerics.shape == Numerics::Shape::gimp);
+  CHECK(good(layered, "", {"fluid.time_rule=backward-euler"}).fluid.time_rule == Fluid::TimeRule::backward_euler);
+  CHECK(good(layered, "", {"title=\"a = b\""}).title == "a = b");
+  CHECK(good(layered, "", {"strata.interfaces=[\"perfect\"]"}).strata.interfaces[0].law == 0);
+  CHECK(good(layered, "", {"fluid.inlet={start_Pa = 1e6}"}).fluid.start_Pa == 1e6);
+  CHECK_THAT(errors(layered, "", {"strata.interfaces=[perfect]"}), Catch::Contains("neither TOML nor a bare word"));
+  CHECK_THAT(errors(layered, "", {"numerics.cell_m="}), Catch::Contains("neither TOML nor a bare word"));
+  CHECK_THAT(errors(layered, "", {"title=1\ncell_m=2"}), Catch::Contains("neither TOML nor a bare word"));
+  CHECK_THAT(errors(layered, "", {"numerics.cell_m"}), Catch::Contains("this is not key.path=value"));
+  CHECK_THAT(errors(layered, "", {"variants.a.title=x"}), Catch::Contains("may replace keys of the scene"));
+}
+
+TEST_CASE("Errors of --set name it in the place of a line, and come after those of the file") {
+  const std::string text = errors(with(layered, "width_m = 80", "width_m = -80"), "", {"numerics.courant=3"});
+  CHECK_THAT(text, Catch::StartsWith("scene.toml:3:1: "));
+  CHECK_THAT(text, Catch::Contains("\n--set numerics.courant=3: numerics.courant = 3 is outside (0, 1]."));
+}
+
+TEST_CASE("A rock that only --set names is a slip, unless a layer uses it") {
+  CHECK_THAT(errors(layered, "", {"rock.sotf.youngs_modulus_Pa=1e9"}), Catch::Contains("Did you mean soft?"));
+  const Scene scene =
+      good(layered, "", {"rock.new.youngs_modulus_Pa=1e9", "strata.layers=[{rock = \"new\"}]", "strata.interfaces=[]"});
+  CHECK(scene.rocks[scene.strata.layers[0].rock].name == "new");
+}
+
+TEST_CASE("check reports every file and every variant, and says which variant is to blame") {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "strata_test_scene_check.toml";
+  std::ofstream(file) << layered << "[variants.coarse]\nnumerics.cell_m = 16\n";
+  const std::vector<std::string> lines = check({"no/such.toml", file.string()});
+  std::filesystem::remove(file);
+  REQUIRE(lines.size() == 2);
+  CHECK_THAT(lines[0], Catch::StartsWith("no/such.toml: there is no such file"));
+  CHECK_THAT(lines[1],
+             Catch::Contains("neither on a grid line nor at mid-cell") && Catch::EndsWith(" [variant coarse]"));
+}
