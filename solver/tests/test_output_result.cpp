@@ -3,7 +3,9 @@
 #include <sys/file.h>
 
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "output/hdf5_io.hpp"
 #include "output/recorder.hpp"
@@ -209,9 +211,10 @@ TEST_CASE("a scene without fracture and interfaces has particles alone") {
   CHECK(content_of(folder.path / "result.xdmf").find("fracture") == std::string::npos);
 }
 
-TEST_CASE("equal runs write equal bytes") {
+TEST_CASE("equal runs write equal bytes, whenever they are run") {
   const TemporaryFolder a, b;
   for (const auto& folder : {&a, &b}) {
+    if (folder == &b) std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // dates are in whole seconds
     Recorder recorder(RunFolder{folder->path});
     recorder.output(made_scene(), made_state());
     recorder.row(made_scene(), later_state());
@@ -263,6 +266,27 @@ TEST_CASE("a run that goes on from a checkpoint ends with the content of an unin
   CHECK(content_of(folder.xdmf()) == content_of(RunFolder{whole.path}.xdmf()));
   CHECK(dump(folder.result()) == dump(RunFolder{whole.path}.result()));
   CHECK(dump(folder.result()).size() > 10000);
+  const auto file = hdf5::open_file(folder.result(), false);
+  CHECK(hdf5::read(file.id(), "times") == std::vector<double>{first.time, second.time, third.time});
+  CHECK(hdf5::read(file.id(), "history/time_s") ==
+        std::vector<double>{first.time, second.time, second.time, third.time});
+}
+
+TEST_CASE("output times beyond those kept are dropped at once") {
+  const TemporaryFolder folder;
+  const auto path = folder.path / "result.h5";
+  {
+    ResultFile result(path);
+    result.write_output(made_scene(), made_state());
+    result.write_output(made_scene(), later_state());
+  }
+  CHECK(ResultFile(path, 1).outputs() == 1);
+  const auto file = hdf5::open_file(path, false);
+  CHECK(hdf5::read(file.id(), "times") == std::vector<double>{made_state().time});
+  for (const char* kind : {"particles", "fracture", "interfaces"}) {
+    CHECK(hdf5::names(hdf5::group(file.id(), kind).id()) == std::vector<std::string>{"00000"});
+  }
+  CHECK(content_of(folder.path / "result.xdmf").find("/00001/") == std::string::npos);
 }
 
 TEST_CASE("a result file that is missing, interrupted, foreign or short is refused") {

@@ -122,6 +122,9 @@ TEST_CASE("a file is written in one piece or not at all") {
   CHECK(nlohmann::json::parse(content_of(file)).at("scene") == "exp1");
   const auto listing = std::filesystem::directory_iterator(folder.path);
   CHECK(std::distance(begin(listing), end(listing)) == 1);  // nothing is left beside it
+  std::filesystem::create_directories(folder.path / "taken" / "inside");
+  CHECK_THROWS_WITH(atomic_write(folder.path / "taken", "x"), Catch::Contains("taken: cannot be replaced"));
+  CHECK_FALSE(std::filesystem::exists(folder.path / "taken.tmp"));
   CHECK_THROWS_WITH(atomic_write(folder.path / "none" / "a.json", "x"),
                     Catch::Contains("a.json.tmp: cannot be written"));
 }
