@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from reports.layout import Layout, layout_of
-from reports.runs import Arrays, NotAvailable, Run, fracture_at, output_times, particles_at
+from reports.runs import Arrays, NotAvailable, Run, fracture_at, interfaces_at, output_times, particles_at
 from reports.words import metres, mpa, number, plain
 
 WINDOW_CELLS = 9  # width of Fig 1's panels: few enough for single nodes and particles to be told apart
@@ -58,6 +58,7 @@ class PressureFigure:
     s_xx_MPa: np.ndarray
     centre_MPa: float
     range_MPa: float
+    view_m: tuple[float, float, float, float]
     crack_x_m: np.ndarray
     crack_y_m: np.ndarray
     interfaces_m: tuple[float, ...]
@@ -115,10 +116,10 @@ def _copies_panel(run: Run, index: int, centre: str, magnified: float) -> Copies
     half = 0.5 * WINDOW_CELLS * h
     low = max(0.0, at_y - (1.35 if centre == "tip" else 1.0) * half)
     window = (at_x - half, at_x + half, low, low + 2.0 * half)
-    laws = [place.at_m for place in layout.interfaces if place.law != "perfect"] if layout.along == "y" else []
+    laws = divided(run, index)
     inside = _inside(points, window, 2.0 * h)
     x_m, y_m = points["x_m"][inside], points["y_m"][inside]
-    sides = _sides(x_m, y_m, crack_x, crack_y, laws)
+    sides = _sides(x_m, y_m, crack_x, crack_y, list(laws))
     reach = REACH.get(str(run.scene.get("numerics", {}).get("shape", "bspline2")), 1.5) * h
     gx, gy = _lines(window[:2], h), _lines(window[2:], h)
     return CopiesPanel(
@@ -129,10 +130,29 @@ def _copies_panel(run: Run, index: int, centre: str, magnified: float) -> Copies
         points_x_m=crack_x,
         points_y_m=crack_y,
         faces=_faces(fracture, magnified),
-        interfaces_m=tuple(at for at in laws if window[2] <= at <= window[3]),
+        interfaces_m=tuple(at for at, split in laws.items() if split.size and window[2] <= at <= window[3]),
         particles=_grouped(x_m, y_m, sides),
-        nodes=tuple(_node(a, b, x_m, y_m, sides, (crack_x, crack_y), laws, reach) for a in gx for b in gy),
+        nodes=tuple(
+            _node(a, b, x_m, y_m, sides, (crack_x, crack_y), {at: _near(split, a, h) for at, split in laws.items()}, reach)
+            for a in gx for b in gy
+        ),
     )
+
+
+def divided(run: Run, index: int) -> dict[float, np.ndarray]:
+    """For each interface across the fracture, its height in m and the x in m of its points where it has split."""
+    layout, found = layout_of(run), {}
+    if layout.along != "y":
+        return found
+    for points in interfaces_at(run, index):
+        at = float(points.get("at_m", points["y_m"][0]))
+        found[at] = points["x_m"][points["split"] > 0] if "split" in points else points["x_m"]
+    return dict(sorted(found.items()))
+
+
+def _near(split_x_m: np.ndarray, x_m: float, h: float) -> bool:
+    """Whether an interface has split within half a cell of a column of nodes."""
+    return bool((np.abs(split_x_m - x_m) <= 0.5 * h).any())
 
 
 def _inside(points: Arrays, window: tuple[float, float, float, float], margin_m: float) -> np.ndarray:
@@ -167,14 +187,17 @@ def _grouped(x_m: np.ndarray, y_m: np.ndarray, sides: np.ndarray) -> dict[tuple[
 
 def _node(
     at_x: float, at_y: float, x_m: np.ndarray, y_m: np.ndarray, sides: np.ndarray,
-    crack: tuple[np.ndarray, np.ndarray], laws: list[float], reach_m: float,
+    crack: tuple[np.ndarray, np.ndarray], divides: dict[float, bool], reach_m: float,
 ) -> Node:
-    """A node with the distinct sides that the particles in its support lie on."""
+    """A node with the distinct sides that the particles in its support lie on, of surfaces that divide there."""
     near = (np.abs(x_m - at_x) < reach_m) & (np.abs(y_m - at_y) < reach_m)
     _, behind = side_of(np.array([at_x]), np.array([at_y]), *crack)
     seen = sides[near].copy()
     if not behind[0]:
         seen[:, 0] = 0
+    for column, (height, yes) in enumerate(divides.items(), 1):
+        if not yes:
+            seen[:, column] = 1 if at_y >= height else -1
     return Node(at_x, at_y, tuple(sorted({tuple(int(s) for s in row) for row in seen})))
 
 
@@ -195,22 +218,30 @@ def pressure_figure(run: Run, index: int) -> PressureFigure:
     inlet = float(fracture.get("inlet_Pa", np.nanmax(fracture["pressure_Pa"])))
     arc = fracture.get("arc_m", _arc(fracture))
     change = field + layout.horizontal_Pa / 1e6
-    end = float(fracture["pressure_Pa"][-1])
+    filled = float(np.max(arc[fracture["pressure_Pa"] >= 0.5 * inlet], initial=0.0))
     opening_mm = 1e3 * fracture["opening_m"]
     title = (
-        f"At {mpa(inlet)} the fracture is {metres(float(np.max(arc)))} long, up to"
-        f" {number(float(opening_mm.max()), 2)} mm open, and carries {number(100 * end / inlet, 2)} % of the inlet"
-        f" pressure to its tip"
+        f"At {mpa(inlet)} the fracture is {metres(float(np.max(arc)))} long and up to"
+        f" {number(float(opening_mm.max()), 2)}\u00a0mm open; its pressure exceeds half of the inlet's over"
+        f" {metres(filled)} from the inlet"
     )
     return PressureFigure(
         title=title, edges_x_m=edges_x, edges_y_m=edges_y, s_xx_MPa=field,
         centre_MPa=-layout.horizontal_Pa / 1e6,
-        range_MPa=float(np.nanpercentile(np.abs(change), 99.0)) or 1.0,
+        range_MPa=max(float(np.nanpercentile(np.abs(change), 99.0)), abs(inlet - layout.horizontal_Pa) / 1e6),
+        view_m=_view(layout, fracture),
         crack_x_m=fracture["x_m"], crack_y_m=fracture["y_m"], interfaces_m=layout.heights_m,
         arc_m=arc, pressure=fracture["pressure_Pa"] / inlet, opening_mm=opening_mm,
         permeability_m2=fracture["permeability_m2"], inlet_MPa=inlet / 1e6, time_s=time_s,
         source=f"Experiment {run.number}, {plain(run.variant)}",
     )
+
+
+def _view(layout: Layout, fracture: Arrays) -> tuple[float, float, float, float]:
+    """A square about the fracture three times its height, within the block, m."""
+    size = min(3.0 * float(np.max(fracture["y_m"])), layout.height_m, layout.width_m)
+    left = min(max(0.0, float(fracture["x_m"][0]) - 0.5 * size), layout.width_m - size)
+    return (left, left + size, 0.0, size)
 
 
 def _arc(fracture: Arrays) -> np.ndarray:

@@ -122,7 +122,7 @@ def height_figure(runs: list[Run]) -> HeightFigure:
         raise NotAvailable("no run of this experiment has a history")
     layout = layout_of(drawn[0])
     curves = tuple(_height_curve(run) for run in drawn)
-    starts = [curve.inlet_MPa[_first_growth(curve.height_m)] for curve in curves]
+    starts = [curve.inlet_MPa[_first_growth(curve.height_m, layout.cell_m)] for curve in curves]
     last = max(float(curve.inlet_MPa[-1]) for curve in curves)
     first = min(min(float(start) for start in starts), last)
     foot = min(float(curve.height_m[0]) for curve in curves)
@@ -137,9 +137,9 @@ def height_figure(runs: list[Run]) -> HeightFigure:
     )
 
 
-def _first_growth(height_m: np.ndarray) -> int:
-    """Index of the last row before the height first changes."""
-    grown = np.flatnonzero(height_m > height_m[0])
+def _first_growth(height_m: np.ndarray, cell_m: float) -> int:
+    """Index of the last row before the height first rises by more than the motion of its tip: a quarter of a cell."""
+    grown = np.flatnonzero(height_m > height_m[0] + 0.25 * cell_m)
     return max(0, int(grown[0]) - 1) if grown.size else height_m.size - 1
 
 
@@ -174,7 +174,8 @@ def profile_figure(runs: list[Run], variants: tuple[str, ...] = ("perfect", "wea
     if not chosen:
         raise NotAvailable(f"no run of {listed(list(variants))} has a history")
     times = {name: output_times(run) for name, run in chosen.items()}
-    first = min(float(run.history["time_s"][_first_growth(run.history["height_m"])]) for run in chosen.values())
+    rows = {name: _first_growth(run.history["height_m"], run.cell_m) for name, run in chosen.items()}
+    first = min(float(chosen[name].history["time_s"][row]) for name, row in rows.items())
     last = max(float(value[-1]) for value in times.values())
     wanted = np.linspace(first, last, OPENING_INSTANTS)
     panels = tuple(_profile_panel(chosen[name], times[name], wanted) for name in variants if name in chosen)

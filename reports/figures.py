@@ -13,7 +13,7 @@ from reports.charts.height_chart import draw_heights
 from reports.charts.ledger_chart import draw_ledger, draw_variants
 from reports.charts.profile_chart import draw_paths, draw_profiles
 from reports.charts.style import save
-from reports.crack import CopiesFigure, PressureFigure, copies_figure, index_when_tip_passes, pressure_figure
+from reports.crack import CopiesFigure, PressureFigure, copies_figure, divided, index_when_tip_passes, pressure_figure
 from reports.curves import (
     HeightFigure, PathFigure, ProfileFigure, height_figure, held, path_figure, profile_figure,
 )
@@ -120,12 +120,13 @@ def _crack_choices(of: dict[int, list[Run]]) -> list[tuple[Run, int, str]]:
     group = of.get(1, [])
     alone = _with_fields(group, ("perfect",))
     choices = [(alone, index_when_tip_passes(alone, 1.5 * max(layout_of(alone).fracture_y_m)), "tip")]
-    try:
-        met = _with_fields(group, ("friction", "weak", "soft"))
-    except NotAvailable:
-        return choices
-    beyond = max(layout_of(met).heights_m, default=0.0) + 3.0 * met.cell_m
-    return [*choices, (met, index_when_tip_passes(met, beyond), "interface")]
+    for name in ("weak", "friction", "soft"):
+        for met in (run for run in group if run.variant == name and run.drawable):
+            beyond = max(layout_of(met).heights_m, default=0.0) + 3.0 * met.cell_m
+            index = index_when_tip_passes(met, beyond)
+            if any(split.size for split in divided(met, index).values()):
+                return [*choices, (met, index, "interface")]
+    return choices
 
 
 def _pressure_choice(of: dict[int, list[Run]]) -> PressureFigure:
@@ -143,16 +144,15 @@ def _copies_words(data: CopiesFigure) -> str:
         f"A fracture as the solver sees it ({places}): a polyline of massless points, its faces drawn apart by the"
         f" opening magnified {data.magnified:g} times, particles coloured by the side they lie on, and the nodes of the"
         " grid. A node whose support holds particles on more than one side carries a copy of its fields for each:"
-        " a sector stands for one copy, grey for a node ahead of the tip that only an interface divides. All lengths in"
-        " metres."
+        " a sector stands for one copy. An interface divides nodes only where it has split. All lengths in metres."
     )
 
 
 def _pressure_words(data: PressureFigure) -> str:
     """Caption of Fig 2."""
     return (
-        f"{data.source} at t = {data.time_s:.3f} s. Left: total horizontal stress in MPa, tension positive, white at its"
-        f" in-situ value of {data.centre_MPa:g} MPa. Right, against distance from the inlet in m: fluid pressure as a"
+        f"{data.source} at t = {data.time_s:.3f} s. Left: total horizontal stress in MPa, tension positive, white at"
+        f" its in-situ value of {data.centre_MPa:g} MPa. Right, against distance from the inlet in m: fluid pressure as a"
         f" fraction of the inlet's {data.inlet_MPa:.2f} MPa, opening w in mm, permeability w²/12 in m²."
     )
 
@@ -167,12 +167,12 @@ def _height_words(runs: list[Run]) -> Callable[[HeightFigure], str]:
         arrests = f" Longest arrests: {listed(stays)}." if stays else " No variant was arrested."
         places = [metres(height) for height in data.layout.heights_m]
         flag = (
-            " A ring marks an arrest decided by a J-integral taken within a cell and a half of an interface, where it is"
-            " not to be trusted." if data.flagged else ""
+            " A ring marks an arrest decided by a J-integral taken so near to an interface that it is not to be"
+            " trusted." if data.flagged else ""
         )
         return (
-            f"Left: layout, lengths in m, with the in-situ stress in MPa; the fracture in blue. Middle and right: height"
-            f" of the tip above the symmetry line in m against inlet pressure in MPa; dotted lines: interfaces at"
+            f"Left: layout, lengths in m, with the in-situ stress in MPa; the fracture in blue. Middle and right:"
+            f" height of the tip above the symmetry line in m against inlet pressure in MPa; dotted lines: interfaces at"
             f" {listed(places)}.{arrests}{flag}"
         )
 
@@ -213,9 +213,10 @@ def _variant_words(data: VariantFigure) -> str:
 
 def _ledger_words(data: LedgerFigure) -> str:
     """Caption of an energy ledger."""
-    last = max(float(panel.terms[0].inlet_MPa[-1]) for panel in data.panels)
+    last = max(float(panel.supplied.inlet_MPa[-1]) for panel in data.panels)
     return (
         "Energy since the start in kJ per metre of thickness against inlet pressure in MPa"
-        f" (up to {mpa(1e6 * last)}): what is supplied (solid), stored (dashed) and dissipated (dotted). 'Open by' is"
-        " what supply, storage and dissipation leave unexplained at the end, as a share of the largest of them."
+        f" (up to {mpa(1e6 * last)}). Above: the net work supplied and what of it is stored; below: what is dissipated,"
+        " and what supply, storage and dissipation leave unexplained. 'Open by' is the latter at the end of the run as"
+        " the solver gives it, a share of the largest energy so far (mostly the work of the fluid alone)."
     )

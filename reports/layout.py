@@ -108,7 +108,7 @@ def _law(scene: dict[str, Any], name: str) -> str:
 def settings_between(run: Run, base: Run) -> list[tuple[str, Any, Any]]:
     """The scene keys in which a run differs from another: key, value there, value here."""
     here, there = _flat(run.scene), _flat(base.scene)
-    ignored = ("title", "variant", "variants", "claim", "output")
+    ignored = ("title", "variant", "variants", "claim", "output", "resolved_from")
     keys = [key for key in sorted(here.keys() | there.keys()) if key.split(".")[0] not in ignored]
     return [(key, there.get(key), here.get(key)) for key in keys if here.get(key) != there.get(key)]
 

@@ -29,12 +29,14 @@ class Term:
 
 @dataclass(frozen=True)
 class LedgerPanel:
-    """The energies of one run and the share of the largest that they leave unexplained."""
+    """The energies of one run, and what they leave unexplained, in kJ per metre of thickness."""
 
     variant: str
     heading: str
-    terms: tuple[Term, ...]
-    time_s: np.ndarray
+    supplied: Term
+    stored: tuple[Term, ...]
+    dissipated: tuple[Term, ...]
+    unexplained: Term
 
 
 @dataclass(frozen=True)
@@ -105,37 +107,46 @@ def closure_of(run: Run) -> float | None:
 
 def ledger_figure(runs: list[Run]) -> LedgerFigure:
     """Energies against inlet pressure for one experiment's main variants."""
-    every = [_ledger_panel(run) for run in runs if run.is_main and run.drawable]
-    panels = tuple(panel for panel in every if panel.terms)
+    panels = tuple(_ledger_panel(run) for run in runs if run.is_main and run.drawable and _has_energies(run))
     if not panels:
         raise NotAvailable("no run of this experiment has energies in its history")
     return LedgerFigure(_ledger_title(panels), panels)
 
 
+def _has_energies(run: Run) -> bool:
+    """Whether any energy of the run is not zero."""
+    return any(np.nanmax(np.abs(run.history[name])) > 0.0 for name in energy_terms(run))
+
+
 def _ledger_panel(run: Run) -> LedgerPanel:
-    """One run's energies."""
+    """One run's energies; works that supply are summed, since those of fluid and in-situ stress nearly cancel."""
     inlet = run.history["inlet_Pa"] / 1e6
-    terms = tuple(
-        Term(plain(name.removesuffix("_J")), family_of(name), inlet, run.history[name] / 1e3)
-        for name in energy_terms(run)
-        if np.nanmax(np.abs(run.history[name])) > 0.0
-    )
+    groups: dict[str, list[Term]] = {"supplied": [], "stored": [], "dissipated": []}
+    for name in energy_terms(run):
+        if np.nanmax(np.abs(run.history[name])) > 0.0:
+            family = family_of(name)
+            groups[family].append(Term(plain(name.removesuffix("_J")), family, inlet, run.history[name] / 1e3))
+    total = {family: sum((term.energy_kJ for term in terms), np.zeros_like(inlet)) for family, terms in groups.items()}
     closure = closure_of(run)
-    heading = plain(run.variant) + ("" if closure is None else f": open by {share(abs(closure))}")
-    return LedgerPanel(run.variant, heading, terms, run.history["time_s"])
+    return LedgerPanel(
+        variant=run.variant,
+        heading=plain(run.variant) + ("" if closure is None else f": open by {share(abs(closure))}"),
+        supplied=Term("net work of fluid, in-situ stress and edges", "supplied", inlet, total["supplied"]),
+        stored=tuple(groups["stored"]),
+        dissipated=tuple(groups["dissipated"]),
+        unexplained=Term("unexplained", "", inlet, total["supplied"] - total["stored"] - total["dissipated"]),
+    )
 
 
 def _ledger_title(panels: tuple[LedgerPanel, ...]) -> str:
-    """Where most of the dissipated energy goes in each variant."""
+    """How much of the net work is stored and dissipated in each variant."""
     parts = []
     for panel in panels:
-        lost = [term for term in panel.terms if term.family == "dissipated"]
-        given = sum(float(term.energy_kJ[-1]) for term in panel.terms if term.family == "supplied")
-        if not lost or given <= 0.0:
-            continue
-        most = max(lost, key=lambda term: abs(float(term.energy_kJ[-1])))
-        parts.append(f"{plain(panel.variant)} {share(float(most.energy_kJ[-1]) / given)} ({most.name})")
-    return f"Largest loss as a share of the work supplied: {listed(parts)}" if parts else "Nothing is dissipated"
+        given = float(panel.supplied.energy_kJ[-1])
+        lost = sum(float(term.energy_kJ[-1]) for term in panel.dissipated)
+        if given > 0.0:
+            parts.append(f"{share(lost / given)} ({plain(panel.variant)})")
+    return f"Of the net work supplied, {listed(parts)} is dissipated" if parts else "No net work is supplied"
 
 
 def variant_figure(groups: list[list[Run]]) -> VariantFigure:

@@ -6,6 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from reports.layout import layout_of
 from reports.runs import NotAvailable, Run
 from reports.words import listed, metres, mpa, plain
@@ -18,7 +20,8 @@ class Arrest:
     height_m: float
     from_Pa: float
     until_Pa: float | None
-    interface: str | None  # the interface within reach of the J rings, if any
+    interface: str | None  # the interface it is at: within a cell and a half, or within reach of the J rings
+    beyond_m: float  # how far past that interface, negative before it
     by_J: bool  # the criterion there was J alone, which is not to be trusted at an interface
 
 
@@ -49,7 +52,7 @@ def outcome_of(run: Run) -> Outcome:
         arrests=arrests_of(run),
         final_height_m=float(heights[-1]),
         final_inlet_Pa=float(inlet[-1]),
-        grew=float(heights[-1]) > float(heights[0]),
+        grew=float(np.max(heights)) > float(heights[0]) + 0.25 * run.cell_m,
     )
 
 
@@ -70,9 +73,9 @@ def arrests_of(run: Run) -> tuple[Arrest, ...]:
             continue
         follower = events[index + 1] if index + 1 < len(events) else None
         until = float(follower["inlet_Pa"]) if follower and follower["kind"] == "restart" else None
-        name = interface_near(run, float(event["tip_x_m"]), float(event["tip_y_m"]))
         by_J = decided_by_J(run, event)
-        arrests.append(Arrest(float(event["tip_y_m"]), float(event["inlet_Pa"]), until, name, by_J))
+        name, beyond_m = interface_near(run, event, by_J)
+        arrests.append(Arrest(float(event["tip_y_m"]), float(event["inlet_Pa"]), until, name, beyond_m, by_J))
     return tuple(arrests)
 
 
@@ -82,7 +85,7 @@ def decided_by_J(run: Run, event: dict[str, Any]) -> bool:
         return False
     if "at_interface" in event:
         return bool(event["at_interface"])
-    return interface_near(run, float(event["tip_x_m"]), float(event["tip_y_m"])) is not None
+    return interface_near(run, event)[0] is not None
 
 
 def crossing_of(run: Run) -> str:
@@ -91,14 +94,15 @@ def crossing_of(run: Run) -> str:
     return str(named or ("J" if run.scene.get("numerics", {}).get("mechanics") == "explicit" else "energy"))
 
 
-def interface_near(run: Run, x_m: float, y_m: float) -> str | None:
-    """The name of the interface within a cell and a half of a point: there J is not to be trusted."""
+def interface_near(run: Run, event: dict[str, Any], anyway: bool = False) -> tuple[str | None, float]:
+    """The nearest interface that is not perfect, if within a cell and a half or asked for anyway, and the tip past it, m."""
     layout = layout_of(run)
-    at = y_m if layout.along == "y" else x_m
-    for place in layout.interfaces:
-        if place.law != "perfect" and abs(place.at_m - at) <= 1.5 * run.cell_m:
-            return place.name
-    return None
+    at = float(event["tip_y_m"] if layout.along == "y" else event["tip_x_m"])
+    places = [place for place in layout.interfaces if place.law != "perfect"]
+    nearest = min(places, key=lambda place: abs(at - place.at_m), default=None)
+    if nearest is None or not (anyway or abs(at - nearest.at_m) <= 1.5 * run.cell_m):
+        return None, 0.0
+    return nearest.name, at - nearest.at_m
 
 
 def outcomes_of(runs: Iterable[Run]) -> list[Outcome]:
@@ -107,14 +111,15 @@ def outcomes_of(runs: Iterable[Run]) -> list[Outcome]:
 
 
 def longest(outcome: Outcome) -> Arrest | None:
-    """The arrest that lasts over the widest range of inlet pressure."""
+    """The arrest over the widest range of inlet pressure: of those at interfaces, or to the end, if there are any."""
 
     def width(arrest: Arrest) -> float:
         """Its range of inlet pressure, Pa."""
         until = outcome.final_inlet_Pa if arrest.until_Pa is None else arrest.until_Pa
         return until - arrest.from_Pa
 
-    return max(outcome.arrests, key=width, default=None)
+    telling = [arrest for arrest in outcome.arrests if arrest.interface is not None or arrest.until_Pa is None]
+    return max(telling or outcome.arrests, key=width, default=None)
 
 
 def _phrase(outcome: Outcome) -> tuple[str, str]:
@@ -127,12 +132,25 @@ def _phrase(outcome: Outcome) -> tuple[str, str]:
     if not outcome.grew:
         return "never grew", f"up to {end}"
     arrest = longest(outcome)
-    if arrest is None:
-        return f"grew without arrest to {metres(outcome.final_height_m)}", f"by {end}"
+    if arrest is None or (arrest.interface is None and arrest.until_Pa is not None):
+        pause = "" if arrest is None else f" (pausing at {metres(arrest.height_m)})"
+        return f"grew to {metres(outcome.final_height_m)}", f"by {end}{pause}"
     held = f"to the end at {end}" if arrest.until_Pa is None else f"until {mpa(arrest.until_Pa)}"
-    more = len(outcome.arrests) - 1
-    extra = f" ({more} shorter arrest{'s' if more > 1 else ''} besides)" if more else ""
-    return f"stopped at {metres(arrest.height_m)}", held + extra
+    return f"stopped at {metres(arrest.height_m)}{_where(arrest)}", held + _others(outcome, arrest)
+
+
+def _where(arrest: Arrest) -> str:
+    """How far an arrest is past or before its interface, where that is not next to nothing."""
+    distance = abs(arrest.beyond_m)
+    if arrest.interface is None or distance < 0.25:
+        return ""
+    return f" ({metres(distance)} {'past' if arrest.beyond_m > 0 else 'before'} the {arrest.interface} interface)"
+
+
+def _others(outcome: Outcome, told: Arrest) -> str:
+    """Where else an interface stopped the fracture, besides the arrest that is told."""
+    places = [metres(arrest.height_m) for arrest in outcome.arrests if arrest is not told and arrest.interface]
+    return f" (and at {listed(list(dict.fromkeys(places)))})" if places else ""
 
 
 def finding(outcomes: Iterable[Outcome]) -> str:

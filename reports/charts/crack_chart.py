@@ -96,6 +96,8 @@ def draw_pressure(data: PressureFigure) -> Figure:
     field.plot(data.crack_x_m, data.crack_y_m, color=INK, linewidth=1.6)
     interface_lines(field, data.interfaces_m)
     field.set_aspect("equal")
+    field.set_xlim(*data.view_m[:2])
+    field.set_ylim(*data.view_m[2:])
     field.set_xlabel("x (m)")
     field.set_ylabel("height above the symmetry line (m)")
     field.set_title(f"Horizontal stress, {data.source}, t = {data.time_s:.3f} s")

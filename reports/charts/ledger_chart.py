@@ -7,52 +7,57 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from reports.charts.style import (
-    COLOURS, FLAG, INK, KIND_NAMES, MARKERS, new_figure, put_legend, put_title,
+    COLOURS, FLAG, FLUID, INK, KIND_NAMES, MARKERS, new_figure, put_legend, put_title,
 )
 from reports.ledger import LedgerFigure, LedgerPanel, VariantFigure, VariantRow
 
-_FAMILIES: dict[str, tuple[str, ...]] = {
-    "supplied": ("#1f5fa8", "#5b9bd5", "#9cc3e8"),
-    "stored": ("#00845f", "#55b890", "#a5dcc5"),
-    "dissipated": ("#d04a00", "#a3397f", "#e08a3c", "#c98bb5", "#7a5230"),
+_COLOURS: dict[str, tuple[str, ...]] = {
+    "stored": ("#55b890", "#00845f", "#a5dcc5"),
+    "dissipated": ("#d04a00", "#a3397f", "#b98a00", "#7a5230", "#5a5a9a"),
 }
-_STYLES: dict[str, str] = {"supplied": "-", "stored": "--", "dissipated": ":"}
 
 
 def draw_ledger(data: LedgerFigure) -> Figure:
-    """Energies against inlet pressure, one panel a variant."""
+    """Energies against inlet pressure, one column a variant: supplied and stored above, dissipated below."""
     count = len(data.panels)
-    figure = new_figure(max(7.0, 3.6 * count + 1.0), 4.6)
-    put_title(figure, data.title, max(75, 38 * count))
-    every = figure.subplots(1, count, sharey=True, squeeze=False)[0]
+    figure = new_figure(max(7.0, 3.3 * count + 1.0), 6.4)
+    put_title(figure, data.title, max(72, 34 * count))
+    rows = figure.subplots(2, count, sharey="row", squeeze=False)
     looks = _looks(data)
-    for axes, panel in zip(every, data.panels):
-        _draw_ledger_panel(axes, panel, looks)
-    every[0].set_ylabel("energy per metre of thickness (kJ/m)")
-    handles = [Line2D([], [], label=f"{name} ({family})", color=colour, linestyle=_STYLES[family], linewidth=1.8)
-               for (family, name), colour in looks.items()]
-    put_legend(figure, handles, max(2, min(5, count + 1)))
+    for above, below, panel in zip(*rows, data.panels):
+        _draw_ledger_panel(above, below, panel, looks)
+    rows[0][0].set_ylabel("supplied, stored\n(kJ per metre of thickness)")
+    rows[1][0].set_ylabel("dissipated\n(kJ per metre of thickness)")
+    handles = [Line2D([], [], color=FLUID, linewidth=1.8, label=data.panels[0].supplied.name)]
+    handles += [Line2D([], [], label=f"{name} ({family})", color=colour, linestyle="--" if family == "stored" else "-",
+                       linewidth=1.8) for (family, name), colour in looks.items()]
+    handles.append(Line2D([], [], color=FLAG, linestyle=":", linewidth=1.8, label=data.panels[0].unexplained.name))
+    put_legend(figure, handles, max(2, min(4, count + 1)))
     return figure
 
 
 def _looks(data: LedgerFigure) -> dict[tuple[str, str], str]:
-    """A colour for every term of every panel, by its family."""
+    """A colour for every stored and dissipated term of every panel."""
     looks: dict[tuple[str, str], str] = {}
-    for family, colours in _FAMILIES.items():
-        names = dict.fromkeys(term.name for panel in data.panels for term in panel.terms if term.family == family)
-        for index, name in enumerate(names):
+    for family, colours in _COLOURS.items():
+        terms = [term for panel in data.panels for term in (*panel.stored, *panel.dissipated) if term.family == family]
+        for index, name in enumerate(dict.fromkeys(term.name for term in terms)):
             looks[(family, name)] = colours[index % len(colours)]
     return looks
 
 
-def _draw_ledger_panel(axes: Axes, panel: LedgerPanel, looks: dict[tuple[str, str], str]) -> None:
+def _draw_ledger_panel(above: Axes, below: Axes, panel: LedgerPanel, looks: dict[tuple[str, str], str]) -> None:
     """One run's energies."""
-    axes.grid(True)
-    for term in panel.terms:
-        axes.plot(term.inlet_MPa, term.energy_kJ, color=looks[(term.family, term.name)],
-                  linestyle=_STYLES[term.family], linewidth=1.8)
-    axes.set_title(panel.heading)
-    axes.set_xlabel("inlet pressure (MPa)")
+    above.plot(panel.supplied.inlet_MPa, panel.supplied.energy_kJ, color=FLUID, linewidth=1.8)
+    for term in panel.stored:
+        above.plot(term.inlet_MPa, term.energy_kJ, color=looks[("stored", term.name)], linestyle="--", linewidth=1.8)
+    for term in panel.dissipated:
+        below.plot(term.inlet_MPa, term.energy_kJ, color=looks[("dissipated", term.name)], linewidth=1.8)
+    below.plot(panel.unexplained.inlet_MPa, panel.unexplained.energy_kJ, color=FLAG, linestyle=":", linewidth=1.8)
+    above.set_title(panel.heading)
+    below.set_xlabel("inlet pressure (MPa)")
+    for axes in (above, below):
+        axes.grid(True)
 
 
 def draw_variants(data: VariantFigure) -> Figure:

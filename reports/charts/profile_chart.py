@@ -69,7 +69,7 @@ def _draw_path_panel(axes: Axes, panel: PathPanel) -> None:
     axes.set_xlabel("x (m)" + (f"   [{panel.aside}]" if panel.aside else ""))
     axes.set_ylabel("height above the symmetry line (m)")
     corner = "lower right" if panel.lean > 0 else "lower left"
-    axes.legend(title="shift of the tip to the soft side, largest turn (◆)", loc=corner, title_fontsize=8.5, frameon=True,
-                facecolor="white", edgecolor="none", framealpha=0.85)
+    axes.legend(title="shift of the tip to the soft side, largest turn (◆)", loc=corner, title_fontsize=8.5,
+                frameon=True, facecolor="white", edgecolor="none", framealpha=0.85)
     inset = axes.inset_axes((0.02 if panel.lean > 0 else 0.72, 0.70, 0.27, 0.29))
     draw_layout(inset, panel.layout, small=True)

@@ -174,6 +174,11 @@ def _write_fields(folder: Path, inlet: np.ndarray, height: np.ndarray, plan: Pla
             group["slip_m"] = 0.0 * points
             group["pressure_Pa"] = inlet[row] * (1.0 - 0.5 * points / points[-1])
             group["permeability_m2"] = np.maximum(group["opening_m"][()], 1e-4) ** 2 / 12.0
+            if plan.interfaces[0] != "perfect":
+                along = np.arange(0.5, 80.0)
+                interface = store.create_group(f"interfaces/{index:05d}/0")
+                interface["x_m"], interface["y_m"] = along, np.full_like(along, 10.0)
+                interface["split"] = (np.abs(along - 40.0) < 6.0).astype(int)
             cloud = store.create_group(f"particles/{index:05d}")
             cloud["x_m"], cloud["y_m"], cloud["volume_m2"] = x_m, y_m, np.ones_like(x_m)
             near = np.exp(-np.hypot(x_m - 40.0, y_m - height[row]) / 5.0)

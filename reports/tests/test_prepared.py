@@ -65,7 +65,7 @@ def test_like_outcomes_are_told_together(tmp_path: Path) -> None:
     for plan in (Plan("perfect"), Plan("friction", ("friction",)), Plan("soft", ("soft",), stop_at_m=10.0)):
         write_run(tmp_path, 1, plan)
     sentence = finding(outcomes_of(load_runs(tmp_path)))
-    assert sentence.startswith("Perfect and friction grew without arrest to 70\u00a0m by 2.9")
+    assert sentence.startswith("Perfect and friction grew to 70\u00a0m by 2.9")
     assert sentence.endswith("soft stopped at 10\u00a0m to the end at 4.00\u00a0MPa")
 
 
