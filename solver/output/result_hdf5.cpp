@@ -88,6 +88,7 @@ void write_interface(hdf5::Id group, const Scene& scene, const Surface& surface)
 
 void write_particles(hdf5::Id group, const Scene& scene, const State& state) {
   const Particles& particles = state.particles;
+  const std::vector<Elasticity> rocks = make_elasticities(scene);
   std::vector<std::size_t> order(particles.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](auto a, auto b) { return particles.id[a] < particles.id[b]; });
@@ -107,9 +108,9 @@ void write_particles(hdf5::Id group, const Scene& scene, const State& state) {
   put_array("v_x_m_s", "m/s", particles.v_x);
   put_array("v_y_m_s", "m/s", particles.v_y);
   put_array("volume_m2", "m^2", particles.V);
-  put("s_xx_Pa", "Pa", [&](std::size_t p) { return total_stress(scene, particles, p).xx; });
-  put("s_yy_Pa", "Pa", [&](std::size_t p) { return total_stress(scene, particles, p).yy; });
-  put("s_xy_Pa", "Pa", [&](std::size_t p) { return total_stress(scene, particles, p).xy; });
+  put("s_xx_Pa", "Pa", [&](std::size_t p) { return total_stress(rocks, particles, p).xx; });
+  put("s_yy_Pa", "Pa", [&](std::size_t p) { return total_stress(rocks, particles, p).yy; });
+  put("s_xy_Pa", "Pa", [&](std::size_t p) { return total_stress(rocks, particles, p).xy; });
 
   std::vector<std::int32_t> label(order.size());
   std::transform(order.begin(), order.end(), label.begin(), [&](auto p) { return particles.id[p]; });
@@ -171,15 +172,10 @@ std::string fracture_grid(std::size_t n, const std::string& group) {
 
 }  // namespace
 
-Stress total_stress(const Scene& scene, const Particles& particles, std::size_t p) {
-  const Rock& rock = scene.rocks[particles.rock[p]];
-  const double nu = rock.poisson_ratio;
-  const double mu = rock.youngs_modulus_Pa / (2.0 * (1.0 + nu));
-  const double lambda = 2.0 * mu * nu / (1.0 - 2.0 * nu);
-  const double trace = particles.g_xx[p] + particles.g_yy[p];
-  const Stress change{lambda * trace + 2.0 * mu * particles.g_xx[p], lambda * trace + 2.0 * mu * particles.g_yy[p],
-                      mu * (particles.g_xy[p] + particles.g_yx[p])};
-  return particles.in_situ[p] + change;
+Stress total_stress(const std::vector<Elasticity>& rocks, const Particles& particles, std::size_t p) {
+  const Elasticity& rock = rocks[particles.rock[p]];
+  return particles.in_situ[p] +
+         stress_of(rock, particles.g_xx[p], particles.g_xy[p], particles.g_yx[p], particles.g_yy[p]);
 }
 
 ResultFile::ResultFile(const std::filesystem::path& file) : file_(file) {

@@ -20,13 +20,14 @@
 
 #include "output/history.hpp"
 #include "scene/scene.hpp"
+#include "state/elasticity.hpp"
 #include "state/state.hpp"
 
 namespace strata {
 
 /// Total stress of particle p (Pa, tension positive): in-situ stress and, in plane strain, that of the displacement
-/// gradient; throws nothing.
-Stress total_stress(const Scene& scene, const Particles& particles, std::size_t p);
+/// gradient; rocks: in the order of the scene. Throws nothing.
+Stress total_stress(const std::vector<Elasticity>& rocks, const Particles& particles, std::size_t p);
 
 // The file is open only while something is written, so that others may read it during the run; an interrupted writing
 // is noticed when the file is opened again.
