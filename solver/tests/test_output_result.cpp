@@ -36,14 +36,15 @@ State later_state() {
 std::string dump(hdf5::Id parent, const std::string& path) {
   std::string text;
   for (const std::string& name : hdf5::names(parent)) {
-    text += path + "/" + name;
+    text += fmt::format("{}/{}", path, name);
     try {
       const auto values = hdf5::read(parent, name);
-      text += " [" + hdf5::text_attribute(parent, name, "unit") + "]";
+      text += fmt::format(" [{}]", hdf5::text_attribute(parent, name, "unit"));
       for (const double value : values) text += fmt::format(" {}", value);
       text += "\n";
     } catch (const std::runtime_error&) {  // a group
-      text += "\n" + dump(hdf5::group(parent, name).id(), path + "/" + name);
+      text += '\n';
+      text += dump(hdf5::group(parent, name).id(), fmt::format("{}/{}", path, name));
     }
   }
   return text;
@@ -132,7 +133,7 @@ TEST_CASE("particles are written in the order of their id, and their number may 
   const auto file = hdf5::open_file(folder.path / "result.h5", false);
   for (std::size_t k = 0; k < 2; ++k) {
     const Particles& p = states[k].particles;
-    const auto group = hdf5::group(file.id(), "particles/0000" + std::to_string(k));
+    const auto group = hdf5::group(file.id(), fmt::format("particles/{:05}", k));
     const hdf5::Id id = group.id();
     CHECK(hdf5::number_attribute(id, ".", "time_s") == states[k].time);
     const auto field = [&](const char* name, const char* unit) {
@@ -195,7 +196,7 @@ TEST_CASE("the .xdmf names data sets that exist, of the size they have") {
     ++items;
   }
   CHECK(items == 2 * (2 + 8 + 2 + 5));
-  CHECK(text.find("<Time Value=\"" + std::to_string(made_state().time).substr(0, 6)) != std::string::npos);
+  CHECK(text.find(fmt::format("<Time Value=\"{}\"/>", made_state().time)) != std::string::npos);
   CHECK(text.find("<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"25\"/>") != std::string::npos);
 }
 
