@@ -1,6 +1,7 @@
-// The catalogue's entries for flow in a channel of given opening.
+// The catalogue's entries for flow: a channel of given opening, and a fracture fed at a rate.
 #include "catalogue.hpp"
 #include "channel_flow.hpp"
+#include "kgd.hpp"
 
 namespace strata::reference {
 namespace {
@@ -61,13 +62,64 @@ Entry channel_ellipse() {
           }};
 }
 
+std::vector<Input> kgd_inputs() {
+  return joined(rock_inputs("", 10e9), {number_input("toughness_Pa_sqrt_m", "K_Ic", 1.45e6, 0, 1e12),
+                                        positive_input("viscosity_Pa_s", "mu", 0.1),
+                                        positive_input("rate_m2_s", "Q_0, both wings together", 1e-3),
+                                        positive_input("time_s", "since injection began", 10)});
+}
+
+Answer kgd_answer(const Inputs& inputs, const KgdState& state, double error, const char* basis) {
+  const double number = kgd_toughness_number(rock_of(inputs, "").E_prime(), inputs.number("rate_m2_s"),
+                                             inputs.number("viscosity_Pa_s"), inputs.number("toughness_Pa_sqrt_m"));
+  return {{{"half_length_m", state.half_length, "m"},
+           {"mouth_opening_m", state.mouth_opening, "m"},
+           {"inlet_pressure_Pa", state.inlet_pressure, "Pa"},
+           {"volume_m2", inputs.number("rate_m2_s") * inputs.number("time_s"), "m^2"},
+           {"toughness_number", number, "1"}},
+          error,
+          basis};
+}
+
+Entry kgd_toughness_entry() {
+  return {"kgd_toughness",
+          "plane-strain hydraulic fracture at a constant rate, toughness-dominated: length, opening, net pressure",
+          kgd_inputs(),
+          "Detournay 2004; Griffith's crack holding the injected fluid",
+          "no leak-off, incompressible fluid, infinite plane, toughness_number above about 4; net pressure",
+          [](const Inputs& in) {
+            const KgdState state = kgd_toughness(rock_of(in, "").E_prime(), in.number("rate_m2_s"), in.number("time_s"),
+                                                 in.number("toughness_Pa_sqrt_m"));
+            return kgd_answer(in, state, 1e-14, "closed form");
+          }};
+}
+
+Entry kgd_viscosity_entry() {
+  return {"kgd_viscosity",
+          "plane-strain hydraulic fracture at a constant rate, viscosity-dominated: length, opening, net pressure",
+          kgd_inputs(),
+          "self-similar equations of Adachi & Detournay 2002, own solution",
+          "no leak-off, incompressible fluid, infinite plane, no fluid lag, toughness_number below about 1; the mass "
+          "balance w_t + q_x = 0, not the study's law; net pressure",
+          [](const Inputs& in) {
+            const KgdViscosityShape shape;
+            const KgdState state = kgd_viscosity(shape, rock_of(in, "").E_prime(), in.number("rate_m2_s"),
+                                                 in.number("time_s"), in.number("viscosity_Pa_s"));
+            Answer answer = kgd_answer(in, state, 2e-4, "change of the shape's numbers from half the knots");
+            answer.values.push_back({"length_factor", shape.length_factor(), "1"});
+            answer.values.push_back({"opening_factor", shape.opening(0), "1"});
+            answer.values.push_back({"pressure_factor", shape.pressure(0), "1"});
+            return answer;
+          }};
+}
+
 }  // namespace
 
 std::vector<Entry> flow_entries() {
   return {ramp_entry("channel_no_flux", "ramped inlet, constant opening, closed far end: pressure", FarEnd::no_flux),
           ramp_entry("channel_zero_pressure", "ramped inlet, constant opening, zero pressure at the far end: pressure",
                      FarEnd::zero_pressure),
-          channel_ellipse()};
+          channel_ellipse(), kgd_toughness_entry(), kgd_viscosity_entry()};
 }
 
 }  // namespace strata::reference

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <exception>
 #include <memory>
+#include <sstream>
 #include <stdexcept>
-#include <string>
 
 namespace strata::reference {
 namespace {
@@ -43,6 +43,12 @@ double evaluate(double s, void* data) {
   }
 }
 
+[[noreturn]] void fail(const Integral& result) {
+  std::ostringstream text;
+  text << "quadrature missed its accuracy: error " << result.error << " in " << result.value;
+  throw std::runtime_error(text.str());
+}
+
 }  // namespace
 
 Integral integrate(const Function& f, double from, double to, const std::vector<double>& breaks, double relative) {
@@ -71,9 +77,7 @@ Integral integrate(const Function& f, double from, double to, const std::vector<
     const double middle = 0.5 * (points[i] + points[i + 1]);
     scale = std::max(scale, std::abs(f(middle)) * (points[i + 1] - points[i]));
   }
-  if (!std::isfinite(result.value) || result.error > 1000 * relative * scale)
-    throw std::runtime_error("quadrature missed its accuracy: error " + std::to_string(result.error) + " in " +
-                             std::to_string(result.value));
+  if (!std::isfinite(result.value) || result.error > 1000 * relative * scale) fail(result);
   if (from > to) result.value = -result.value;
   return result;
 }
