@@ -39,13 +39,14 @@ class HeightCurve:
 
 @dataclass(frozen=True)
 class HeightFigure:
-    """One experiment: layout and heights; zoom is the range of heights about the interfaces, m."""
+    """One experiment: layout and heights; zoom is the range of heights (m) and pressures about the interfaces."""
 
     title: str
     layout: Layout
     curves: tuple[HeightCurve, ...]
     zoom_m: tuple[float, float]
     pressure_MPa: tuple[float, float]
+    zoom_MPa: tuple[float, float]
     flagged: bool
 
 
@@ -132,9 +133,15 @@ def height_figure(runs: list[Run]) -> HeightFigure:
         layout=layout,
         curves=curves,
         zoom_m=(foot - layout.cell_m, top),
-        pressure_MPa=(first - 0.12 * (last - first) - 0.01, last + 0.04 * (last - first) + 0.01),
+        pressure_MPa=_span(first, last),
+        zoom_MPa=_span(first, max(float(curve.inlet_MPa[curve.height_m <= top].max()) for curve in curves)),
         flagged=any(mark.flag for curve in curves for mark in curve.marks),
     )
+
+
+def _span(first_MPa: float, last_MPa: float) -> tuple[float, float]:
+    """A range of pressures with some room before and after, MPa."""
+    return (first_MPa - 0.12 * (last_MPa - first_MPa) - 0.01, last_MPa + 0.04 * (last_MPa - first_MPa) + 0.01)
 
 
 def _first_growth(height_m: np.ndarray, cell_m: float) -> int:

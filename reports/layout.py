@@ -17,6 +17,7 @@ class Layer:
     from_m: float
     to_m: float
     label: str
+    line: str  # the same on one line
     stiffness: float  # Young's modulus over the stiffest rock's
 
 
@@ -95,7 +96,8 @@ def _layers(scene: dict[str, Any], span_m: float) -> tuple[Layer, ...]:
         to = min(span_m, at + float(entry.get("thickness_m", span_m - at)))
         modulus, toughness = float(rock["youngs_modulus_Pa"]), float(rock.get("toughness_Pa_sqrt_m", 0.0))
         label = f"{entry['rock']}\nE {number(modulus / 1e9, 2)} GPa\n$K_{{Ic}}$ {number(toughness / 1e6)} MPa√m"
-        layers.append(Layer(str(entry["rock"]), at, to, label, modulus / stiffest))
+        line = f"{entry['rock']}: {number(modulus / 1e9, 2)} GPa, {number(toughness / 1e6)} MPa√m"
+        layers.append(Layer(str(entry["rock"]), at, to, label, line, modulus / stiffest))
         at = to
     return tuple(layers)
 

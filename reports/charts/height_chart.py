@@ -26,11 +26,12 @@ def draw_heights(data: HeightFigure) -> Figure:
         interface_lines(axes, data.layout.heights_m)
         for curve in data.curves:
             _draw_curve(axes, curve, labelled=axes is right)
-        axes.set_xlim(*data.pressure_MPa)
         axes.set_xlabel("inlet pressure (MPa)")
     middle.set_ylim(0, data.layout.height_m)
     middle.set_ylabel("fracture height (m)")
     middle.set_title("Whole block")
+    middle.set_xlim(*data.pressure_MPa)
+    right.set_xlim(*data.zoom_MPa)
     right.set_ylim(*data.zoom_m)
     right.set_ylabel("fracture height (m)")
     right.set_title("About the interfaces")

@@ -51,8 +51,8 @@ def _draw_layer(axes: Axes, layout: Layout, layer: Layer, small: bool) -> None:
         axes.add_patch(Rectangle((layer.from_m, 0), size, layout.height_m, facecolor=colour, edgecolor="none"))
         at = (layer.from_m + 0.06 * layout.width_m, 0.5 * layout.height_m)
         thin = size < 0.2 * layout.width_m
-    text = layer.rock if small or thin else layer.label
-    axes.text(*at, text, fontsize=6.5 if small else 7.5, va="center", color=INK)
+    text = layer.rock if small else layer.line if thin else layer.label
+    axes.text(*at, text, fontsize=6.5 if small or thin else 7.5, va="center", color=INK)
 
 
 def _draw_edges(axes: Axes, layout: Layout) -> None:

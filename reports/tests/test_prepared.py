@@ -60,6 +60,17 @@ def test_an_event_of_its_own_word_is_believed(tmp_path: Path) -> None:
     assert not outcome_of(run).arrests[0].by_J
 
 
+def test_an_arrest_past_its_interface_says_how_far(tmp_path: Path) -> None:
+    """The rings of a tip 4 m past an interface still reach it: the solver flags it, and the sentence says where it is."""
+    run = load_run(write_run(tmp_path, 1, Plan("soft", ("soft",), stop_at_m=14.0, restart_Pa=3.0e6)))
+    assert outcome_of(run).arrests[0].interface is None
+    for event in run.summary["events"]:
+        event["at_interface"] = event["kind"] == "arrest"
+    arrest = outcome_of(run).arrests[0]
+    assert arrest.interface == "soft" and arrest.beyond_m == pytest.approx(4.0, abs=1.1)
+    assert "past the soft interface) until 3.0" in finding([outcome_of(run)])
+
+
 def test_like_outcomes_are_told_together(tmp_path: Path) -> None:
     """Two variants that run through share a clause; one that stops for good has its own."""
     for plan in (Plan("perfect"), Plan("friction", ("friction",)), Plan("soft", ("soft",), stop_at_m=10.0)):
