@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from reports.layout import layout_of
-from reports.runs import NotAvailable, Run
-from reports.words import listed, metres, mpa, plain
+from reports.runs import Arrays, NotAvailable, Run, interfaces_at, output_times
+from reports.words import listed, metres, mpa, number, plain
 
 
 @dataclass(frozen=True)
@@ -168,3 +168,31 @@ def finding(outcomes: Iterable[Outcome]) -> str:
         parts.append(", ".join([f"{told[0][0]} {shared} {told[0][1]}", *(f"{names} {own}" for names, own in told[1:])]))
     sentence = "; ".join(parts)
     return sentence[:1].upper() + sentence[1:] if sentence else "No run to tell of"
+
+
+def interface_states(run: Run) -> list[str]:
+    """For each interface that has a law, the length over which it acts at the end and its largest slip in the run."""
+    try:
+        count = output_times(run).size
+        outputs = [interfaces_at(run, index) for index in range(count)]
+    except NotAvailable:
+        return []
+    return [_state([places[k] for places in outputs]) for k in range(len(outputs[-1]) if outputs else 0)]
+
+
+def _state(outputs: list[Arrays]) -> str:
+    """One interface from its fields at all output times."""
+    last = outputs[-1]
+    length = float(np.hypot(np.ptp(last["x_m"]), np.ptp(last["y_m"])))
+    acting = float(np.mean(last["split"] > 0)) if "split" in last else 1.0
+    slip = max((float(np.abs(fields["slip_m"]).max()) for fields in outputs if "slip_m" in fields), default=0.0)
+    gap = max((float(fields["opening_m"].max()) for fields in outputs if "opening_m" in fields), default=0.0)
+    if acting == 0.0:
+        return "intact"
+    whole = "all" if acting == 1.0 else metres(acting * length)
+    return f"{whole}, slip {_millimetres(slip)}, opening {_millimetres(gap)}"
+
+
+def _millimetres(length_m: float) -> str:
+    """A small length in mm; what is under a hundredth is told as such."""
+    return f"{number(1e3 * length_m, 2)}\u00a0mm" if length_m >= 1e-5 else "under 0.01\u00a0mm"

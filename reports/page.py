@@ -14,7 +14,7 @@ from reports.curves import held
 from reports.figures import Made
 from reports.layout import settings_between
 from reports.ledger import closure_of, differences, spread_of, suspicions
-from reports.outcome import outcome_of
+from reports.outcome import interface_states, outcome_of
 from reports.runs import Run
 from reports.verdicts import ClaimRow, claim_rows, counts
 from reports.words import listed, metres, mpa, number, plain, share
@@ -135,6 +135,7 @@ def run_row(run: Run, runs: list[Run]) -> dict[str, Any]:
         "start": mpa(outcome.start_Pa) if outcome and outcome.start_Pa is not None else "–",
         "arrest": (held(run) or "–") if outcome else "–",
         "end": f"{metres(outcome.final_height_m)} at {mpa(outcome.final_inlet_Pa)}" if outcome else "–",
+        "interfaces": interface_states(run),
         "steps": _count(summary.get("steps")),
         "wall": _seconds(summary.get("wall_s")),
         "rate": _millions(summary.get("particle_steps_per_s")),

@@ -43,7 +43,7 @@ def links_of(page: Path) -> Links:
 def make(runs: Path, out: Path, experiments: Path | None = None) -> int:
     """Make a page; its exit status."""
     where = experiments or runs.parent / "no_scenes"
-    return main(["--runs", str(runs), "--out", str(out), "--experiments", str(where)])
+    return main(["--runs", str(runs), "--out", str(out), "--experiments", str(where), "--strict"])
 
 
 @pytest.fixture(scope="module")
