@@ -15,6 +15,9 @@ import numpy as np
 
 Array = np.ndarray
 
+# A tip moves with the rock by millimetres at most; farther than this it has grown, m.
+GROWTH_M = 0.05
+
 
 class LoadError(Exception):
     """A run's folder lacks a file, or one cannot be read; the message says which."""
@@ -111,7 +114,7 @@ class Run:
         """The fracture from its first vertex to its last tip, shape (n, 2), m."""
         points = [tuple(map(float, point)) for point in self.scene["fracture"]["path_m"]]
         for tip in zip(self.history["tip_x_m"], self.history["tip_y_m"]):
-            if math.dist(points[-1], tip) > 1e-9:
+            if math.dist(points[-1], tip) > GROWTH_M:
                 points.append((float(tip[0]), float(tip[1])))
         return np.array(points)
 

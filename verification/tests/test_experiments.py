@@ -2,13 +2,16 @@
 from __future__ import annotations
 
 import copy
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from verification.harness import smoke
 from verification.harness.compare import require
+from verification.harness.load import load
 from verification.tests.cases import completed
+from verification.tests.fake_run import climb, write_run
 
 
 @pytest.mark.slow
@@ -21,7 +24,7 @@ def test_as_expected(experiment: str, variant: str) -> None:
 
 
 EXPECTED: smoke.Values = {
-    "start_1_Pa": {"value": 2.36e6, "unit": "Pa", "tolerance": 4.0e4},
+    "start_Pa": {"value": 2.36e6, "unit": "Pa", "tolerance": 4.0e4},
     "final_height_m": {"value": 70.0, "unit": "m", "tolerance": 1.0},
 }
 
@@ -38,6 +41,17 @@ def test_the_regression_fails_zero_twice_and_flipped(name: str, factor: float) -
 
 def test_the_regression_fails_a_missing_and_an_unexpected_value() -> None:
     with pytest.raises(AssertionError, match="final_height_m"):
-        require(*smoke.compare_values({"start_1_Pa": EXPECTED["start_1_Pa"]}, EXPECTED))
-    with pytest.raises(AssertionError, match="arrest_1_Pa"):
-        require(*smoke.compare_values({**EXPECTED, "arrest_1_Pa": EXPECTED["start_1_Pa"]}, EXPECTED))
+        require(*smoke.compare_values({"start_Pa": EXPECTED["start_Pa"]}, EXPECTED))
+    with pytest.raises(AssertionError, match="arrest_at_10m_Pa"):
+        require(*smoke.compare_values({**EXPECTED, "arrest_at_10m_Pa": EXPECTED["start_Pa"]}, EXPECTED))
+
+
+def test_arrests_are_compared_by_height_and_only_short_ones_may_be_missing(tmp_path: Path) -> None:
+    long = smoke.measured_values(load(write_run(tmp_path / "exp" / "long", climb(plateaus={10.0: 0.2e6}))))
+    short = smoke.measured_values(load(write_run(tmp_path / "exp" / "short", climb(plateaus={10.0: 0.047e6}))))
+    none = smoke.measured_values(load(write_run(tmp_path / "exp" / "none", climb(plateaus={10.0: 0.043e6}))))
+    assert "restart_from_10m_Pa" in long and "restart_from_10m_Pa" in short and "restart_from_10m_Pa" not in none
+    require(*smoke.compare_values(short, none), *smoke.compare_values(none, short))
+    for found, expected in ((long, none), (none, long), (long, short)):
+        with pytest.raises(AssertionError, match="10m"):
+            require(*smoke.compare_values(found, expected))
