@@ -9,6 +9,7 @@
 #include "mechanics/explicit_step.hpp"
 #include "mechanics/interface_laws.hpp"
 #include "mechanics/surface_tractions.hpp"
+#include "mechanics/tip_ties.hpp"
 #include "mechanics/transfers.hpp"
 #include "state/rebuild.hpp"
 
@@ -31,6 +32,11 @@ void close_ledger(const Scene& scene, const GridEnergy& grid, double grid_after,
 
 }  // namespace
 
+void rebuild(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+  rebuild_copies(scene, state);
+  update_tip_ties(scene, rocks, state);
+}
+
 void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
   advance_pressure(scene, state);                                         // P(s) from the opening at the step's start
   particles_to_grid(scene, rocks, state);                                 // m_i, mom_i, f_i
@@ -51,7 +57,7 @@ void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& st
   measure_tips(scene, rocks, state);                                      // J, K_I, K_II with the same P
   changed = grow(scene, rocks, state) || changed;                         // a new point ahead of the tip
   watch_tips(scene, state);
-  if (changed || particles_left_bins(state)) rebuild_copies(scene, state);
+  if (changed || particles_left_bins(state)) rebuild(scene, rocks, state);
 }
 
 }  // namespace strata

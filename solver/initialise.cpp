@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "advance.hpp"
 #include "fracture/growth.hpp"
 #include "mechanics/equilibrium.hpp"
 #include "mechanics/explicit_step.hpp"
@@ -104,7 +105,7 @@ State initialise(const Scene& scene, const std::vector<Elasticity>& rocks) {
   if (state.has_fracture) refine_particles(state, 0, state.fracture().points.size());
   for (Surface& surface : state.surfaces) place_points(scene, state, surface);
   set_start_reactions(state);
-  rebuild_copies(scene, state);
+  rebuild(scene, rocks, state);
   return state;
 }
 

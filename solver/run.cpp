@@ -15,7 +15,6 @@
 #include "output/recorder.hpp"
 #include "output/summary.hpp"
 #include "scene/toml_reader.hpp"
-#include "state/rebuild.hpp"
 
 namespace strata {
 
@@ -92,7 +91,7 @@ Outcome march(const Scene& scene, const std::vector<Elasticity>& rocks, Recorder
       return outcome;
     }
     if (state.step % steps_between_rebuilds == 0 && state.step > good.step) {
-      rebuild_copies(scene, state);
+      rebuild(scene, rocks, state);
       good = state;
       const bool stop = asked_to_stop != 0;
       if (stop || seconds_since(last_checkpoint) > seconds_between_checkpoints) {
@@ -184,9 +183,10 @@ int resume_run(const std::filesystem::path& dir, const RunOptions& options) {
   set_up(options);
   try {
     Checkpoint checkpoint = load_checkpoint(folder.checkpoint(), *read.scene);
-    rebuild_copies(*read.scene, checkpoint.state);
+    const std::vector<Elasticity> rocks = make_elasticities(*read.scene);
+    rebuild(*read.scene, rocks, checkpoint.state);
     Recorder recorder(folder, checkpoint.mark);
-    return run_from(*read.scene, make_elasticities(*read.scene), folder, recorder, std::move(checkpoint.state), options);
+    return run_from(*read.scene, rocks, folder, recorder, std::move(checkpoint.state), options);
   } catch (const NumericalFailure&) {
     throw;
   } catch (const std::runtime_error& error) {

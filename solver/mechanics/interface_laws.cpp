@@ -96,8 +96,27 @@ double relax(const Place& place, double dt, std::vector<NodeMotion>& motion) {
   return change.norm();
 }
 
-std::vector<Place> split_places(const Scene& scene, State& state, const InterfaceLaw& faces) {
+// The law of a tip's spring, which holds in both directions.
+InterfaceLaw tie_law(const TipTie& tie) {
+  InterfaceLaw law;
+  law.kind = Kind::soft;
+  law.compression = InterfaceLaw::Compression::spring;
+  law.normal_stiffness_Pa_m = law.shear_stiffness_Pa_m = tie.stiffness;
+  return law;
+}
+
+SurfaceStencil tie_stencil(const TipTie& tie) {
+  SurfaceStencil stencil;  // other entries stay plus = minus = 0: no jump
+  stencil.plus[0] = tie.plus, stencil.minus[0] = tie.minus;
+  stencil.N[0] = 1.0;
+  return stencil;
+}
+
+std::vector<Place> split_places(const Scene& scene, State& state, const InterfaceLaw& faces, const std::vector<InterfaceLaw>& ties) {
   std::vector<Place> places;
+  for (std::size_t k = 0; k < state.ties.size(); ++k) {
+    places.push_back(make_place(state, tie_stencil(state.ties[k]), state.ties[k].s, ties[k]));
+  }
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
     Surface& surface = state.surfaces[k];
     const InterfaceLaw& law = surface.kind == Surface::Kind::fracture ? faces : scene.laws[surface.law];
@@ -168,7 +187,9 @@ void solve_reactions(const Scene& scene, State& state) {
   InterfaceLaw faces;  // the fracture's own faces: frictionless contact
   faces.kind = Kind::friction;
   faces.coefficient = 0.0;
-  std::vector<Place> places = split_places(scene, state, faces);
+  std::vector<InterfaceLaw> ties;
+  for (const TipTie& tie : state.ties) ties.push_back(tie_law(tie));
+  std::vector<Place> places = split_places(scene, state, faces, ties);
   for (const Place& place : places) push(place, place.s->reaction, state.motion);
   int sweeps = 0;
   for (double change = 1.0, largest = 0.0; sweeps < most_sweeps && !places.empty() && change > tolerance * std::max(largest, 1.0); ++sweeps) {
@@ -189,12 +210,14 @@ void solve_reactions(const Scene& scene, State& state) {
     const double stored = spring_energy_at(*place.law, after) - spring_energy_at(*place.law, s);
     state.ledger.friction -= s.A * s.reaction.dot(dw) + stored;
     if (place.law->kind != Kind::soft) s.slip += std::abs(dw.dot(tangent));
-    state.monitors.largest_penetration = std::max(state.monitors.largest_penetration, -after.opening());
+    const bool contact = place.law->kind != Kind::soft || place.law->compression == InterfaceLaw::Compression::contact;
+    if (contact) state.monitors.largest_penetration = std::max(state.monitors.largest_penetration, -after.opening());
   }
 }
 
 double spring_energy(const Scene& scene, const State& state) {
   double energy = 0.0;
+  for (const TipTie& tie : state.ties) energy += spring_energy_at(tie_law(tie), tie.s);
   for (const Surface& surface : state.surfaces) {
     if (surface.kind != Surface::Kind::interface) continue;
     for (const SurfacePoint& s : surface.points) energy += spring_energy_at(scene.laws[surface.law], s);

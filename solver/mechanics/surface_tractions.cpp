@@ -98,6 +98,10 @@ void follow_surfaces(State& state) {
     }
     update_geometry(surface);
   }
+  for (TipTie& tie : state.ties) {
+    const auto &plus = state.motion[static_cast<std::size_t>(tie.plus)], &minus = state.motion[static_cast<std::size_t>(tie.minus)];
+    tie.s.w += state.dt * (velocity(plus) - velocity(minus));
+  }
 }
 
 }  // namespace strata

@@ -337,17 +337,7 @@ void make_surface_stencils(State& state) {
 
 }  // namespace
 
-double support_in_cells(const Scene& scene) {
-  switch (scene.numerics.shape) {
-    case Numerics::Shape::bspline2:
-      return 1.5;
-    case Numerics::Shape::linear:
-      return 1.0;
-    case Numerics::Shape::gimp:
-      return 1.0 + 0.5 / std::sqrt(static_cast<double>(scene.numerics.particles_per_cell));
-  }
-  return 1.5;
-}
+double support_in_cells(const Scene& scene) { return scene.numerics.shape == Numerics::Shape::bspline2 ? 1.5 : 1.0; }
 
 SideWord sides_at(const State& state, const Vec2& x, int except) {
   SideWord word = 0;

@@ -6,7 +6,9 @@
 
 namespace strata {
 
-// How far a node's shape function reaches, in cells: 1.5 for the quadratic B-spline, 1 for linear, 1 + l_p/h for uGIMP.
+// How far a node tells the sides of a surface apart, in cells: as far as its shape function reaches, 1.5 for the quadratic
+// B-spline and 1 for hat functions. uGIMP particles reach half their size further, but there a copy would hold no more
+// than the round-off of a particle that just touches it.
 double support_in_cells(const Scene& scene);
 
 /// Sorts the particles into bins and rebuilds all derived members of `state` (see state.hpp); the order of particles, and

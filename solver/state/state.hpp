@@ -20,6 +20,14 @@ struct FluidLine {
   double inlet_Pa = 0.0;
 };
 
+// A spring between the two copies of a node less than a cell behind a tip (see mechanics/tip_ties.hpp).
+struct TipTie {
+  int node = 0;
+  int plus = -1, minus = -1;  // records
+  double stiffness = 0.0;     // Pa per metre of thickness
+  SurfacePoint s;             // its jump and reaction
+};
+
 struct Tip {
   bool at_back = true;         // at the last vertex of the fracture, or at the first
   bool growing = true;         // false once it may not grow any more (see stopped_by)
@@ -59,11 +67,12 @@ struct Ledger {
   double transfer = 0.0;          // dissipated between particles and grid
   double contact = 0.0;           // dissipated by impacts on contact
   double friction = 0.0;          // dissipated by sliding and by the failure of interfaces
+  double fracture = 0.0;          // released from the springs of tips that moved on (see TipTie)
   double largest = 0.0;           // largest of the stored or supplied energies so far, the scale for closure()
 
   double supplied() const { return fluid_work + in_situ_work + edge_work; }
   double stored() const { return kinetic + strain + interface_strain; }
-  double dissipated() const { return damping + transfer + contact + friction; }
+  double dissipated() const { return damping + transfer + contact + friction + fracture; }
   double closure() const { return largest > 0.0 ? (stored() + dissipated() - supplied()) / largest : 0.0; }
 };
 
@@ -86,6 +95,7 @@ struct State {
   bool has_fracture = false;
   FluidLine fluid;
   std::vector<Tip> tips;
+  std::vector<TipTie> ties;
   std::vector<Event> events;
   Ledger ledger;
   Monitors monitors;
