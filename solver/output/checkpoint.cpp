@@ -66,6 +66,12 @@ void fields(Archive& ar, Is<FluidLine> auto& fluid) {
 }
 
 template <class Archive>
+void fields(Archive& ar, Is<TipTie> auto& tie) {
+  auto& [node, plus, minus, stiffness, s] = tie;
+  ar(node, plus, minus, stiffness, s);
+}
+
+template <class Archive>
 void fields(Archive& ar, Is<Tip> auto& tip) {
   auto& [at_back, growing, stopped_by, K_I, K_II, J, J_spread, ring_m, kink, at_interface, last_growth_s,
          last_growth_Pa, J_at_growth, J_spread_at_growth, has_grown, arrested, reached] = tip;
@@ -82,9 +88,9 @@ void fields(Archive& ar, Is<Event> auto& event) {
 template <class Archive>
 void fields(Archive& ar, Is<Ledger> auto& ledger) {
   auto& [kinetic, strain, interface_strain, fluid_work, in_situ_work, edge_work, damping, transfer, contact, friction,
-         largest] = ledger;
+         fracture, largest] = ledger;
   ar(kinetic, strain, interface_strain, fluid_work, in_situ_work, edge_work, damping, transfer, contact, friction,
-     largest);
+     fracture, largest);
 }
 
 template <class Archive>
@@ -98,7 +104,7 @@ void fields(Archive& ar, Is<Monitors> auto& monitors) {
 template <class Archive>
 void fields(Archive& ar, Is<State> auto& state) {
   ar(state.time, state.step, state.dt, state.grid, state.particles, state.surfaces, state.has_fracture, state.fluid);
-  ar(state.tips, state.events, state.ledger, state.monitors);
+  ar(state.tips, state.ties, state.events, state.ledger, state.monitors);
 }
 
 template <class Archive>

@@ -36,6 +36,7 @@ constexpr HistoryColumn columns[] = {
     {"transfer_J", "J/m", &HistoryRow::transfer_J},
     {"contact_J", "J/m", &HistoryRow::contact_J},
     {"friction_J", "J/m", &HistoryRow::friction_J},
+    {"fracture_J", "J/m", &HistoryRow::fracture_J},
     {"energy_closure", "1", &HistoryRow::energy_closure},
     {"J_spread", "1", &HistoryRow::J_spread},
     {"kink_deg", "deg", &HistoryRow::kink_deg},
@@ -121,7 +122,8 @@ const Tip* leading_tip(const State& state) {
 double mouth_opening(const State& state) {
   if (!state.has_fracture) return 0.0;
   const Surface& fracture = state.fracture();
-  const auto on_symmetry_line = [&](const SurfacePoint& s) { return std::abs(s.x.y()) < 1e-9 * state.grid.h; };
+  // Vertices follow the rock: one that started on the line may be off it by round-off.
+  const auto on_symmetry_line = [&](const SurfacePoint& s) { return std::abs(s.x.y()) < 1e-6 * state.grid.h; };
   const auto& v = fracture.vertices;
   if (on_symmetry_line(v.front())) return v.front().opening();
   if (on_symmetry_line(v.back())) return v.back().opening();
@@ -167,6 +169,7 @@ HistoryRow history_row(const Scene&, const State& state) {
   row.transfer_J = ledger.transfer;
   row.contact_J = ledger.contact;
   row.friction_J = ledger.friction;
+  row.fracture_J = ledger.fracture;
   row.energy_closure = ledger.closure();
   return row;
 }

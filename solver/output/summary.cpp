@@ -26,6 +26,7 @@ Json energy_json(const Ledger& ledger) {
           {"transfer_J", ledger.transfer},
           {"contact_J", ledger.contact},
           {"friction_J", ledger.friction},
+          {"fracture_J", ledger.fracture},
           {"stored_J", ledger.stored()},
           {"supplied_J", ledger.supplied()},
           {"dissipated_J", ledger.dissipated()},

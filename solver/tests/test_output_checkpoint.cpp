@@ -60,6 +60,14 @@ void require_same(const Tip& a, const Tip& b) {
   CHECK(a.reached == b.reached);
 }
 
+void require_same(const TipTie& a, const TipTie& b) {
+  CHECK(a.node == b.node);
+  CHECK(a.plus == b.plus);
+  CHECK(a.minus == b.minus);
+  CHECK(a.stiffness == b.stiffness);
+  require_same(a.s, b.s);
+}
+
 void require_same(const Event& a, const Event& b) {
   CHECK(a.kind == b.kind);
   CHECK(a.time_s == b.time_s);
@@ -80,6 +88,7 @@ void require_same(const Ledger& a, const Ledger& b) {
   CHECK(a.transfer == b.transfer);
   CHECK(a.contact == b.contact);
   CHECK(a.friction == b.friction);
+  CHECK(a.fracture == b.fracture);
   CHECK(a.largest == b.largest);
 }
 
@@ -120,6 +129,8 @@ void require_same(const State& a, const State& b) {
   CHECK(a.fluid.inlet_Pa == b.fluid.inlet_Pa);
   REQUIRE(a.tips.size() == b.tips.size());
   for (std::size_t k = 0; k < a.tips.size(); ++k) require_same(a.tips[k], b.tips[k]);
+  REQUIRE(a.ties.size() == b.ties.size());
+  for (std::size_t k = 0; k < a.ties.size(); ++k) require_same(a.ties[k], b.ties[k]);
   REQUIRE(a.events.size() == b.events.size());
   for (std::size_t k = 0; k < a.events.size(); ++k) require_same(a.events[k], b.events[k]);
   require_same(a.ledger, b.ledger);

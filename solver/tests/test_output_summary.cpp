@@ -51,6 +51,7 @@ TEST_CASE("the summary holds the keys of the contract with the values of the sta
   CHECK(energy.at("transfer_J") == l.transfer);
   CHECK(energy.at("contact_J") == l.contact);
   CHECK(energy.at("friction_J") == l.friction);
+  CHECK(energy.at("fracture_J") == l.fracture);
   CHECK(energy.at("closure") == l.closure());
 
   const Tip& tip = state.tips[0];
