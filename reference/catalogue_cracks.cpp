@@ -51,7 +51,7 @@ Entry pressurised_crack() {
       "pressurised_crack",
       "pressurised crack in an infinite plane: K_I, J, opening, volume, energy; uniform, linear or any profile",
       joined(rock_inputs("", 10e9), crack_inputs()),
-      "Griffith 1921; Sneddon & Lowengrub 1969; Tada, Paris & Irwin 2000, 5.11",
+      "Griffith 1921; Sneddon & Lowengrub 1969; Tada, Paris & Irwin 2000",
       "plane strain, linear elastic, open everywhere; K_I at x = +a, K_I_minus at x = -a; critical pressures are for "
       "uniform pressure; volume of the whole crack 2a; w < 0 means that the faces would touch",
       solve_pressurised_crack};

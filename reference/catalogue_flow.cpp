@@ -40,7 +40,7 @@ Entry ramp_entry(const char* name, const char* description, FarEnd end) {
   return {name,
           description,
           channel_inputs("length_m", "opening_m", 1e-4, 2),
-          "Carslaw & Jaeger 1959, 3.5 and 12.5",
+          "Carslaw & Jaeger 1959, chapters 3 and 12",
           "constant opening, the study's linear law, rest at t = 0, any t >= 0",
           [end](const Inputs& inputs) {
             const Channel channel = channel_of(inputs, "length_m", "opening_m");

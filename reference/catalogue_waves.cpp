@@ -13,7 +13,7 @@ Entry wave_speeds_entry() {
   return {"wave_speeds",
           "speeds of dilatational, shear and Rayleigh waves",
           heavy_rock(),
-          "Achenbach 1973, 5.11",
+          "Achenbach 1973, Wave propagation in elastic solids, chapter 5",
           "isotropic, plane strain",
           [](const Inputs& inputs) {
             const WaveSpeeds c = wave_speeds(rock_of(inputs, ""), inputs.number("density_kg_m3"));
@@ -29,7 +29,7 @@ Entry freund_step_pressure_entry() {
           joined(heavy_rock(), {number_input("pressure_Pa", "net pressure from t = 0 on", 1e6, -1e12, 1e12),
                                 list_input("time_s", "since then; a list too", 1e-4),
                                 positive_input("half_length_m", "a, for the time at which the other tip is felt", 5)}),
-          "Freund 1990, Dynamic fracture mechanics, 2.5",
+          "Freund 1990, Dynamic fracture mechanics, chapter 2",
           "semi-infinite crack that does not grow: exact for a crack 2a until valid_until_s = 2a/c_P",
           [](const Inputs& inputs) {
             const Rock rock = rock_of(inputs, "");

@@ -2,10 +2,11 @@
 //
 // The study's flow law with the opening w(x) given:
 //   dP/dt = (M/mu) d/dx [ (w^2/12) dP/dx ],  kappa = M w^2/(12 mu), m^2/s.
-// Constant w: the heat equation on 0 < x < L, with no flux or zero pressure at x = L (Carslaw & Jaeger
-// 1959, 3.5, 12.5). Elliptic opening w = w0 sqrt(1 - (x/a)^2) on 0 < x < a: Legendre's equation (eigenfunctions P_l, l
-// odd, eigenvalues l(l+1)); nothing flows at the tip, where w = 0. Valid for any t >= 0; derived here, no source for
-// the last. Own error: about 1e-13 of r t (see each function).
+// Constant w: the heat equation on 0 < x < L, with no flux or zero pressure at x = L (Carslaw & Jaeger 1959, Conduction
+// of heat in solids, chapters 3 and 12).
+// Elliptic opening w = w0 sqrt(1 - (x/a)^2) on 0 < x < a: Legendre's equation (eigenfunctions P_l, l odd, eigenvalues
+// l(l+1)); nothing flows at the tip, where w = 0. Derived here.
+// Valid for any t >= 0. Own error: about 1e-13 of r t.
 #pragma once
 
 namespace strata::reference {

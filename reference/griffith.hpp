@@ -39,7 +39,7 @@ class PressurisedCrack {
   // Throws std::invalid_argument for a half-length or modulus that is not positive.
   PressurisedCrack(double half_length, double E_prime, Function p, std::vector<double> kinks = {});
 
-  // K(+-a) = (pi a)^(-1/2) int p(s) sqrt((a +- s)/(a -+ s)) ds, Pa sqrt(m) (Tada et al. 5.11).
+  // K(+-a) = (pi a)^(-1/2) int p(s) sqrt((a +- s)/(a -+ s)) ds, Pa sqrt(m) (Tada et al.).
   TipIntensities K_I() const;
   // w(x) = (4/(pi E')) int p(s) arccosh[(a^2 - x s)/(a |x - s|)] ds, m; x in m, zero outside the crack.
   double opening(double x) const;

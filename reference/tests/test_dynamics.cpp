@@ -41,7 +41,7 @@ TEST_CASE("Freund's step pressure") {
 
 TEST_CASE("Freund's constant from the Wiener-Hopf factor of the half-plane") {
   // K_I = 2 p sqrt(2 t/pi) sqrt(a)/(c S+), a = 1/c_P, b = 1/c_S, c = 1/c_R,
-  // ln S+ = -(1/pi) int_a^b atan[4 h^2 sqrt((h^2-a^2)(b^2-h^2))/(b^2-2h^2)^2] dh/h (Freund 1990, eq. 2.5.30).
+  // ln S+ = -(1/pi) int_a^b atan[4 h^2 sqrt((h^2-a^2)(b^2-h^2))/(b^2-2h^2)^2] dh/h (Freund 1990, chapter 2).
   for (double nu : {0.1, 0.2, 0.35}) {
     const WaveSpeeds s = wave_speeds({10e9, nu}, 2500);
     const double a = 1 / s.c_P, b = 1 / s.c_S, c = 1 / s.c_R;

@@ -57,10 +57,17 @@ TEST_CASE("a large block tends to the infinite plane") {
 TEST_CASE("a row of collinear cracks: F = sqrt((2h/(pi a)) tan(pi a/(2h)))") {
   // Held tops make the block one cell of the row (Westergaard 1939); the sides must be far: they matter as e^(-pi
   // W/2h).
-  for (double a : {10.0, 40.0, 60.0}) {
+  for (double a : {10.0, 60.0}) {
     Block block{480, 80, a, EdgeHold::traction, EdgeHold::fixed, 0.2};
     const double exact = std::sqrt(160 / (pi * a) * std::tan(pi * a / 160));
     CHECK(BlockCrack(block).F() == near(exact, 3e-5));
+  }
+}
+
+TEST_CASE("a crack across a long strip: Isida's values for a/b") {
+  for (const auto& [ratio, F] : {std::pair{0.2, 1.0246}, std::pair{0.4, 1.1094}, std::pair{0.5, 1.1867}}) {
+    const Block strip{480, 80, 80 * ratio, EdgeHold::traction, EdgeHold::traction, 0.2};
+    CHECK(BlockCrack(strip).F() == near(F, 1e-4));
   }
 }
 
@@ -99,11 +106,15 @@ TEST_CASE("edge conditions hold, and the stress solves equilibrium") {
 
 TEST_CASE("K from the volume: F^2 = (1/(4 pi a)) dV/da at E' = p = 1") {
   for (auto hold : {EdgeHold::traction, EdgeHold::fixed})
-    for (double a : {5.0, 20.0, 40.0}) {
-      const auto at = [&](double half) { return BlockCrack(Block{80, 80, half, hold, EdgeHold::traction, 0.2}); };
-      const double da = 1e-3 * a;
-      const double rate = (at(a + da).volume(1, 1) - at(a - da).volume(1, 1)) / (2 * da);
-      CHECK(at(a).F() == near(std::sqrt(rate / (4 * pi * a)), 6e-6));
+    for (double a : {5.0, 40.0}) {
+      const auto V = [&](double half) {
+        return BlockCrack(Block{80, 80, half, hold, EdgeHold::traction, 0.2}, 48).volume(1, 1);
+      };
+      // A wide difference of fourth order keeps the round-off of the least squares small.
+      const double da = 1e-2 * a;
+      const double rate = (8 * (V(a + da) - V(a - da)) - (V(a + 2 * da) - V(a - 2 * da))) / (12 * da);
+      const BlockCrack crack({80, 80, a, hold, EdgeHold::traction, 0.2}, 48);
+      CHECK(crack.F() == near(std::sqrt(rate / (4 * pi * a)), 3e-6));
     }
 }
 
