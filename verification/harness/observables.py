@@ -70,7 +70,8 @@ def ratio(a: Measured, b: Measured) -> Measured:
     """a / b for two numbers that are not negative."""
     note, flags = "; ".join(filter(None, (a.note, b.note))), a.flags + b.flags
     if b.high == 0.0:
-        return Measured(math.nan, math.nan, note or "the number to divide by is zero", flags)
+        beyond = math.inf if a.low > 0.0 else math.nan
+        return Measured(beyond, beyond, note or "the number to divide by is zero", flags)
     low = a.low / b.high if math.isfinite(b.high) else 0.0
     return Measured(low, a.high / b.low if b.low > 0.0 else math.inf, note, flags)
 
@@ -98,12 +99,18 @@ def interface_height(run: Run, number: int) -> float:
     return run.interfaces_m[number - 1]
 
 
-def arrests_near(run: Run, height_m: float, band_m: float) -> list[Measured]:
-    """Rise of the inlet pressure, Pa, over each arrest with the tip within a band (m) of a height."""
+def arrests_at(run: Run, height_m: float) -> list[Measured]:
+    """Rise of the inlet pressure, Pa, over each arrest at an interface at a height (m).
+
+    It counts from 1.5 increments below, where growth would meet the interface, to 4 cells above: an interface that gives way
+    attracts the tip and arrests it after the crossing, and up to 4 cells away K and J are not independent of it.
+    """
     events = [event for event in run.summary.events if event.kind in ("arrest", "restart")]
+    lowest = height_m - 1.5 * run.increment_m - SLACK_M
+    highest = height_m + 4.0 * float(run.scene["numerics"]["cell_m"]) + SLACK_M
     found = []
     for k, event in enumerate(events):
-        if event.kind != "arrest" or abs(event.tip_y_m - height_m) > band_m:
+        if event.kind != "arrest" or not lowest <= event.tip_y_m <= highest:
             continue
         after = next((later for later in events[k + 1 :] if later.kind == "restart"), None)
         if after is not None:
@@ -152,11 +159,11 @@ def final_height_m(run: Run, _: Run | None, __: Parameters) -> Measured:
 
 
 def plateau_Pa(run: Run, _: Run | None, parameters: Parameters) -> Measured:
-    """Rise of the inlet pressure between arrest and restart at an interface, summed over arrests within 1.5 increments."""
+    """Rise of the inlet pressure between arrest and restart, summed from 1.5 increments below an interface to 4 cells above."""
     height = interface_height(run, int(parameters["interface"]))
     if np.max(run.history["tip_y_m"]) < height - 1.5 * run.increment_m - SLACK_M:
         return nothing(f"{run.name} does not reach the interface at {height:g} m")
-    found = arrests_near(run, height, 1.5 * run.increment_m + SLACK_M)
+    found = arrests_at(run, height)
     if not found:
         return exactly(0.0)
     flags = ("J at interface",) if run.decides_by_J else ()
@@ -164,11 +171,12 @@ def plateau_Pa(run: Run, _: Run | None, parameters: Parameters) -> Measured:
     return Measured(sum(one.low for one in found), sum(one.high for one in found), note, flags)
 
 
-def arrests(run: Run, _: Run | None, __: Parameters) -> Measured:
-    """Number of arrests of a fracture that has grown."""
-    if not grew(run):
-        return nothing(f"{run.name} does not grow")
-    return exactly(sum(event.kind == "arrest" for event in run.summary.events))
+def arrests(run: Run, _: Run | None, parameters: Parameters) -> Measured:
+    """Number of arrests with the tip at or above a height (from_m) that the fracture has reached."""
+    lowest = float(parameters["from_m"])
+    if np.max(run.history["tip_y_m"]) < lowest - SLACK_M:
+        return nothing(f"{run.name} does not reach {lowest:g} m")
+    return exactly(sum(event.kind == "arrest" and event.tip_y_m >= lowest - SLACK_M for event in run.summary.events))
 
 
 def lateral_deflection_m(run: Run, _: Run | None, __: Parameters) -> Measured:

@@ -30,7 +30,7 @@ def test_start_and_its_shift(tmp_path: Path) -> None:
     assert (shift.low, shift.high) == (pytest.approx(1.64 * MPA), math.inf)
 
 
-@pytest.mark.parametrize("height", [9.0, 10.0, 11.0])
+@pytest.mark.parametrize("height", [9.0, 10.0, 11.0, 14.0])
 def test_plateau_at_the_interface(tmp_path: Path, height: float) -> None:
     run = make(tmp_path, "weak", climb(plateaus={height: 0.2 * MPA}))
     found = measure("plateau_Pa", {"interface": 1}, run, None)
@@ -38,7 +38,7 @@ def test_plateau_at_the_interface(tmp_path: Path, height: float) -> None:
     assert found.flags == ("J at interface",)
 
 
-@pytest.mark.parametrize("height, rise", [(7.0, 0.2), (30.0, 0.2), (10.0, 0.02)])
+@pytest.mark.parametrize("height, rise", [(8.0, 0.2), (15.0, 0.2), (10.0, 0.02)])
 def test_no_plateau_elsewhere_or_for_less_than_an_arrest(tmp_path: Path, height: float, rise: float) -> None:
     run = make(tmp_path, "weak", climb(plateaus={height: rise * MPA}))
     assert measure("plateau_Pa", {"interface": 1}, run, None).value == 0.0
@@ -63,7 +63,8 @@ def test_plateau_ratio(tmp_path: Path) -> None:
     b = make(tmp_path, "b", climb(plateaus={10.0: 0.095 * MPA}))
     flat = make(tmp_path, "flat", climb())
     assert measure("plateau_ratio", {"interface": 1}, a, b).value == pytest.approx(2.0)
-    assert measure("plateau_ratio", {"interface": 1}, a, flat).holds(0.5, 2.0) is None, "nothing to divide by"
+    assert measure("plateau_ratio", {"interface": 1}, a, flat).holds(0.5, 2.0) is False, "one without a plateau is not alike"
+    assert measure("plateau_ratio", {"interface": 1}, flat, flat).holds(0.5, 2.0) is None, "nothing to compare"
     assert measure("plateau_ratio", {"interface": 1}, flat, a).value == 0.0
 
 
@@ -91,9 +92,11 @@ def test_height_ratio_and_pressure_at_height(tmp_path: Path) -> None:
 
 
 def test_arrests_of_a_fracture_that_grows(tmp_path: Path) -> None:
-    assert measure("arrests", {}, make(tmp_path, "a", climb(), end_Pa=2.7 * MPA), None).value == 0
-    assert measure("arrests", {}, make(tmp_path, "b", climb(plateaus={20.0: 0.1 * MPA}), end_Pa=2.8 * MPA), None).value == 1
-    assert measure("arrests", {}, make(tmp_path, "never", []), None).holds(None, 0) is None
+    above = {"from_m": 8}
+    assert measure("arrests", above, make(tmp_path, "a", climb(), end_Pa=2.7 * MPA), None).value == 0
+    assert measure("arrests", above, make(tmp_path, "b", climb(plateaus={20.0: 0.1 * MPA}), end_Pa=2.8 * MPA), None).value == 1
+    assert measure("arrests", above, make(tmp_path, "c", climb(plateaus={7.0: 0.1 * MPA}), end_Pa=2.8 * MPA), None).value == 0
+    assert measure("arrests", above, make(tmp_path, "never", []), None).holds(None, 0) is None
 
 
 def bent(degrees: float, length_m: float = 30.0) -> list[Step]:
