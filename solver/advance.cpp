@@ -17,17 +17,22 @@ namespace strata {
 
 namespace {
 
-// Stored energies now, and what the transfer lost: the grid's gain in kinetic energy that the particles did not take up.
-void close_ledger(const Scene& scene, const GridEnergy& grid, double grid_after, const ParticleEnergy& particles, State& state) {
+// Stored energies now, and what the transfer lost: the grid's gain in kinetic energy that the particles did not take
+// up.
+void close_ledger(const Scene& scene, const GridEnergy& grid, double grid_after, const ParticleEnergy& particles,
+                  State& state) {
   Ledger& ledger = state.ledger;
   if (!std::isfinite(particles.after)) {
-    throw NumericalFailure("step " + std::to_string(state.step) + ": the kinetic energy is not finite; the motion has become unstable. Lower numerics.courant (now " +
-                           std::to_string(scene.numerics.courant) + ")");
+    throw NumericalFailure(
+        "step " + std::to_string(state.step) +
+        ": the kinetic energy is not finite; the motion has become unstable. Lower numerics.courant (now " +
+        std::to_string(scene.numerics.courant) + ")");
   }
   ledger.kinetic = particles.after;
   ledger.transfer += (grid_after - grid.mapped) - (particles.after - particles.before);
   ledger.interface_strain = spring_energy(scene, state);
-  ledger.largest = std::max({ledger.largest, std::abs(ledger.fluid_work), std::abs(ledger.in_situ_work), ledger.kinetic});
+  ledger.largest =
+      std::max({ledger.largest, std::abs(ledger.fluid_work), std::abs(ledger.in_situ_work), ledger.kinetic});
 }
 
 }  // namespace
@@ -38,24 +43,24 @@ void rebuild(const Scene& scene, const std::vector<Elasticity>& rocks, State& st
 }
 
 void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
-  advance_pressure(scene, state);                                         // P(s) from the opening at the step's start
-  particles_to_grid(scene, rocks, state);                                 // m_i, mom_i, f_i
-  update_stencil_weights(scene, state);                                   // N_i(x_s) of D
-  add_net_tractions(state);                                               // f_i += D^T (P n - t_in_situ) A
-  fold_to_masters(state, state.sums);                                     // symmetric and fixed edges
+  advance_pressure(scene, state);          // P(s) from the opening at the step's start
+  particles_to_grid(scene, rocks, state);  // m_i, mom_i, f_i
+  update_stencil_weights(scene, state);    // N_i(x_s) of D
+  add_net_tractions(state);                // f_i += D^T (P n - t_in_situ) A
+  fold_to_masters(state, state.sums);      // symmetric and fixed edges
   const GridEnergy grid = advance_momentum(scene.numerics.damping_1_s, state);  // v_i = mom_i/m_i + dt f_i/m_i
-  solve_reactions(scene, state);                                          // contact, friction, springs at the step's end
+  solve_reactions(scene, state);  // contact, friction, springs at the step's end
   const double grid_after = grid_energy(state);
   spread_to_tied(state);
-  const double keep = prepare_transfer(scene, state);                     // FLIP, PIC or XPIC
+  const double keep = prepare_transfer(scene, state);                      // FLIP, PIC or XPIC
   const ParticleEnergy particles = grid_to_particles(scene, state, keep);  // v_p, x_p, grad u_p (and with it stress)
-  follow_surfaces(state);                                                 // w += dt D v
+  follow_surfaces(state);                                                  // w += dt D v
   state.time += state.dt;
   ++state.step;
   close_ledger(scene, grid, grid_after, particles, state);
-  bool changed = fail_interfaces(scene, rocks, state);                    // bonded places that now let go
-  measure_tips(scene, rocks, state);                                      // J, K_I, K_II with the same P
-  changed = grow(scene, rocks, state) || changed;                         // a new point ahead of the tip
+  bool changed = fail_interfaces(scene, rocks, state);  // bonded places that now let go
+  measure_tips(scene, rocks, state);                    // J, K_I, K_II with the same P
+  changed = grow(scene, rocks, state) || changed;       // a new point ahead of the tip
   watch_tips(scene, state);
   if (changed || particles_left_bins(state)) rebuild(scene, rocks, state);
 }

@@ -15,10 +15,12 @@ namespace {
 
 Grid make_grid(const Scene& scene) {
   const double h = scene.numerics.cell_m;
-  return {static_cast<int>(std::lround(scene.domain.width_m / h)), static_cast<int>(std::lround(scene.domain.height_m / h)), h};
+  return {static_cast<int>(std::lround(scene.domain.width_m / h)),
+          static_cast<int>(std::lround(scene.domain.height_m / h)), h};
 }
 
-void append_particle(const Scene& scene, const std::vector<Elasticity>& rocks, const Vec2& x, double side_m, Particles& p) {
+void append_particle(const Scene& scene, const std::vector<Elasticity>& rocks, const Vec2& x, double side_m,
+                     Particles& p) {
   const std::size_t rock = rock_at(scene, x);
   for (auto* array : {&p.u_x, &p.u_y, &p.v_x, &p.v_y, &p.g_xx, &p.g_xy, &p.g_yx, &p.g_yy}) array->push_back(0.0);
   p.x.push_back(x.x()), p.y.push_back(x.y());
@@ -36,7 +38,8 @@ Particles make_particles(const Scene& scene, const std::vector<Elasticity>& rock
   const double side_m = grid.h / across;
   Particles particles;
   for (int j = 0; j < grid.ny * across; ++j) {
-    for (int i = 0; i < grid.nx * across; ++i) append_particle(scene, rocks, {(i + 0.5) * side_m, (j + 0.5) * side_m}, side_m, particles);
+    for (int i = 0; i < grid.nx * across; ++i)
+      append_particle(scene, rocks, {(i + 0.5) * side_m, (j + 0.5) * side_m}, side_m, particles);
   }
   return particles;
 }
@@ -52,9 +55,10 @@ void make_fracture(const Scene& scene, State& state) {
   state.fluid.inlet_Pa = scene.fluid.start_Pa;
   const bool from_symmetry = scene.domain.bottom == Edge::symmetry && path.front().y() == 0.0;
   // A fracture within the block is fed at its middle and has two tips.
-  const auto middle = std::min_element(fracture.vertices.begin(), fracture.vertices.end(), [&](const SurfacePoint& a, const SurfacePoint& b) {
-    return std::abs(a.arc - 0.5 * fracture.length()) < std::abs(b.arc - 0.5 * fracture.length());
-  });
+  const auto middle = std::min_element(
+      fracture.vertices.begin(), fracture.vertices.end(), [&](const SurfacePoint& a, const SurfacePoint& b) {
+        return std::abs(a.arc - 0.5 * fracture.length()) < std::abs(b.arc - 0.5 * fracture.length());
+      });
   state.fluid.inlet = from_symmetry ? 0 : static_cast<std::size_t>(middle - fracture.vertices.begin());
   if (!from_symmetry) state.tips.push_back(Tip{});
   for (Tip& tip : state.tips) tip.at_back = false;
@@ -67,7 +71,8 @@ void make_interfaces(const Scene& scene, State& state) {
     if (scene.laws[place.law].kind == InterfaceLaw::Kind::perfect) continue;
     const Vec2 from = along_x ? Vec2{0.0, place.at_m} : Vec2{place.at_m, 0.0};
     const Vec2 to = along_x ? Vec2{scene.domain.width_m, place.at_m} : Vec2{place.at_m, scene.domain.height_m};
-    Surface surface = make_surface(Surface::Kind::interface, static_cast<int>(state.surfaces.size()), {from, to}, surface_spacing(state.grid));
+    Surface surface = make_surface(Surface::Kind::interface, static_cast<int>(state.surfaces.size()), {from, to},
+                                   surface_spacing(state.grid));
     surface.law = place.law;
     for (SurfacePoint& s : surface.points) {
       s.column = state.grid.nearest(along_x ? s.x.x() : s.x.y());

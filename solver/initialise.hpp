@@ -6,8 +6,9 @@
 
 namespace strata {
 
-/// Particles on a lattice at rest in the in-situ state, the fracture filled at its start pressure, interfaces bonded (soft
-/// ones split), all derived members built. Throws NumericalFailure where the loaded in-situ state cannot be found.
+/// Particles on a lattice at rest in the in-situ state, the fracture filled at its start pressure, interfaces bonded
+/// (soft ones split), all derived members built. Throws NumericalFailure where the loaded in-situ state cannot be
+/// found.
 State initialise(const Scene& scene, const std::vector<Elasticity>& rocks);
 
 }  // namespace strata

@@ -29,13 +29,18 @@ constexpr double seconds_between_checkpoints = 60.0;
 
 // A signal handler has nothing else to write to.
 volatile std::sig_atomic_t asked_to_stop = 0;
-extern "C" void ask_to_stop(int /*signal*/) { asked_to_stop = 1; }
+extern "C" void ask_to_stop(int /*signal*/) {
+  asked_to_stop = 1;
+}
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
-// Length of the run (s) as far as the scene tells it: to the stop time or to the inlet's last pressure; 1 s without either.
+// Length of the run (s) as far as the scene tells it: to the stop time or to the inlet's last pressure; 1 s without
+// either.
 double expected_duration(const Scene& scene) {
   double duration = scene.stop.time_s.value_or(HUGE_VAL);
   if (scene.stop.inlet_Pa && scene.fluid.rate_Pa_s > 0.0) {
@@ -44,14 +49,17 @@ double expected_duration(const Scene& scene) {
   return std::isfinite(duration) ? duration : 1.0;
 }
 
-double output_interval(const Scene& scene) { return scene.output.fields_every_s.value_or(expected_duration(scene) / 50.0); }
+double output_interval(const Scene& scene) {
+  return scene.output.fields_every_s.value_or(expected_duration(scene) / 50.0);
+}
 
 // Why the run is over, or nothing.
 std::optional<std::string> reason_to_stop(const Scene& scene, const State& state) {
   const Stop& stop = scene.stop;
   const double slack = 0.5 * state.dt;
   if (stop.time_s && state.time >= *stop.time_s - slack) return fmt::format("time reached {} s", *stop.time_s);
-  if (stop.inlet_Pa && state.has_fracture && state.fluid.inlet_Pa >= *stop.inlet_Pa) return fmt::format("inlet pressure reached {} Pa", *stop.inlet_Pa);
+  if (stop.inlet_Pa && state.has_fracture && state.fluid.inlet_Pa >= *stop.inlet_Pa)
+    return fmt::format("inlet pressure reached {} Pa", *stop.inlet_Pa);
   const Tip* tip = leading_tip(state);
   if (stop.tip_y_m && tip != nullptr && tip_position(state, *tip).y() >= *stop.tip_y_m - 1e-3 * state.grid.h) {
     return fmt::format("tip reached y = {} m", *stop.tip_y_m);
@@ -68,13 +76,17 @@ struct Outcome {
 void add_stop_event(State& state) {
   const Tip* tip = leading_tip(state);
   const Vec2 at = tip != nullptr ? tip_position(state, *tip) : Vec2{Vec2::Zero()};
-  state.events.push_back({"stop", state.time, state.fluid.inlet_Pa, at.x(), at.y(), tip != nullptr && tip->at_interface});
+  state.events.push_back(
+      {"stop", state.time, state.fluid.inlet_Pa, at.x(), at.y(), tip != nullptr && tip->at_interface});
 }
 
-std::size_t fracture_points(const State& state) { return state.has_fracture ? state.fracture().points.size() : 0; }
+std::size_t fracture_points(const State& state) {
+  return state.has_fracture ? state.fracture().points.size() : 0;
+}
 
 // Steps from `state` to the end of the run; `good` keeps the last state that was known to be sound.
-Outcome march(const Scene& scene, const std::vector<Elasticity>& rocks, Recorder& recorder, Progress& progress, State& state, State& good) {
+Outcome march(const Scene& scene, const std::vector<Elasticity>& rocks, Recorder& recorder, Progress& progress,
+              State& state, State& good) {
   Outcome outcome;
   const double interval = output_interval(scene);
   Clock::time_point last_checkpoint = Clock::now();
@@ -114,7 +126,8 @@ Outcome march(const Scene& scene, const std::vector<Elasticity>& rocks, Recorder
   }
 }
 
-int run_from(const Scene& scene, const std::vector<Elasticity>& rocks, const RunFolder& folder, Recorder& recorder, State state, const RunOptions& options) {
+int run_from(const Scene& scene, const std::vector<Elasticity>& rocks, const RunFolder& folder, Recorder& recorder,
+             State state, const RunOptions& options) {
   const Clock::time_point start = Clock::now();
   State good = state;
   RunRecord record;
@@ -126,7 +139,8 @@ int run_from(const Scene& scene, const std::vector<Elasticity>& rocks, const Run
     outcome = march(scene, rocks, recorder, progress, state, good);
     record.status = outcome.exit == done ? "completed" : "failed";
   } catch (const NumericalFailure& failure) {
-    outcome = {numerics_failed, fmt::format("{} The last good state is that of step {}, in result.h5.", failure.what(), good.step), 0.0};
+    outcome = {numerics_failed,
+               fmt::format("{} The last good state is that of step {}, in result.h5.", failure.what(), good.step), 0.0};
     record.status = "failed";
     state = good;
     recorder.output(scene, state);

@@ -28,7 +28,8 @@ std::vector<double> lengths_at_vertices(const Channel& channel) {
 }
 
 // Solves a tridiagonal system in place by elimination without pivoting: diagonally dominant here.
-void solve_tridiagonal(std::vector<double>& lower, std::vector<double>& diagonal, std::vector<double>& upper, std::vector<double>& x) {
+void solve_tridiagonal(std::vector<double>& lower, std::vector<double>& diagonal, std::vector<double>& upper,
+                       std::vector<double>& x) {
   for (std::size_t k = 1; k < x.size(); ++k) {
     const double factor = lower[k] / diagonal[k - 1];
     diagonal[k] -= factor * upper[k - 1];
@@ -42,14 +43,17 @@ void require_stable(const Channel& channel, double mobility, double dt) {
   for (std::size_t k = 0; k < channel.length.size(); ++k) {
     const double limit = 0.5 * channel.length[k] * channel.length[k] / (mobility * channel.permeability[k]);
     if (dt <= limit) continue;
-    throw NumericalFailure("explicit flow is unstable: its step " + std::to_string(dt) + " s exceeds ds^2/(2 kappa) = " + std::to_string(limit) +
-                           " s. Use fluid.time_rule = \"trapezoid\" or \"backward-euler\", or a smaller courant number");
+    throw NumericalFailure(
+        "explicit flow is unstable: its step " + std::to_string(dt) +
+        " s exceeds ds^2/(2 kappa) = " + std::to_string(limit) +
+        " s. Use fluid.time_rule = \"trapezoid\" or \"backward-euler\", or a smaller courant number");
   }
 }
 
 }  // namespace
 
-void diffuse(const Channel& channel, double mobility, Fluid::TimeRule rule, double dt, double inlet_Pa, std::vector<double>& P) {
+void diffuse(const Channel& channel, double mobility, Fluid::TimeRule rule, double dt, double inlet_Pa,
+             std::vector<double>& P) {
   const double theta = rule == Fluid::TimeRule::trapezoid ? 0.5 : (rule == Fluid::TimeRule::backward_euler ? 1.0 : 0.0);
   if (theta == 0.0) require_stable(channel, mobility, dt);
   const std::vector<double> at = lengths_at_vertices(channel), inflow = net_inflow(channel, P);

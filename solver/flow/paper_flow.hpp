@@ -1,4 +1,5 @@
-// One-dimensional flow along the fracture by the study's law: dP/dt = (M/mu) d/ds(k dP/ds), k = w^2/12 (its eqs 3 and 4).
+// One-dimensional flow along the fracture by the study's law: dP/dt = (M/mu) d/ds(k dP/ds), k = w^2/12 (its eqs 3 and
+// 4).
 #pragma once
 
 #include <vector>
@@ -15,13 +16,14 @@ struct Channel {
   std::size_t inlet = 0;  // vertex index
 };
 
-/// One step dt (s) of P (Pa, one a vertex) with diffusivity mobility * k, mobility = M/mu (1/s), central differences and no
-/// flux through the ends; P[inlet] becomes inlet_Pa. Trapezoid is second order, backward Euler and explicit first.
-/// Throws NumericalFailure where the explicit rule is unstable at this step.
-void diffuse(const Channel& channel, double mobility, Fluid::TimeRule rule, double dt, double inlet_Pa, std::vector<double>& P);
+/// One step dt (s) of P (Pa, one a vertex) with diffusivity mobility * k, mobility = M/mu (1/s), central differences
+/// and no flux through the ends; P[inlet] becomes inlet_Pa. Trapezoid is second order, backward Euler and explicit
+/// first. Throws NumericalFailure where the explicit rule is unstable at this step.
+void diffuse(const Channel& channel, double mobility, Fluid::TimeRule rule, double dt, double inlet_Pa,
+             std::vector<double>& P);
 
-/// Pressure at the end of the step state.dt: the inlet's ramp, and along the fracture by the scene's law with the opening of
-/// the step's start, at least minimum_opening_m; passes vertex pressures on to the fracture's points.
+/// Pressure at the end of the step state.dt: the inlet's ramp, and along the fracture by the scene's law with the
+/// opening of the step's start, at least minimum_opening_m; passes vertex pressures on to the fracture's points.
 void advance_pressure(const Scene& scene, State& state);
 
 }  // namespace strata

@@ -14,13 +14,17 @@ constexpr double edge_cells = 3.0;      // a tip nearer than this to an edge has
 constexpr double arrest_rise_Pa = 5e4;  // the inlet's rise over which a tip that stays counts as arrested
 constexpr double sliver = 0.25;         // no growth step is shorter than this fraction of an increment
 
-double stacking_coordinate(const Scene& scene, const Vec2& x) { return scene.strata.along == Strata::Along::y ? x.y() : x.x(); }
-
-bool real_interface(const Scene& scene, std::size_t k) {
-  return scene.laws[scene.strata.interfaces[k].law].kind != InterfaceLaw::Kind::perfect || scene.strata.layers[k].rock != scene.strata.layers[k + 1].rock;
+double stacking_coordinate(const Scene& scene, const Vec2& x) {
+  return scene.strata.along == Strata::Along::y ? x.y() : x.x();
 }
 
-// Length of the next increment from `tip` along `direction`: ends on the first interface it would cross or nearly reach.
+bool real_interface(const Scene& scene, std::size_t k) {
+  return scene.laws[scene.strata.interfaces[k].law].kind != InterfaceLaw::Kind::perfect ||
+         scene.strata.layers[k].rock != scene.strata.layers[k + 1].rock;
+}
+
+// Length of the next increment from `tip` along `direction`: ends on the first interface it would cross or nearly
+// reach.
 double increment_to_interface(const Scene& scene, const Vec2& tip, const Vec2& direction) {
   const double da = scene.fracture->increment_m;
   double length = da;
@@ -40,7 +44,9 @@ bool near_edge(const Scene& scene, const Vec2& x, double h) {
   return x.x() < keep || x.x() > scene.domain.width_m - keep || x.y() > scene.domain.height_m - keep || x.y() < keep;
 }
 
-double rayleigh_wait(const Scene& scene, const Elasticity& rock) { return scene.fracture->increment_m / rock.c_R; }
+double rayleigh_wait(const Scene& scene, const Elasticity& rock) {
+  return scene.fracture->increment_m / rock.c_R;
+}
 
 void record(State& state, const char* kind, const Tip& tip, double time, double pressure) {
   const Vec2 at = tip_position(state, tip);
@@ -78,11 +84,13 @@ void move_tip(const Scene& scene, State& state, Tip& tip) {
   const Vec2 from = tip_position(state, tip);
   Vec2 direction = tip_direction(fracture, tip.at_back);
   if (scene.fracture->direction == Fracture::Direction::max_hoop) {
-    direction = Vec2{std::cos(tip.kink) * direction.x() - std::sin(tip.kink) * direction.y(), std::sin(tip.kink) * direction.x() + std::cos(tip.kink) * direction.y()};
+    direction = Vec2{std::cos(tip.kink) * direction.x() - std::sin(tip.kink) * direction.y(),
+                     std::sin(tip.kink) * direction.x() + std::cos(tip.kink) * direction.y()};
   }
   const double old_length = fracture.length();
   const std::size_t old_points = fracture.points.size();
-  extend(fracture, tip.at_back, from + increment_to_interface(scene, from, direction) * direction, surface_spacing(state.grid));
+  extend(fracture, tip.at_back, from + increment_to_interface(scene, from, direction) * direction,
+         surface_spacing(state.grid));
   const std::size_t pieces = fracture.points.size() - old_points;
   lengthen_fluid(scene, state, tip.at_back, pieces);
   update_particle_sides(state, tip, old_length);
@@ -123,7 +131,8 @@ void split_particle(Particles& p, std::size_t q) {
 
 // In-situ stress at a place: that of the particles around it, which is exact where it is uniform.
 Stress in_situ_at(const Scene& scene, const State& state, const Vec2& x) {
-  if (scene.in_situ.initialise == InSitu::Initialise::uniform) return {-scene.in_situ.horizontal_Pa, -scene.in_situ.vertical_Pa, 0.0};
+  if (scene.in_situ.initialise == InSitu::Initialise::uniform)
+    return {-scene.in_situ.horizontal_Pa, -scene.in_situ.vertical_Pa, 0.0};
   const Particles& p = state.particles;
   Stress sum;
   double weights = 0.0;
@@ -159,7 +168,9 @@ void refine_particles(State& state, std::size_t first, std::size_t last) {
   for (std::size_t q = 0; q < p.size(); ++q) {  // children may lie on the other side of the path ahead of the tip
     if (q >= before || p.V[q] < 1.01 * sixteenth) {
       const Vec2 x{p.x[q], p.y[q]};
-      if ((x - state.fracture().points[first].x).norm() > 8.0 * h && (x - state.fracture().points[last - 1].x).norm() > 8.0 * h) continue;
+      if ((x - state.fracture().points[first].x).norm() > 8.0 * h &&
+          (x - state.fracture().points[last - 1].x).norm() > 8.0 * h)
+        continue;
       const bool plus = side(state.fracture(), x, extension(state.grid));
       p.sides[q] = plus ? p.sides[q] | state.fracture().mask() : p.sides[q] & ~state.fracture().mask();
     }
@@ -180,7 +191,8 @@ bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state
   bool moved = false;
   for (Tip& tip : state.tips) {
     const Vec2 at = tip_position(state, tip);
-    const Elasticity& ahead = rocks[rock_at(scene, at + 1e-3 * state.grid.h * tip_direction(state.fracture(), tip.at_back))];
+    const Elasticity& ahead =
+        rocks[rock_at(scene, at + 1e-3 * state.grid.h * tip_direction(state.fracture(), tip.at_back))];
     if (!tip.growing || tip.K_I <= 0.0 || tip.J <= 0.0 || tip.J < ahead.J_c) continue;
     if (tip.last_growth_s >= 0.0 && state.time - tip.last_growth_s < rayleigh_wait(scene, ahead)) continue;
     if (near_edge(scene, at, state.grid.h) && tip.has_grown) {
@@ -205,9 +217,11 @@ bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state
 void watch_tips(const Scene& scene, State& state) {
   for (Tip& tip : state.tips) {
     for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
-      const double distance = std::abs(stacking_coordinate(scene, tip_position(state, tip)) - scene.strata.interfaces[k].at_m);
+      const double distance =
+          std::abs(stacking_coordinate(scene, tip_position(state, tip)) - scene.strata.interfaces[k].at_m);
       const int id = static_cast<int>(k);
-      if (distance > 0.5 * state.grid.h || std::find(tip.reached.begin(), tip.reached.end(), id) != tip.reached.end()) continue;
+      if (distance > 0.5 * state.grid.h || std::find(tip.reached.begin(), tip.reached.end(), id) != tip.reached.end())
+        continue;
       tip.reached.push_back(id);
       record(state, "reach_interface", tip, state.time, state.fluid.inlet_Pa);
     }

@@ -16,7 +16,7 @@ constexpr double widest_ring_cells = 4.0;
 constexpr double narrowest_ring_cells = 2.5;  // below, the tip's own error fills the ring; such a K is flagged
 constexpr double trusted_cells = 4.0;         // distance to an interface below which K is flagged
 constexpr std::array<double, 3> ring_fractions{0.8, 0.9, 1.0};
-constexpr double inner_fraction = 0.6;        // q is 1 inside this fraction of a ring's radius: 0.3 costs 1 % in J
+constexpr double inner_fraction = 0.6;  // q is 1 inside this fraction of a ring's radius: 0.3 costs 1 % in J
 
 struct Frame {
   Vec2 tip, e_1, e_2;
@@ -24,9 +24,9 @@ struct Frame {
   Vec2 local(const Vec2& a) const { return {a.dot(e_1), a.dot(e_2)}; }
 };
 
-// The weight q: 1 at nodes inside the inner radius, 0 beyond the outer one, a cosine between, and between nodes the same
-// B-splines as the fields. An analytic q on the same particles scatters J by 3 % from ring to ring, since their stress is
-// in equilibrium in the sense of the grid's functions only.
+// The weight q: 1 at nodes inside the inner radius, 0 beyond the outer one, a cosine between, and between nodes the
+// same B-splines as the fields. An analytic q on the same particles scatters J by 3 % from ring to ring, since their
+// stress is in equilibrium in the sense of the grid's functions only.
 struct Ring {
   double inner = 0.0, outer = 0.0;
   double at_node(double r) const {
@@ -64,22 +64,23 @@ struct Sums {
 // Fields at a particle in the tip's frame.
 struct LocalFields {
   double r = 0.0, theta = 0.0;
-  Vec2 at;               // position relative to the tip
-  double H[2][2] = {};   // displacement gradient, H[i][j] = u_i,j
-  Stress s;              // change of stress
-  Vec2 v, a, v_1;        // velocity, acceleration that forces gave, derivative of velocity along the fracture
+  Vec2 at;              // position relative to the tip
+  double H[2][2] = {};  // displacement gradient, H[i][j] = u_i,j
+  Stress s;             // change of stress
+  Vec2 v, a, v_1;       // velocity, acceleration that forces gave, derivative of velocity along the fracture
   double V = 0.0, m = 0.0;
 };
 
 struct AuxiliaryFields {
-  Stress s;   // stress for unit K
-  Vec2 u_1;   // derivative of displacement along the fracture
+  Stress s;  // stress for unit K
+  Vec2 u_1;  // derivative of displacement along the fracture
 };
 
 // Williams' field of mode I (mode = 0) or II (1) for unit K, plane strain.
 AuxiliaryFields williams(const Elasticity& rock, int mode, double r, double theta) {
   const double kappa = 3.0 - 4.0 * rock.nu;
-  const double c = std::cos(0.5 * theta), s = std::sin(0.5 * theta), c3 = std::cos(1.5 * theta), s3 = std::sin(1.5 * theta);
+  const double c = std::cos(0.5 * theta), s = std::sin(0.5 * theta), c3 = std::cos(1.5 * theta),
+               s3 = std::sin(1.5 * theta);
   const double root = 1.0 / std::sqrt(2.0 * pi * r), cos_t = std::cos(theta), sin_t = std::sin(theta);
   double g_1 = 0.0, g_2 = 0.0, d_1 = 0.0, d_2 = 0.0;  // angular parts of u and their derivatives
   AuxiliaryFields aux;
@@ -97,7 +98,8 @@ AuxiliaryFields williams(const Elasticity& rock, int mode, double r, double thet
   return aux;
 }
 
-void add_domain(const Elasticity& rock, const LocalFields& p, const std::vector<Weight>& weights, std::vector<Sums>& sums) {
+void add_domain(const Elasticity& rock, const LocalFields& p, const std::vector<Weight>& weights,
+                std::vector<Sums>& sums) {
   const Vec2 u_1{p.H[0][0], p.H[1][0]};
   const double e_12 = 0.5 * (p.H[0][1] + p.H[1][0]);
   const double W = 0.5 * (p.s.xx * p.H[0][0] + p.s.yy * p.H[1][1] + 2.0 * p.s.xy * e_12);
@@ -112,13 +114,15 @@ void add_domain(const Elasticity& rock, const LocalFields& p, const std::vector<
     for (std::size_t mode = 0; mode < 2; ++mode) {
       const AuxiliaryFields& A = aux[mode];
       const double mixed = A.s.xx * p.H[0][0] + A.s.yy * p.H[1][1] + 2.0 * A.s.xy * e_12;
-      const Vec2 I{p.s.on({1.0, 0.0}).dot(A.u_1) + A.s.on({1.0, 0.0}).dot(u_1) - mixed, p.s.on({0.0, 1.0}).dot(A.u_1) + A.s.on({0.0, 1.0}).dot(u_1)};
+      const Vec2 I{p.s.on({1.0, 0.0}).dot(A.u_1) + A.s.on({1.0, 0.0}).dot(u_1) - mixed,
+                   p.s.on({0.0, 1.0}).dot(A.u_1) + A.s.on({0.0, 1.0}).dot(u_1)};
       sums[k].I[mode] += p.V * (I.dot(grad_q) + rock.rho * p.a.dot(A.u_1) * q);
     }
   }
 }
 
-LocalFields fields_at(const State& state, const Elasticity& rock, const Frame& frame, SideWord fracture_bit, const Bin& bin, std::size_t q) {
+LocalFields fields_at(const State& state, const Elasticity& rock, const Frame& frame, SideWord fracture_bit,
+                      const Bin& bin, std::size_t q) {
   const Particles& p = state.particles;
   LocalFields f;
   f.at = frame.local(Vec2{p.x[q], p.y[q]} - frame.tip);
@@ -140,8 +144,10 @@ LocalFields fields_at(const State& state, const Elasticity& rock, const Frame& f
   f.s = stress_of(rock, f.H[0][0], f.H[0][1], f.H[1][0], f.H[1][1]);
   f.V = p.V[q], f.m = p.m[q];
   f.v = frame.local({p.v_x[q], p.v_y[q]});
-  // Acceleration and velocity gradient are interpolated with B-splines whatever the scene's shape: they only enter here.
-  const Weights X = QuadraticBspline::at(p.x[q] / state.grid.h - bin.i, 0.0), Y = QuadraticBspline::at(p.y[q] / state.grid.h - bin.j, 0.0);
+  // Acceleration and velocity gradient are interpolated with B-splines whatever the scene's shape: they only enter
+  // here.
+  const Weights X = QuadraticBspline::at(p.x[q] / state.grid.h - bin.i, 0.0),
+                Y = QuadraticBspline::at(p.y[q] / state.grid.h - bin.j, 0.0);
   Vec2 a = Vec2::Zero(), v_1 = Vec2::Zero();
   for (std::size_t n = 0; n < 9; ++n) {
     const NodeMotion& node = state.motion[static_cast<std::size_t>(bin.record[n])];
@@ -155,8 +161,10 @@ LocalFields fields_at(const State& state, const Elasticity& rock, const Frame& f
   return f;
 }
 
-// Face terms: w . d(t q)/ds of J, and of the interaction integral + t 4/E' q/sqrt(2 pi r) dr, exact for t constant on a piece.
-void add_faces(const Elasticity& rock, const Grid& grid, const Surface& fracture, const Frame& frame, bool at_back, const std::vector<Ring>& rings, std::vector<Sums>& sums) {
+// Face terms: w . d(t q)/ds of J, and of the interaction integral + t 4/E' q/sqrt(2 pi r) dr, exact for t constant on a
+// piece.
+void add_faces(const Elasticity& rock, const Grid& grid, const Surface& fracture, const Frame& frame, bool at_back,
+               const std::vector<Ring>& rings, std::vector<Sums>& sums) {
   const auto& points = fracture.points;
   const auto n = static_cast<std::ptrdiff_t>(points.size());
   const auto net = [&](std::ptrdiff_t k) -> Vec2 {
@@ -168,11 +176,14 @@ void add_faces(const Elasticity& rock, const Grid& grid, const Surface& fracture
     const double from_tip = at_back ? fracture.length() - s.arc : s.arc;
     if (from_tip > 1.5 * rings.back().outer + 2.0 * grid.h) continue;
     const Vec2 w = frame.sign * frame.local(s.w), t = net(k);
-    const std::ptrdiff_t ahead = std::clamp<std::ptrdiff_t>(k + (at_back ? 1 : -1), 0, n - 1), behind = std::clamp<std::ptrdiff_t>(k + (at_back ? -1 : 1), 0, n - 1);
-    const double span = std::abs(points[static_cast<std::size_t>(ahead)].arc - points[static_cast<std::size_t>(behind)].arc);
+    const std::ptrdiff_t ahead = std::clamp<std::ptrdiff_t>(k + (at_back ? 1 : -1), 0, n - 1),
+                         behind = std::clamp<std::ptrdiff_t>(k + (at_back ? -1 : 1), 0, n - 1);
+    const double span =
+        std::abs(points[static_cast<std::size_t>(ahead)].arc - points[static_cast<std::size_t>(behind)].arc);
     const Vec2 dt_ds = span > 0.0 ? Vec2{(net(ahead) - net(behind)) / span} : Vec2{Vec2::Zero()};
     const double near = from_tip - 0.5 * s.A, far = from_tip + 0.5 * s.A;
-    const double root = 4.0 / rock.E_prime * 2.0 * (std::sqrt(far) - std::sqrt(std::max(near, 0.0))) / std::sqrt(2.0 * pi);
+    const double root =
+        4.0 / rock.E_prime * 2.0 * (std::sqrt(far) - std::sqrt(std::max(near, 0.0))) / std::sqrt(2.0 * pi);
     const Vec2 forward = frame.local(at_back ? Vec2{s.n.y(), -s.n.x()} : Vec2{-s.n.y(), s.n.x()});
     for (std::size_t j = 0; j < rings.size(); ++j) {
       const Weight weight = weight_at(grid, frame, rings[j], s.x);
@@ -188,7 +199,9 @@ void add_faces(const Elasticity& rock, const Grid& grid, const Surface& fracture
 double ring_radius(const Scene& scene, const State& state, const Tip& tip, const Vec2& at, bool& near_interface) {
   const double h = state.grid.h;
   double radius = widest_ring_cells * h;
-  const auto keep_off = [&](double distance) { radius = std::min(radius, distance - h); };  // a node's function reaches on
+  const auto keep_off = [&](double distance) {
+    radius = std::min(radius, distance - h);
+  };  // a node's function reaches on
   keep_off(at.x()), keep_off(scene.domain.width_m - at.x());
   keep_off(at.y()), keep_off(scene.domain.height_m - at.y());
   for (const Tip& other : state.tips) {
@@ -197,7 +210,8 @@ double ring_radius(const Scene& scene, const State& state, const Tip& tip, const
   near_interface = false;
   for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
     const InterfacePlace& place = scene.strata.interfaces[k];
-    const bool nothing_there = scene.laws[place.law].kind == InterfaceLaw::Kind::perfect && scene.strata.layers[k].rock == scene.strata.layers[k + 1].rock;
+    const bool nothing_there = scene.laws[place.law].kind == InterfaceLaw::Kind::perfect &&
+                               scene.strata.layers[k].rock == scene.strata.layers[k + 1].rock;
     if (nothing_there) continue;
     const double distance = std::abs((scene.strata.along == Strata::Along::y ? at.y() : at.x()) - place.at_m);
     near_interface = near_interface || distance < (trusted_cells - 1e-3) * h;
@@ -206,7 +220,8 @@ double ring_radius(const Scene& scene, const State& state, const Tip& tip, const
   return std::max(radius, narrowest_ring_cells * h);
 }
 
-void finish_tip(const Scene& scene, const Elasticity& rock, const State& state, const std::vector<Sums>& sums, Tip& tip) {
+void finish_tip(const Scene& scene, const Elasticity& rock, const State& state, const std::vector<Sums>& sums,
+                Tip& tip) {
   double mean = 0.0, K_I = 0.0, K_II = 0.0, least = sums[0].J, most = sums[0].J;
   for (const Sums& sum : sums) {
     mean += sum.J / static_cast<double>(sums.size());
@@ -215,8 +230,10 @@ void finish_tip(const Scene& scene, const Elasticity& rock, const State& state, 
     least = std::min(least, sum.J), most = std::max(most, sum.J);
   }
   if (!std::isfinite(mean) || !std::isfinite(K_I) || !std::isfinite(K_II)) {
-    throw NumericalFailure("step " + std::to_string(state.step) + ": J or K is not finite at a tip; the motion has become unstable. Lower numerics.courant (now " +
-                           std::to_string(scene.numerics.courant) + ")");
+    throw NumericalFailure(
+        "step " + std::to_string(state.step) +
+        ": J or K is not finite at a tip; the motion has become unstable. Lower numerics.courant (now " +
+        std::to_string(scene.numerics.courant) + ")");
   }
   tip.J = mean;
   tip.J_spread = mean != 0.0 ? (most - least) / std::abs(mean) : 0.0;
@@ -240,12 +257,15 @@ void measure_tips(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
     frame.sign = tip.at_back ? 1.0 : -1.0;
     tip.ring_m = ring_radius(scene, state, tip, frame.tip, tip.at_interface);
     std::vector<Ring> rings;
-    for (const double fraction : ring_fractions) rings.push_back({inner_fraction * fraction * tip.ring_m, fraction * tip.ring_m});
+    for (const double fraction : ring_fractions)
+      rings.push_back({inner_fraction * fraction * tip.ring_m, fraction * tip.ring_m});
     std::vector<Sums> sums(rings.size());
     const Elasticity& rock = rocks[rock_at(scene, frame.tip + 1e-3 * state.grid.h * frame.e_1)];
     const double reach = tip.ring_m / state.grid.h + 2.0;
     for (const Bin& bin : state.bins) {
-      if (std::abs(bin.i - frame.tip.x() / state.grid.h) > reach || std::abs(bin.j - frame.tip.y() / state.grid.h) > reach) continue;
+      if (std::abs(bin.i - frame.tip.x() / state.grid.h) > reach ||
+          std::abs(bin.j - frame.tip.y() / state.grid.h) > reach)
+        continue;
       for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
         const Vec2 x{state.particles.x[q], state.particles.y[q]};
         std::vector<Weight> weights;

@@ -70,7 +70,8 @@ SparseMatrix assemble(const Scene& scene, const std::vector<Elasticity>& rocks, 
       if (row.index < 0) continue;
       for (int c = 0; c < 18; ++c) {
         const Unknown column = unknown_of(state, bin.record[static_cast<std::size_t>(c / 2)], c % 2);
-        if (column.index >= 0 && K(r, c) != 0.0) entries.emplace_back(row.index, column.index, row.factor * column.factor * K(r, c));
+        if (column.index >= 0 && K(r, c) != 0.0)
+          entries.emplace_back(row.index, column.index, row.factor * column.factor * K(r, c));
       }
       if (K(r, r) != 0.0) used[static_cast<std::size_t>(row.index)] = 1;
     }
@@ -85,7 +86,8 @@ SparseMatrix assemble(const Scene& scene, const std::vector<Elasticity>& rocks, 
 }
 
 // Adds the force of a uniform traction t (Pa) on the straight edge from a to b to f; two points a cell.
-void load_edge(const Scene& scene, const State& state, const Vec2& a, const Vec2& b, const Vec2& t, Eigen::VectorXd& f) {
+void load_edge(const Scene& scene, const State& state, const Vec2& a, const Vec2& b, const Vec2& t,
+               Eigen::VectorXd& f) {
   const Grid& g = state.grid;
   const int n = static_cast<int>(std::lround(2.0 * (b - a).norm() / g.h));
   for (int k = 0; k < n; ++k) {
@@ -129,10 +131,12 @@ void load_in_situ(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
   load_edge(loaded, state, {0.0, 0.0}, {0.0, H}, {scene.in_situ.horizontal_Pa, 0.0}, f);
   load_edge(loaded, state, {W, 0.0}, {W, H}, {-scene.in_situ.horizontal_Pa, 0.0}, f);
   load_edge(loaded, state, {0.0, H}, {W, H}, {0.0, -scene.in_situ.vertical_Pa}, f);
-  if (scene.domain.bottom == Edge::traction) load_edge(loaded, state, {0.0, 0.0}, {W, 0.0}, {0.0, scene.in_situ.vertical_Pa}, f);
+  if (scene.domain.bottom == Edge::traction)
+    load_edge(loaded, state, {0.0, 0.0}, {W, 0.0}, {0.0, scene.in_situ.vertical_Pa}, f);
   hold_rigid_motion(loaded, state, K, f);
   const Eigen::CholmodSupernodalLLT<SparseMatrix> factor(K);
-  if (factor.info() != Eigen::Success) throw NumericalFailure("the loaded in-situ state cannot be found: the stiffness of the bonded block is singular");
+  if (factor.info() != Eigen::Success)
+    throw NumericalFailure("the loaded in-situ state cannot be found: the stiffness of the bonded block is singular");
   const Eigen::VectorXd u = factor.solve(f);
   Particles& p = state.particles;
   for (const Bin& bin : state.bins) {

@@ -39,7 +39,8 @@ void spread_to_tied(State& state) {
   for (const int record : state.tied) {
     const Master& master = state.masters[static_cast<std::size_t>(record)];
     const NodeMotion& from = state.motion[static_cast<std::size_t>(master.record)];
-    state.motion[static_cast<std::size_t>(record)] = {master.x * from.v_x, master.y * from.v_y, master.x * from.dv_x, master.y * from.dv_y};
+    state.motion[static_cast<std::size_t>(record)] = {master.x * from.v_x, master.y * from.v_y, master.x * from.dv_x,
+                                                      master.y * from.dv_y};
   }
 }
 
@@ -72,6 +73,8 @@ double prepare_transfer(const Scene& scene, State& state) {
   return 0.0;
 }
 
-double time_step(const Scene& scene, double fastest) { return scene.numerics.courant * scene.numerics.cell_m / fastest; }
+double time_step(const Scene& scene, double fastest) {
+  return scene.numerics.courant * scene.numerics.cell_m / fastest;
+}
 
 }  // namespace strata

@@ -87,8 +87,9 @@ double relax(const Place& place, double dt, std::vector<NodeMotion>& motion) {
   SurfacePoint& s = *place.s;
   const Vec2 tangent{s.n.y(), -s.n.x()};
   const Vec2 w = s.w + dt * jump_rate(place, motion);
-  const FreeJump free{w.dot(s.n) - place.per_n * s.reaction.dot(s.n), w.dot(tangent) - place.per_t * s.reaction.dot(tangent),
-                      s.w.dot(tangent), place.per_n, place.per_t};
+  const FreeJump free{w.dot(s.n) - place.per_n * s.reaction.dot(s.n),
+                      w.dot(tangent) - place.per_t * s.reaction.dot(tangent), s.w.dot(tangent), place.per_n,
+                      place.per_t};
   const Reaction r = react(*place.law, free);
   const Vec2 change = r.n * s.n + r.t * tangent - s.reaction;
   push(place, change, motion);
@@ -112,7 +113,8 @@ SurfaceStencil tie_stencil(const TipTie& tie) {
   return stencil;
 }
 
-std::vector<Place> split_places(const Scene& scene, State& state, const InterfaceLaw& faces, const std::vector<InterfaceLaw>& ties) {
+std::vector<Place> split_places(const Scene& scene, State& state, const InterfaceLaw& faces,
+                                const std::vector<InterfaceLaw>& ties) {
   std::vector<Place> places;
   for (std::size_t k = 0; k < state.ties.size(); ++k) {
     places.push_back(make_place(state, tie_stencil(state.ties[k]), state.ties[k].s, ties[k]));
@@ -192,7 +194,8 @@ void solve_reactions(const Scene& scene, State& state) {
   std::vector<Place> places = split_places(scene, state, faces, ties);
   for (const Place& place : places) push(place, place.s->reaction, state.motion);
   int sweeps = 0;
-  for (double change = 1.0, largest = 0.0; sweeps < most_sweeps && !places.empty() && change > tolerance * std::max(largest, 1.0); ++sweeps) {
+  for (double change = 1.0, largest = 0.0;
+       sweeps < most_sweeps && !places.empty() && change > tolerance * std::max(largest, 1.0); ++sweeps) {
     change = largest = 0.0;
     for (const Place& place : places) {
       change = std::max(change, relax(place, state.dt, state.motion));

@@ -24,12 +24,12 @@ struct Reaction {
 };
 
 /// The reaction that satisfies a law at the end of the step, found with the place's own compliance (backward Euler, so
-/// stable for any stiffness). friction, failed weak: n >= 0, w_n >= 0, n w_n = 0, |t| <= mu n (Coulomb), t opposing slip;
-/// soft: n = -D_n w_n, t = -D_t w_t (the study's eq. 6), in compression contact or the same spring.
+/// stable for any stiffness). friction, failed weak: n >= 0, w_n >= 0, n w_n = 0, |t| <= mu n (Coulomb), t opposing
+/// slip; soft: n = -D_n w_n, t = -D_t w_t (the study's eq. 6), in compression contact or the same spring.
 Reaction react(const InterfaceLaw& law, const FreeJump& w);
 
-/// True if a bonded place fails under the reaction r: weak by (S/Sc)^2 + (N/Nc)^2 >= 1 with N in tension only (the study's
-/// eq. 5); friction where |t| > mu n or in tension.
+/// True if a bonded place fails under the reaction r: weak by (S/Sc)^2 + (N/Nc)^2 >= 1 with N in tension only (the
+/// study's eq. 5); friction where |t| > mu n or in tension.
 bool fails(const InterfaceLaw& law, const Reaction& r);
 
 /// Checks the bonded columns of weak and friction interfaces against the mean total stress of the particles around them
@@ -37,9 +37,9 @@ bool fails(const InterfaceLaw& law, const Reaction& r);
 /// then be rebuilt.
 bool fail_interfaces(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
 
-/// Finds the reactions of all split places together (Gauss-Seidel over places on D M^-1 D^T, started from the last step's
-/// reactions) and adds what they do to state.motion, which holds the motion without them. Jumps are those at the end of
-/// the step. Adds to the ledger's friction and interface_strain and to the monitors.
+/// Finds the reactions of all split places together (Gauss-Seidel over places on D M^-1 D^T, started from the last
+/// step's reactions) and adds what they do to state.motion, which holds the motion without them. Jumps are those at the
+/// end of the step. Adds to the ledger's friction and interface_strain and to the monitors.
 void solve_reactions(const Scene& scene, State& state);
 
 /// Energy in the springs of soft interfaces, sum A (D_n w_n^2 + D_t w_t^2)/2 (J/m).

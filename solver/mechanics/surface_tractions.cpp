@@ -15,7 +15,8 @@ void weigh(const Grid& g, const Vec2& x, SurfaceStencil& stencil) {
   }
 }
 
-// A copy that no particle's shape function reaches has no motion of its own: there the node does not tell the sides apart.
+// A copy that no particle's shape function reaches has no motion of its own: there the node does not tell the sides
+// apart.
 void join_massless(const std::vector<NodeSums>& sums, SurfaceStencil& stencil) {
   for (std::size_t n = 0; n < 9; ++n) {
     if (stencil.plus[n] == stencil.minus[n]) continue;
@@ -24,7 +25,9 @@ void join_massless(const std::vector<NodeSums>& sums, SurfaceStencil& stencil) {
   }
 }
 
-Vec2 velocity(const NodeMotion& motion) { return {motion.v_x, motion.v_y}; }
+Vec2 velocity(const NodeMotion& motion) {
+  return {motion.v_x, motion.v_y};
+}
 
 }  // namespace
 
@@ -33,7 +36,8 @@ void update_stencil_weights(const Scene& scene, State& state) {
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
     const auto weigh_all = [&](const std::vector<SurfacePoint>& points, std::vector<SurfaceStencil>& stencils) {
       for (std::size_t q = 0; q < points.size(); ++q) {
-        spline ? weigh<QuadraticBspline>(state.grid, points[q].x, stencils[q]) : weigh<Linear>(state.grid, points[q].x, stencils[q]);
+        spline ? weigh<QuadraticBspline>(state.grid, points[q].x, stencils[q])
+               : weigh<Linear>(state.grid, points[q].x, stencils[q]);
         join_massless(state.sums, stencils[q]);
       }
     };
@@ -46,7 +50,8 @@ Vec2 jump(const SurfaceStencil& stencil, const std::vector<NodeMotion>& motion) 
   Vec2 w = Vec2::Zero();
   for (std::size_t n = 0; n < 9; ++n) {
     if (stencil.plus[n] == stencil.minus[n]) continue;
-    w += stencil.N[n] * (velocity(motion[static_cast<std::size_t>(stencil.plus[n])]) - velocity(motion[static_cast<std::size_t>(stencil.minus[n])]));
+    w += stencil.N[n] * (velocity(motion[static_cast<std::size_t>(stencil.plus[n])]) -
+                         velocity(motion[static_cast<std::size_t>(stencil.minus[n])]));
   }
   return w;
 }
@@ -54,7 +59,9 @@ Vec2 jump(const SurfaceStencil& stencil, const std::vector<NodeMotion>& motion) 
 Vec2 mean_velocity(const SurfaceStencil& stencil, const std::vector<NodeMotion>& motion) {
   Vec2 v = Vec2::Zero();
   for (std::size_t n = 0; n < 9; ++n) {
-    v += 0.5 * stencil.N[n] * (velocity(motion[static_cast<std::size_t>(stencil.plus[n])]) + velocity(motion[static_cast<std::size_t>(stencil.minus[n])]));
+    v += 0.5 * stencil.N[n] *
+         (velocity(motion[static_cast<std::size_t>(stencil.plus[n])]) +
+          velocity(motion[static_cast<std::size_t>(stencil.minus[n])]));
   }
   return v;
 }
@@ -99,7 +106,8 @@ void follow_surfaces(State& state) {
     update_geometry(surface);
   }
   for (TipTie& tie : state.ties) {
-    const auto &plus = state.motion[static_cast<std::size_t>(tie.plus)], &minus = state.motion[static_cast<std::size_t>(tie.minus)];
+    const auto &plus = state.motion[static_cast<std::size_t>(tie.plus)],
+               &minus = state.motion[static_cast<std::size_t>(tie.minus)];
     tie.s.w += state.dt * (velocity(plus) - velocity(minus));
   }
 }

@@ -1,13 +1,14 @@
-// The opening operator D of surfaces and its transpose: the same weights serve both, so that the work of a traction on a
-// surface is exactly the traction times the change of the jump.
+// The opening operator D of surfaces and its transpose: the same weights serve both, so that the work of a traction on
+// a surface is exactly the traction times the change of the jump.
 #pragma once
 
 #include "state/state.hpp"
 
 namespace strata {
 
-/// Recomputes the weights N_i(x_s) of all surface stencils at the present positions of the surfaces, after masses have come
-/// to the nodes and before ghosts are folded. Surfaces use the B-spline or, for linear and uGIMP particles, the hat functions.
+/// Recomputes the weights N_i(x_s) of all surface stencils at the present positions of the surfaces, after masses have
+/// come to the nodes and before ghosts are folded. Surfaces use the B-spline or, for linear and uGIMP particles, the
+/// hat functions.
 void update_stencil_weights(const Scene& scene, State& state);
 
 /// D u: jump of a nodal vector field across the surface at a stencil, sum_i N_i (u[plus_i] - u[minus_i]).
@@ -16,7 +17,8 @@ Vec2 jump(const SurfaceStencil& stencil, const std::vector<NodeMotion>& motion);
 /// Mean of the two sides' velocities (m/s) at a stencil: surfaces are massless and follow it.
 Vec2 mean_velocity(const SurfaceStencil& stencil, const std::vector<NodeMotion>& motion);
 
-/// D^T: adds the force of a traction t (Pa, on the + face; the - face takes its opposite) over the length A (m) to the sums.
+/// D^T: adds the force of a traction t (Pa, on the + face; the - face takes its opposite) over the length A (m) to the
+/// sums.
 void add_traction(const SurfaceStencil& stencil, const Vec2& t, double A, std::vector<NodeSums>& sums);
 
 /// Adds fluid pressure beyond the in-situ traction of all split surface points: t = P n - in_situ on the fracture,

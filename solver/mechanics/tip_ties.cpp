@@ -9,10 +9,12 @@ namespace strata {
 
 namespace {
 
-// Measured: with c = 0.11 the K_I of the pressurised crack in a 40 m block (tip at 8, 8.25, 8.5, 8.75, 9 m, 1 m cells) is
-// 0.14, 0.15, 0.14, 0.10, 0.16 % above the reference; 0.07 gives up to 0.7 % more and 0.16 up to 0.4 % less within the cell,
-// and without springs K_I by J jumps by 6 %. Hat functions need about twice the spring.
-double tip_tie_coefficient(const Scene& scene) { return scene.numerics.shape == Numerics::Shape::bspline2 ? 0.11 : 0.22; }
+// Measured: with c = 0.11 the K_I of the pressurised crack in a 40 m block (tip at 8, 8.25, 8.5, 8.75, 9 m, 1 m cells)
+// is 0.14, 0.15, 0.14, 0.10, 0.16 % above the reference; 0.07 gives up to 0.7 % more and 0.16 up to 0.4 % less within
+// the cell, and without springs K_I by J jumps by 6 %. Hat functions need about twice the spring.
+double tip_tie_coefficient(const Scene& scene) {
+  return scene.numerics.shape == Numerics::Shape::bspline2 ? 0.11 : 0.22;
+}
 
 // Nearer than this to the tip (in cells) a node counts as standing on it, farther than 1 - this as a whole cell behind.
 constexpr double slack_cells = 0.02;
@@ -23,7 +25,9 @@ double spline(double f) {
   return f < 1.5 ? 0.5 * (1.5 - f) * (1.5 - f) : 0.0;
 }
 
-double energy(const TipTie& tie) { return 0.5 * tie.stiffness * tie.s.w.squaredNorm(); }
+double energy(const TipTie& tie) {
+  return 0.5 * tie.stiffness * tie.s.w.squaredNorm();
+}
 
 // The spring of a node pair behind a tip, or one of no stiffness.
 TipTie make_tie(double c, const Elasticity& rock, const State& state, int node, bool at_back) {

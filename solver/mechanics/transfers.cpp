@@ -9,7 +9,8 @@ namespace strata {
 
 namespace {
 
-// Short vectors of the compiler: a node record is one of them, so a record takes one instruction where the machine has it.
+// Short vectors of the compiler: a node record is one of them, so a record takes one instruction where the machine has
+// it.
 typedef double Four __attribute__((vector_size(32)));
 typedef double Eight __attribute__((vector_size(64)));
 
@@ -49,7 +50,8 @@ void for_each_strip(const State& state, Work work) {
 }
 
 template <class Shape>
-void gather_bin(const std::vector<Elasticity>& rocks, const Grid& grid, const Particles& p, const Bin& bin, std::vector<NodeSums>& sums) {
+void gather_bin(const std::vector<Elasticity>& rocks, const Grid& grid, const Particles& p, const Bin& bin,
+                std::vector<NodeSums>& sums) {
   std::array<Eight, 9> acc{};
   for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
     const PlaneWeights w = plane_weights<Shape>(grid, bin, p.x[q], p.y[q], p.half[q]);
@@ -71,7 +73,8 @@ struct Advance {
 };
 
 template <class Shape>
-void move_bin(const Grid& grid, const Bin& bin, const Advance& by, const std::vector<NodeMotion>& motion, Particles& p, ParticleEnergy& energy) {
+void move_bin(const Grid& grid, const Bin& bin, const Advance& by, const std::vector<NodeMotion>& motion, Particles& p,
+              ParticleEnergy& energy) {
   std::array<Four, 9> record;
   for (std::size_t n = 0; n < 9; ++n) record[n] = load<Four>(motion[static_cast<std::size_t>(bin.record[n])]);
   for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
@@ -97,7 +100,8 @@ void move_bin(const Grid& grid, const Bin& bin, const Advance& by, const std::ve
 }
 
 template <class Shape>
-void filter_bin(const Grid& grid, const Particles& p, const Bin& bin, const std::vector<Vec2>& v, std::vector<NodeSums>& sums) {
+void filter_bin(const Grid& grid, const Particles& p, const Bin& bin, const std::vector<Vec2>& v,
+                std::vector<NodeSums>& sums) {
   for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
     const PlaneWeights w = plane_weights<Shape>(grid, bin, p.x[q], p.y[q], p.half[q]);
     Vec2 v_p = Vec2::Zero();
@@ -118,7 +122,8 @@ void particles_to_grid(const Scene& scene, const std::vector<Elasticity>& rocks,
   with_shape(scene.numerics.shape, [&](auto shape) {
     for_each_strip(state, [&](std::size_t k) {
       for (int b = state.strips[k].first; b < state.strips[k].last; ++b) {
-        gather_bin<decltype(shape)>(rocks, state.grid, state.particles, state.bins[static_cast<std::size_t>(b)], state.sums);
+        gather_bin<decltype(shape)>(rocks, state.grid, state.particles, state.bins[static_cast<std::size_t>(b)],
+                                    state.sums);
       }
     });
   });
@@ -147,7 +152,8 @@ ParticleEnergy grid_to_particles(const Scene& scene, State& state, double keep) 
   with_shape(scene.numerics.shape, [&](auto shape) {
     for_each_strip(state, [&](std::size_t k) {
       for (int b = state.strips[k].first; b < state.strips[k].last; ++b) {
-        move_bin<decltype(shape)>(state.grid, state.bins[static_cast<std::size_t>(b)], by, state.motion, state.particles, of_strip[k]);
+        move_bin<decltype(shape)>(state.grid, state.bins[static_cast<std::size_t>(b)], by, state.motion,
+                                  state.particles, of_strip[k]);
       }
     });
   });

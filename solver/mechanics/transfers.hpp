@@ -15,21 +15,21 @@ struct ParticleEnergy {
   double largest_speed2 = 0.0;
 };
 
-/// Particles to grid: m_i = sum_p N_ip m_p, mom_i = sum_p N_ip m_p v_p, f_i = -sum_p V_p sigma_p grad N_ip, where sigma_p is
-/// the change of stress from the in-situ state. Overwrites state.sums; ghosts are not folded yet.
+/// Particles to grid: m_i = sum_p N_ip m_p, mom_i = sum_p N_ip m_p v_p, f_i = -sum_p V_p sigma_p grad N_ip, where
+/// sigma_p is the change of stress from the in-situ state. Overwrites state.sums; ghosts are not folded yet.
 void particles_to_grid(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
 
-/// Second filter pass of XPIC(2) (Hammerquist & Nairn 2017): returns v**_i = (1/m_i) sum_p N_ip m_p sum_j N_jp v_j for the
-/// node velocities `v` (m/s, one a record), ghosts folded.
+/// Second filter pass of XPIC(2) (Hammerquist & Nairn 2017): returns v**_i = (1/m_i) sum_p N_ip m_p sum_j N_jp v_j for
+/// the node velocities `v` (m/s, one a record), ghosts folded.
 std::vector<Vec2> filter_velocity(const Scene& scene, State& state, const std::vector<Vec2>& v);
 
 /// Grid to particles over state.dt: v_p = keep v_p + sum_i N_ip dv_i, x_p and u_p += dt sum_i N_ip v_i,
-/// g_p += dt sum_i v_i grad N_ip. FLIP keeps v_p (keep = 1 without damping) and adds increments; PIC and XPIC keep nothing
-/// and find the whole velocity in dv.
+/// g_p += dt sum_i v_i grad N_ip. FLIP keeps v_p (keep = 1 without damping) and adds increments; PIC and XPIC keep
+/// nothing and find the whole velocity in dv.
 ParticleEnergy grid_to_particles(const Scene& scene, State& state, double keep);
 
-/// Adds what tied records gathered to their masters (see Master), component by component, and clears the records outside
-/// symmetric edges.
+/// Adds what tied records gathered to their masters (see Master), component by component, and clears the records
+/// outside symmetric edges.
 void fold_to_masters(const State& state, std::vector<NodeSums>& sums);
 
 }  // namespace strata

@@ -15,9 +15,9 @@ namespace strata {
 
 // Nodal quantities gathered from particles; a record is one aligned 8-vector.
 struct alignas(64) NodeSums {
-  double m = 0.0;                        // mass (kg/m)
-  double mom_x = 0.0, mom_y = 0.0;       // momentum (kg/s)
-  double f_x = 0.0, f_y = 0.0;           // force (N/m)
+  double m = 0.0;                   // mass (kg/m)
+  double mom_x = 0.0, mom_y = 0.0;  // momentum (kg/s)
+  double f_x = 0.0, f_y = 0.0;      // force (N/m)
   double unused[3] = {0.0, 0.0, 0.0};
 };
 
@@ -28,7 +28,7 @@ struct alignas(32) NodeMotion {
 };
 
 struct CutNode {
-  SideWord mask = 0;           // the surfaces that split this node
+  SideWord mask = 0;              // the surfaces that split this node
   std::vector<SideWord> entered;  // with interfaces too: the sides of them that the fracture has entered; elsewhere
                                   // it does not split the node, although its extension passes there
   SideWord fracture = 0;          // the fracture's bit, where it splits this node
@@ -46,8 +46,8 @@ struct Copies {
 };
 
 struct Bin {
-  int first = 0, last = 0;     // particles [first, last)
-  int i = 0, j = 0;            // column and row of the middle node of the 3 x 3 stencil
+  int first = 0, last = 0;      // particles [first, last)
+  int i = 0, j = 0;             // column and row of the middle node of the 3 x 3 stencil
   std::array<int, 9> record{};  // records of the stencil's nodes, row by row from the lower left
 };
 
@@ -57,9 +57,9 @@ struct Strip {
   int first = 0, last = 0;  // bins [first, last)
 };
 
-// Symmetric and fixed edges tie records together: the velocity of a record is that of its master, component by component
-// times x and y. Most records are their own master with factors 1; a ghost outside the edge mirrors a record inside (one
-// factor -1), and a node on the edge has a factor 0 across it.
+// Symmetric and fixed edges tie records together: the velocity of a record is that of its master, component by
+// component times x and y. Most records are their own master with factors 1; a ghost outside the edge mirrors a record
+// inside (one factor -1), and a node on the edge has a factor 0 across it.
 struct Master {
   int record = 0;
   double x = 1.0, y = 1.0;

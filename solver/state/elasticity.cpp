@@ -6,7 +6,9 @@ namespace {
 
 double rayleigh_speed(double c_P, double c_S) {
   const double ratio = (c_S / c_P) * (c_S / c_P);
-  const auto f = [ratio](double q) { return (2.0 - q) * (2.0 - q) - 4.0 * std::sqrt(1.0 - q) * std::sqrt(1.0 - q * ratio); };
+  const auto f = [ratio](double q) {
+    return (2.0 - q) * (2.0 - q) - 4.0 * std::sqrt(1.0 - q) * std::sqrt(1.0 - q * ratio);
+  };
   double lo = 0.5, hi = 1.0;  // q lies between 0.76 (nu = 0) and 0.92 (nu = 0.5); f < 0 below the root
   for (int k = 0; k < 60; ++k) {
     const double mid = 0.5 * (lo + hi);

@@ -10,18 +10,18 @@
 namespace strata {
 
 struct Particles {
-  std::vector<double> x, y;                // position (m)
-  std::vector<double> u_x, u_y;            // displacement since the in-situ state (m)
-  std::vector<double> v_x, v_y;            // velocity (m/s)
-  std::vector<double> g_xx, g_xy;          // displacement gradient: g_xy = du_x/dy
-  std::vector<double> g_yx, g_yy;          //
-  std::vector<double> m;                   // mass per metre of thickness (kg/m)
-  std::vector<double> V;                   // area (m^2)
-  std::vector<double> half;                // half of the side of a particle's square (m), for uGIMP
-  std::vector<std::uint8_t> rock;          // index into Scene::rocks
-  std::vector<SideWord> sides;             // side of each surface
-  std::vector<Stress> in_situ;             // in-situ stress (Pa), tension positive
-  std::vector<std::int32_t> id;            // fixed for life; the arrays are reordered as particles change bins
+  std::vector<double> x, y;        // position (m)
+  std::vector<double> u_x, u_y;    // displacement since the in-situ state (m)
+  std::vector<double> v_x, v_y;    // velocity (m/s)
+  std::vector<double> g_xx, g_xy;  // displacement gradient: g_xy = du_x/dy
+  std::vector<double> g_yx, g_yy;  //
+  std::vector<double> m;           // mass per metre of thickness (kg/m)
+  std::vector<double> V;           // area (m^2)
+  std::vector<double> half;        // half of the side of a particle's square (m), for uGIMP
+  std::vector<std::uint8_t> rock;  // index into Scene::rocks
+  std::vector<SideWord> sides;     // side of each surface
+  std::vector<Stress> in_situ;     // in-situ stress (Pa), tension positive
+  std::vector<std::int32_t> id;    // fixed for life; the arrays are reordered as particles change bins
   std::int32_t next_id = 0;
 
   std::size_t size() const { return x.size(); }

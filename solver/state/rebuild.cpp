@@ -42,8 +42,10 @@ void mark_fracture(const Scene& scene, const State& state, std::vector<SideWord>
   const bool front = has_tip(state, false), back = has_tip(state, true);
   for (std::size_t k = 0; k + 1 < s.vertices.size(); ++k) {
     const Vec2 a = s.vertices[k].x, b = s.vertices[k + 1].x;
-    const int i0 = std::max(-1, g.nearest(std::min(a.x(), b.x())) - 2), i1 = std::min(g.nx + 1, g.nearest(std::max(a.x(), b.x())) + 2);
-    const int j0 = std::max(-1, g.nearest(std::min(a.y(), b.y())) - 2), j1 = std::min(g.ny + 1, g.nearest(std::max(a.y(), b.y())) + 2);
+    const int i0 = std::max(-1, g.nearest(std::min(a.x(), b.x())) - 2),
+              i1 = std::min(g.nx + 1, g.nearest(std::max(a.x(), b.x())) + 2);
+    const int j0 = std::max(-1, g.nearest(std::min(a.y(), b.y())) - 2),
+              j1 = std::min(g.ny + 1, g.nearest(std::max(a.y(), b.y())) + 2);
     for (int j = j0; j <= j1; ++j) {
       for (int i = i0; i <= i1; ++i) {
         const Vec2 x{i * g.h, j * g.h};
@@ -69,7 +71,8 @@ void mark_interface(const Scene& scene, const State& state, const Surface& s, st
   }
   const double half = support_in_cells(scene) - slack_cells;
   const double at = (along_x ? s.vertices[0].x.y() : s.vertices[0].x.x()) / g.h;
-  for (int across = static_cast<int>(std::ceil(at - half)); across <= static_cast<int>(std::floor(at + half)); ++across) {
+  for (int across = static_cast<int>(std::ceil(at - half)); across <= static_cast<int>(std::floor(at + half));
+       ++across) {
     for (int k = -1; k <= n + 1; ++k) {
       const int column = k < 0 ? 1 : (k > n ? n - 1 : k);  // ghosts as the node they mirror
       if (split[static_cast<std::size_t>(column)] == 0) continue;
@@ -133,7 +136,8 @@ void make_cut_nodes(const State& state, const std::vector<SideWord>& mask, Copie
     if (cut.fracture != 0 && interfaces != 0) {
       for (const SurfacePoint& point : state.fracture().points) {
         const SideWord entered = point.sides & interfaces;
-        if (std::find(cut.entered.begin(), cut.entered.end(), entered) == cut.entered.end()) cut.entered.push_back(entered);
+        if (std::find(cut.entered.begin(), cut.entered.end(), entered) == cut.entered.end())
+          cut.entered.push_back(entered);
       }
     }
     copies.cut.push_back(std::move(cut));
@@ -176,15 +180,16 @@ std::vector<SortKey> sort_keys(const State& state, const std::vector<SideWord>& 
   std::vector<SideWord> reach(mask.size(), 0);  // which surfaces split any node of the stencil around a node
   for (int j = 0; j <= g.ny; ++j) {
     for (int i = 0; i <= g.nx; ++i) {
-      for (int node : stencil_nodes(g, i, j)) reach[static_cast<std::size_t>(g.node(i, j))] |= mask[static_cast<std::size_t>(node)];
+      for (int node : stencil_nodes(g, i, j))
+        reach[static_cast<std::size_t>(g.node(i, j))] |= mask[static_cast<std::size_t>(node)];
     }
   }
   std::vector<SortKey> keys(p.size());
   for (std::size_t k = 0; k < p.size(); ++k) {
     const int i = g.nearest(p.x[k]), j = g.nearest(p.y[k]);
     if (i < 0 || i > g.nx || j < 0 || j > g.ny) {
-      throw NumericalFailure("a particle has left the block at x = " + std::to_string(p.x[k]) + ", y = " + std::to_string(p.y[k]) +
-                             " m: parts move freely, or the time step is too long");
+      throw NumericalFailure("a particle has left the block at x = " + std::to_string(p.x[k]) +
+                             ", y = " + std::to_string(p.y[k]) + " m: parts move freely, or the time step is too long");
     }
     keys[k] = {j, i, p.sides[k] & reach[static_cast<std::size_t>(g.node(i, j))], p.id[k], k};
   }
@@ -202,7 +207,8 @@ void sort_particles(Particles& particles, const std::vector<SortKey>& keys) {
 void make_bins(State& state, const std::vector<SortKey>& keys) {
   state.bins.clear();
   for (std::size_t k = 0; k < keys.size(); ++k) {
-    const bool same = k > 0 && std::tie(keys[k].j, keys[k].i, keys[k].sides) == std::tie(keys[k - 1].j, keys[k - 1].i, keys[k - 1].sides);
+    const bool same = k > 0 && std::tie(keys[k].j, keys[k].i, keys[k].sides) ==
+                                   std::tie(keys[k - 1].j, keys[k - 1].i, keys[k - 1].sides);
     if (!same) {
       Bin bin;
       bin.first = static_cast<int>(k);
@@ -216,7 +222,8 @@ void make_bins(State& state, const std::vector<SortKey>& keys) {
   state.strips.clear();
   for (int j = 0, b = 0; j <= state.grid.ny; j += rows_per_strip) {
     Strip strip{b, b};
-    while (b < static_cast<int>(state.bins.size()) && state.bins[static_cast<std::size_t>(b)].j < j + rows_per_strip) ++b;
+    while (b < static_cast<int>(state.bins.size()) && state.bins[static_cast<std::size_t>(b)].j < j + rows_per_strip)
+      ++b;
     strip.last = b;
     state.strips.push_back(strip);
   }
@@ -246,7 +253,8 @@ Master master_of(const Mirrors& edges, State& state, int record) {
     node = inside;
     (across_x ? master.x : master.y) *= -1.0;
   }
-  if (node != state.copies.node_of_record[static_cast<std::size_t>(record)]) master.record = record_for(state.copies, node, key);
+  if (node != state.copies.node_of_record[static_cast<std::size_t>(record)])
+    master.record = record_for(state.copies, node, key);
   const int i = g.column(node), j = g.row(node);
   if (edges.sides && (i == 0 || i == g.nx)) master.x = 0.0;
   if ((edges.bottom && j == 0) || (edges.top && j == g.ny)) master.y = 0.0;
@@ -337,7 +345,9 @@ void make_surface_stencils(State& state) {
 
 }  // namespace
 
-double support_in_cells(const Scene& scene) { return scene.numerics.shape == Numerics::Shape::bspline2 ? 1.5 : 1.0; }
+double support_in_cells(const Scene& scene) {
+  return scene.numerics.shape == Numerics::Shape::bspline2 ? 1.5 : 1.0;
+}
 
 SideWord sides_at(const State& state, const Vec2& x, int except) {
   SideWord word = 0;
@@ -367,7 +377,8 @@ bool particles_left_bins(const State& state) {
   for (const Bin& bin : state.bins) {
     for (int k = bin.first; k < bin.last; ++k) {
       const auto q = static_cast<std::size_t>(k);
-      if (std::abs(p.x[q] / state.grid.h - bin.i) > margin || std::abs(p.y[q] / state.grid.h - bin.j) > margin) return true;
+      if (std::abs(p.x[q] / state.grid.h - bin.i) > margin || std::abs(p.y[q] / state.grid.h - bin.j) > margin)
+        return true;
     }
   }
   return false;

@@ -1,19 +1,19 @@
-// Builds everything in a State that follows from particles and surfaces: copies of nodes, bins, strips, mirror pairs and
-// surface stencils. Called at the start, after growth or failure, and when particles have changed bins.
+// Builds everything in a State that follows from particles and surfaces: copies of nodes, bins, strips, mirror pairs
+// and surface stencils. Called at the start, after growth or failure, and when particles have changed bins.
 #pragma once
 
 #include "state/state.hpp"
 
 namespace strata {
 
-// How far a node tells the sides of a surface apart, in cells: as far as its shape function reaches, 1.5 for the quadratic
-// B-spline and 1 for hat functions. uGIMP particles reach half their size further, but there a copy would hold no more
-// than the round-off of a particle that just touches it.
+// How far a node tells the sides of a surface apart, in cells: as far as its shape function reaches, 1.5 for the
+// quadratic B-spline and 1 for hat functions. uGIMP particles reach half their size further, but there a copy would
+// hold no more than the round-off of a particle that just touches it.
 double support_in_cells(const Scene& scene);
 
-/// Sorts the particles into bins and rebuilds all derived members of `state` (see state.hpp); the order of particles, and
-/// with it every sum, depends on their positions, sides and ids only.
-/// Throws NumericalFailure where a particle has left the block.
+/// Sorts the particles into bins and rebuilds all derived members of `state` (see state.hpp); the order of particles,
+/// and with it every sum, depends on their positions, sides and ids only. Throws NumericalFailure where a particle has
+/// left the block.
 void rebuild_copies(const Scene& scene, State& state);
 
 /// True if a particle has left the bin it was sorted into, by more than a thousandth of a cell. Within that margin the
@@ -24,6 +24,8 @@ bool particles_left_bins(const State& state);
 SideWord sides_at(const State& state, const Vec2& x, int except);
 
 // How far surfaces are extended straight when sides are told apart (m).
-inline double extension(const Grid& grid) { return 4.0 * grid.h; }
+inline double extension(const Grid& grid) {
+  return 4.0 * grid.h;
+}
 
 }  // namespace strata

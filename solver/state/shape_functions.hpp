@@ -31,13 +31,14 @@ struct Linear {
   }
 };
 
-// Hat functions averaged over a particle's own length 2 half (in cells), not deformed: uGIMP (Bardenhagen & Kober 2004).
+// Hat functions averaged over a particle's own length 2 half (in cells), not deformed: uGIMP (Bardenhagen & Kober
+// 2004).
 struct Ugimp {
   static Weights at(double f, double half) {
     Weights w{};
     for (int a = 0; a < 3; ++a) {
       const double lo = f - (a - 1) - half, hi = f - (a - 1) + half;
-      w.N[static_cast<std::size_t>(a)] = (hat_integral(hi) - hat_integral(lo)) / (2.0 * half);
+      w.N[static_cast<std::size_t>(a)] = hat_integral(lo, hi) / (2.0 * half);
       w.dN[static_cast<std::size_t>(a)] = (hat(hi) - hat(lo)) / (2.0 * half);
     }
     return w;
@@ -45,11 +46,12 @@ struct Ugimp {
 
  private:
   static double hat(double x) { return std::fmax(0.0, 1.0 - std::fabs(x)); }
-  // Integral of the hat function from -1 to x.
-  static double hat_integral(double x) {
-    if (x <= -1.0) return 0.0;
-    if (x >= 1.0) return 1.0;
-    return x < 0.0 ? 0.5 * (1.0 + x) * (1.0 + x) : 1.0 - 0.5 * (1.0 - x) * (1.0 - x);
+  // Integral of the hat function from lo to hi, in the form that keeps its digits where it is nearly zero: a particle
+  // that just touches a node must not give it a mass of round-off.
+  static double hat_integral(double lo, double hi) {
+    if (lo >= 0.0) return 0.5 * (hat(lo) + hat(hi)) * (hat(lo) - hat(hi));
+    if (hi <= 0.0) return 0.5 * (hat(hi) + hat(lo)) * (hat(hi) - hat(lo));
+    return 1.0 - 0.5 * (hat(lo) * hat(lo) + hat(hi) * hat(hi));
   }
 };
 

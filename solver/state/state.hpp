@@ -16,7 +16,7 @@ namespace strata {
 // Fluid pressure at the fracture's vertices (Pa), from its first vertex to its last.
 struct FluidLine {
   std::vector<double> P;
-  std::size_t inlet = 0;   // the vertex at which the pressure is prescribed
+  std::size_t inlet = 0;  // the vertex at which the pressure is prescribed
   double inlet_Pa = 0.0;
 };
 
@@ -29,8 +29,8 @@ struct TipTie {
 };
 
 struct Tip {
-  bool at_back = true;         // at the last vertex of the fracture, or at the first
-  bool growing = true;         // false once it may not grow any more (see stopped_by)
+  bool at_back = true;  // at the last vertex of the fracture, or at the first
+  bool growing = true;  // false once it may not grow any more (see stopped_by)
   std::string stopped_by;
   double K_I = 0.0, K_II = 0.0;  // stress intensity factors (Pa sqrt(m))
   double J = 0.0;                // J-integral, mean over rings (N/m)
@@ -44,7 +44,7 @@ struct Tip {
   double J_spread_at_growth = 0.0;
   bool has_grown = false;
   bool arrested = false;
-  std::vector<int> reached;      // interfaces (surface bits) already reported as reached
+  std::vector<int> reached;  // interfaces (surface bits) already reported as reached
 };
 
 struct Event {
@@ -78,17 +78,17 @@ struct Ledger {
 
 // What to watch in a run; reported in its summary.
 struct Monitors {
-  double largest_courant = 0.0;           // c_P dt / h
-  double largest_penetration = 0.0;       // of closed contact (m)
-  std::int64_t contact_sweeps = 0;        // Gauss-Seidel sweeps, summed
-  std::int64_t contact_unconverged = 0;   // steps whose contact solve ran out of sweeps
+  double largest_courant = 0.0;            // c_P dt / h
+  double largest_penetration = 0.0;        // of closed contact (m)
+  std::int64_t contact_sweeps = 0;         // Gauss-Seidel sweeps, summed
+  std::int64_t contact_unconverged = 0;    // steps whose contact solve ran out of sweeps
   double largest_particle_velocity = 0.0;  // m/s
 };
 
 struct State {
-  double time = 0.0;       // s
+  double time = 0.0;  // s
   std::int64_t step = 0;
-  double dt = 0.0;         // s
+  double dt = 0.0;  // s
   Grid grid;
   Particles particles;
   std::vector<Surface> surfaces;  // the fracture first, where there is one
@@ -106,7 +106,8 @@ struct State {
   std::vector<Strip> strips;
   std::vector<Master> masters;  // of each record
   std::vector<int> tied;        // the records whose master is another one or has a factor 0
-  std::vector<std::vector<std::vector<StressSample>>> column_samples;  // of each surface's columns; empty where it never fails
+  std::vector<std::vector<std::vector<StressSample>>>
+      column_samples;  // of each surface's columns; empty where it never fails
   std::vector<std::vector<SurfaceStencil>> point_stencils, vertex_stencils;  // of each surface
   std::vector<NodeSums> sums;
   std::vector<NodeMotion> motion;

@@ -44,7 +44,9 @@ Projection project(const Surface& surface, const Vec2& x, double reach) {
   return {(plus ? 1.0 : -1.0) * std::sqrt(foot.distance2), v[best].arc + foot.along};
 }
 
-bool side(const Surface& surface, const Vec2& x, double reach) { return project(surface, x, reach).distance >= 0.0; }
+bool side(const Surface& surface, const Vec2& x, double reach) {
+  return project(surface, x, reach).distance >= 0.0;
+}
 
 void update_geometry(Surface& surface) {
   auto& v = surface.vertices;

@@ -43,7 +43,7 @@ struct Surface {
 // Where a place projects onto a surface whose end segments are extended straight on.
 struct Projection {
   double distance = 0.0;  // signed, positive on the + side; a place on the surface counts as + (m)
-  double arc = 0.0;       // arc length of the foot point: negative before the first vertex, > length() after the last (m)
+  double arc = 0.0;  // arc length of the foot point: negative before the first vertex, > length() after the last (m)
 };
 
 /// Projects x (m) on the surface, extended straight by `reach` (m) at both ends: nearest point and side of it.

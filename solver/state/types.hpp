@@ -23,14 +23,20 @@ struct Stress {
   Vec2 on(const Vec2& n) const { return {xx * n.x() + xy * n.y(), xy * n.x() + yy * n.y()}; }
 };
 
-inline Stress operator+(const Stress& a, const Stress& b) { return {a.xx + b.xx, a.yy + b.yy, a.xy + b.xy}; }
-inline Stress operator*(double c, const Stress& a) { return {c * a.xx, c * a.yy, c * a.xy}; }
+inline Stress operator+(const Stress& a, const Stress& b) {
+  return {a.xx + b.xx, a.yy + b.yy, a.xy + b.xy};
+}
+inline Stress operator*(double c, const Stress& a) {
+  return {c * a.xx, c * a.yy, c * a.xy};
+}
 
 // The numerics failed (exit status 3): what happened, when, and what to do about it.
 struct NumericalFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+inline double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
 
 }  // namespace strata
