@@ -122,6 +122,7 @@ def _copies_panel(run: Run, index: int, centre: str, magnified: float) -> Copies
     sides = _sides(x_m, y_m, crack_x, crack_y, list(laws))
     reach = REACH.get(str(run.scene.get("numerics", {}).get("shape", "bspline2")), 1.5) * h
     gx, gy = _lines(window[:2], h), _lines(window[2:], h)
+    divides = {x: {at: _near(split, x, h) for at, split in laws.items()} for x in gx}
     return CopiesPanel(
         heading=f"Experiment {run.number}, {plain(run.variant)}, tip at {metres(float(crack_y[tip]))}",
         window_m=window,
@@ -133,7 +134,7 @@ def _copies_panel(run: Run, index: int, centre: str, magnified: float) -> Copies
         interfaces_m=tuple(at for at, split in laws.items() if split.size and window[2] <= at <= window[3]),
         particles=_grouped(x_m, y_m, sides),
         nodes=tuple(
-            _node(a, b, x_m, y_m, sides, (crack_x, crack_y), {at: _near(split, a, h) for at, split in laws.items()}, reach)
+            _node(a, b, x_m, y_m, sides, (crack_x, crack_y), divides[a], reach)
             for a in gx for b in gy
         ),
     )

@@ -246,13 +246,14 @@ def _path_panel(runs: list[Run]) -> PathPanel:
         paths=paths,
         window_m=window,
         magnified=max(1.0, magnified),
-        aspect=PANEL_ASPECT,
+        aspect=(window[3] - window[2]) / (window[1] - window[0]) / max(1.0, magnified),
         lean=1 if sum(float(path.x_m[-1] - path.x_m[0]) for path in paths) > 0 else -1,
         aside=_aside(layout, window),
     )
 
 
 PANEL_ASPECT = 1.15  # height over width of a panel of Fig 8
+LOWEST_ASPECT = 0.75  # of a panel for a path that turns sideways: room for its legend and inset
 
 
 def _soft_side(layout: Layout) -> float:
@@ -298,9 +299,9 @@ def _window(paths: tuple[Path, ...]) -> tuple[float, float, float, float]:
     low = float(y_m.min())
     height = 1.04 * max(float(y_m.max()) - low, 1.0)
     width = max(1.3 * float(np.ptp(x_m)), height / 20.0, 0.5)
-    if width > 0.4 * height:  # so wide a path needs no magnification
+    if width > 0.4 * height:  # so wide a path needs no magnification, nor so high a panel
         width = max(width, height / PANEL_ASPECT)
-        height = PANEL_ASPECT * width
+        height = max(height, LOWEST_ASPECT * width)
     middle = 0.5 * float(x_m.min() + x_m.max())
     return (middle - 0.5 * width, middle + 0.5 * width, low, low + height)
 

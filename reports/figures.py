@@ -152,8 +152,8 @@ def _pressure_words(data: PressureFigure) -> str:
     """Caption of Fig 2."""
     return (
         f"{data.source} at t = {data.time_s:.3f} s. Left: total horizontal stress in MPa, tension positive, white at"
-        f" its in-situ value of {data.centre_MPa:g} MPa. Right, against distance from the inlet in m: fluid pressure as a"
-        f" fraction of the inlet's {data.inlet_MPa:.2f} MPa, opening w in mm, permeability w²/12 in m²."
+        f" its in-situ value of {data.centre_MPa:g} MPa. Right, against distance from the inlet in m: fluid pressure as"
+        f" a fraction of the inlet's {data.inlet_MPa:.2f} MPa, opening w in mm, permeability w²/12 in m²."
     )
 
 
@@ -172,8 +172,8 @@ def _height_words(runs: list[Run]) -> Callable[[HeightFigure], str]:
         )
         return (
             f"Left: layout, lengths in m, with the in-situ stress in MPa; the fracture in blue. Middle and right:"
-            f" height of the tip above the symmetry line in m against inlet pressure in MPa; dotted lines: interfaces at"
-            f" {listed(places)}.{arrests}{flag}"
+            f" height of the tip above the symmetry line in m against inlet pressure in MPa; dotted lines: interfaces"
+            f" at {listed(places)}.{arrests}{flag}"
         )
 
     return words
@@ -206,8 +206,8 @@ def _variant_words(data: VariantFigure) -> str:
     count = sum(len(rows) for _, rows in data.blocks)
     return (
         f"Inlet pressure in MPa at which each of {count} runs starts to grow, reaches an interface, is arrested, starts"
-        " again and ends. A band is an arrest. Grey: readings of what the study leaves open; the tables below say in"
-        " which settings each differs."
+        " again and ends. A band is an arrest at an interface or to the end, a thin line a pause elsewhere. Grey:"
+        " readings of what the study leaves open; the tables of the experiments say in which settings each differs."
     )
 
 

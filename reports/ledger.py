@@ -167,12 +167,12 @@ def _variant_row(run: Run, runs: list[Run]) -> VariantRow:
     if not run.drawable:
         return VariantRow(label, run.variant, run.is_main, (), f"{run.status}: {run.reason}")
     outcome = outcome_of(run)
-    note = "failed" if run.status == "failed" else ""
+    note = "" if run.status == "completed" else run.status
     return VariantRow(label, run.variant, run.is_main, tuple(_dots(outcome)), note)
 
 
 def _dots(outcome: Outcome) -> list[Dot]:
-    """The marks of one variant: start, reach, each arrest with its restart, end."""
+    """The marks of one variant: start, reach, each arrest with its restart (away from interfaces a pause), end."""
     dots = []
     if outcome.start_Pa is not None:
         dots.append(Dot("start", outcome.start_Pa / 1e6, None, ""))
@@ -180,6 +180,9 @@ def _dots(outcome: Outcome) -> list[Dot]:
         dots.append(Dot("reach_interface", outcome.reached_Pa / 1e6, None, ""))
     for arrest in outcome.arrests:
         until = outcome.final_inlet_Pa if arrest.until_Pa is None else arrest.until_Pa
+        if arrest.interface is None and arrest.until_Pa is not None:
+            dots.append(Dot("pause", arrest.from_Pa / 1e6, until / 1e6, ""))
+            continue
         flag = "J at interface" if arrest.by_J else ""
         dots.append(Dot("arrest", arrest.from_Pa / 1e6, until / 1e6, flag))
         if arrest.until_Pa is not None:

@@ -95,7 +95,7 @@ def crossing_of(run: Run) -> str:
 
 
 def interface_near(run: Run, event: dict[str, Any], anyway: bool = False) -> tuple[str | None, float]:
-    """The nearest interface that is not perfect, if within a cell and a half or asked for anyway, and the tip past it, m."""
+    """The nearest imperfect interface, if within a cell and a half or asked for anyway, and the tip past it, m."""
     layout = layout_of(run)
     at = float(event["tip_y_m"] if layout.along == "y" else event["tip_x_m"])
     places = [place for place in layout.interfaces if place.law != "perfect"]

@@ -134,11 +134,11 @@ def _float(text: str) -> float:
 
 
 def load_runs(root: Path) -> list[Run]:
-    """Read every run below a folder runs/<scene>/<variant>/, the study's variants first."""
+    """Read every run of a numbered experiment below runs/<scene>/<variant>/, the study's variants first."""
     folders = [path for path in sorted(root.glob("*/*/")) if path.is_dir() and not path.name.startswith(".")]
     markers = ("scene.toml", "summary.json", "history.csv", "result.h5", "outcome.json")
     runs = [load_run(path) for path in folders if any((path / name).exists() for name in markers)]
-    return sorted(runs, key=order)
+    return sorted((run for run in runs if run.number > 0), key=order)
 
 
 def order(run: Run) -> tuple[int, str, int, str]:

@@ -41,7 +41,7 @@ def draw_heights(data: HeightFigure) -> Figure:
 
 def _draw_curve(axes: Axes, curve: HeightCurve, labelled: bool) -> None:
     """One variant's curve: the tip stays until the row that says it has grown."""
-    axes.plot(curve.inlet_MPa, curve.height_m, drawstyle="steps-post", zorder=3, **line_of(curve.variant))
+    axes.plot(curve.inlet_MPa, curve.height_m, drawstyle="steps-post", **line_of(curve.variant))
     for mark in curve.marks:
         _draw_mark(axes, mark, curve.variant, labelled)
     if curve.failed:

@@ -83,10 +83,11 @@ def draw_variants(data: VariantFigure) -> Figure:
     axes.set_xlabel("inlet pressure (MPa)")
     handles = [Line2D([], [], marker=MARKERS[kind], color=INK, linestyle="none", label=name)
                for kind, name in KIND_NAMES.items()]
-    handles.append(Line2D([], [], color=INK, linewidth=4, alpha=0.35, label="arrested"))
+    handles.append(Line2D([], [], color=INK, linewidth=4.5, alpha=0.35, label="arrested"))
+    handles.append(Line2D([], [], color=INK, linewidth=1.0, label="paused away from interfaces"))
     handles.append(Line2D([], [], marker="o", markersize=10, markerfacecolor="none", markeredgecolor=FLAG,
                           linestyle="none", label="J at interface"))
-    put_legend(figure, handles, 7)
+    put_legend(figure, handles, 5)
     return figure
 
 
@@ -95,8 +96,10 @@ def _draw_row(axes: Axes, row: VariantRow, at: float) -> None:
     colour = COLOURS.get(row.variant, "#5a5a5a")
     for dot in row.dots:
         if dot.until_MPa is not None:
-            axes.plot([dot.inlet_MPa, dot.until_MPa], [at, at], color=colour, linewidth=4, alpha=0.35,
-                      solid_capstyle="butt", zorder=2)
+            look = {"alpha": 0.35, "linewidth": 4.5} if dot.kind == "arrest" else {"linewidth": 1.0}
+            axes.plot([dot.inlet_MPa, dot.until_MPa], [at, at], color=colour, solid_capstyle="butt", zorder=2, **look)
+        if dot.kind == "pause":
+            continue
         axes.plot([dot.inlet_MPa], [at], marker=MARKERS[dot.kind], color=colour, markersize=6, zorder=3,
                   markeredgecolor=colour if dot.kind in ("stop", "reach_interface") else "white",
                   markeredgewidth=1.5 if dot.kind in ("stop", "reach_interface") else 0.6)

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from reports.charts.layout_chart import draw_layout
-from reports.charts.style import ALPHAS, COLOURS, DASHES, INK, PALE, WIDTHS, interface_lines, new_figure, put_title
+from reports.charts.style import COLOURS, INK, PALE, interface_lines, line_of, new_figure, put_title
 from reports.curves import PathFigure, PathPanel, ProfileFigure, ProfilePanel
 
 
@@ -53,12 +53,11 @@ def _draw_path_panel(axes: Axes, panel: PathPanel) -> None:
     for place in panel.layout.interfaces:
         if panel.layout.along == "x" and x0 <= place.at_m <= x1:
             axes.axvline(place.at_m, color=PALE, linewidth=1.2, linestyle=(0, (1, 1.5)))
-            axes.annotate("interface", (place.at_m, y1), xytext=(3, -4), textcoords="offset points", va="top",
+            axes.annotate("interface", (place.at_m, y0), xytext=(3, 5), textcoords="offset points", va="bottom",
                           rotation=90, fontsize=7.5, color=INK)
     for path in panel.paths:
         colour = COLOURS.get(path.variant, PALE)
-        axes.plot(path.x_m, path.y_m, color=colour, linewidth=WIDTHS.get(path.variant, 1.4),
-                  linestyle=DASHES.get(path.variant, ":"), alpha=ALPHAS.get(path.variant, 1.0), label=path.label)
+        axes.plot(path.x_m, path.y_m, label=path.label, **line_of(path.variant))
         axes.plot([path.kink_at_m[0]], [path.kink_at_m[1]], marker="D", markersize=4.5, color=colour,
                   markeredgecolor="white", markeredgewidth=0.6, zorder=5)
     axes.set_xlim(x0, x1)

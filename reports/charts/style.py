@@ -29,12 +29,12 @@ COLOURS: dict[str, str] = {
     "weak_soft": "#a3397f",
     "soft_weak": "#8a6a00",
 }
-# Nearly equal curves are drawn from wide and pale to thin and dark, so that none hides another.
+# Nearly equal curves lie on one another from wide and pale to thin and dashed, so that none hides another.
 WIDTHS: dict[str, float] = {
-    "perfect": 4.2, "friction": 2.6, "weak": 1.9, "soft": 1.9, "weak_soft": 2.1, "soft_weak": 1.9,
+    "perfect": 5.4, "weak": 3.2, "friction": 1.7, "soft": 1.9, "weak_soft": 2.6, "soft_weak": 1.7,
 }
 DASHES: dict[str, str | tuple[int, tuple[float, ...]]] = {
-    "perfect": "-", "friction": (0, (5, 1.6)), "weak": "-", "soft": (0, (3, 1.2, 1, 1.2)),
+    "perfect": "-", "friction": (0, (3.5, 2.5)), "weak": "-", "soft": (0, (3, 1.2, 1, 1.2)),
     "weak_soft": "-", "soft_weak": (0, (5, 1.6)),
 }
 ALPHAS: dict[str, float] = {"perfect": 0.35}
@@ -97,6 +97,7 @@ def line_of(variant: str) -> dict[str, object]:
         "linestyle": DASHES.get(variant, ":"),
         "alpha": ALPHAS.get(variant, 1.0),
         "solid_capstyle": "butt",
+        "zorder": 4.0 - 0.1 * WIDTHS.get(variant, 1.4),
     }
 
 

@@ -61,7 +61,7 @@ def test_an_event_of_its_own_word_is_believed(tmp_path: Path) -> None:
 
 
 def test_an_arrest_past_its_interface_says_how_far(tmp_path: Path) -> None:
-    """The rings of a tip 4 m past an interface still reach it: the solver flags it, and the sentence says where it is."""
+    """The rings of a tip 4 m past an interface may still reach it: the sentence then says where it is."""
     run = load_run(write_run(tmp_path, 1, Plan("soft", ("soft",), stop_at_m=14.0, restart_Pa=3.0e6)))
     assert outcome_of(run).arrests[0].interface is None
     for event in run.summary["events"]:
