@@ -31,16 +31,14 @@ void close_ledger(const Scene& scene, const GridEnergy& grid, double grid_after,
   ledger.kinetic = particles.after;
   ledger.transfer += (grid_after - grid.mapped) - (particles.after - particles.before);
   ledger.interface_strain = spring_energy(scene, state);
+  Monitors& monitors = state.monitors;
+  monitors.largest_particle_velocity =
+      std::max(monitors.largest_particle_velocity, std::sqrt(particles.largest_speed2));
   ledger.largest =
       std::max({ledger.largest, std::abs(ledger.fluid_work), std::abs(ledger.in_situ_work), ledger.kinetic});
 }
 
 }  // namespace
-
-void rebuild(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
-  rebuild_copies(scene, state);
-  update_tip_ties(scene, rocks, state);
-}
 
 void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
   advance_pressure(scene, state);          // P(s) from the opening at the step's start
@@ -62,7 +60,7 @@ void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& st
   measure_tips(scene, rocks, state);                    // J, K_I, K_II with the same P
   changed = grow(scene, rocks, state) || changed;       // a new point ahead of the tip
   watch_tips(scene, state);
-  if (changed || particles_left_bins(state)) rebuild(scene, rocks, state);
+  if (changed || state.step % steps_between_rebuilds == 0 || particles_left_bins(state)) rebuild(scene, rocks, state);
 }
 
 }  // namespace strata

@@ -8,8 +8,9 @@
 
 namespace strata {
 
-/// Rebuilds all that follows from particles and surfaces (rebuild_copies) and the springs of tips.
-void rebuild(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
+// Derived members are rebuilt at multiples of these steps in every run, and checkpoints are written at no others, so
+// that a resumed run starts from exactly what an uninterrupted one holds there.
+constexpr std::int64_t steps_between_rebuilds = 250;
 
 /// Advances the state by one explicit step of state.dt. Update stress last: forces come from the stress at the start of
 /// the step, and stress, positions and jumps then take up the same new velocities, which makes the step symplectic in

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "advance.hpp"
 #include "fracture/growth.hpp"
 #include "mechanics/equilibrium.hpp"
 #include "mechanics/explicit_step.hpp"
+#include "mechanics/tip_ties.hpp"
 #include "state/rebuild.hpp"
 
 namespace strata {
@@ -102,6 +102,7 @@ State initialise(const Scene& scene, const std::vector<Elasticity>& rocks) {
   double fastest = 0.0;
   for (const Layer& layer : scene.strata.layers) fastest = std::max(fastest, rocks[layer.rock].c_P);
   state.dt = time_step(scene, fastest);
+  state.monitors.largest_courant = fastest * state.dt / state.grid.h;
   if (scene.in_situ.initialise == InSitu::Initialise::loaded) load_in_situ(scene, rocks, state);
   make_fracture(scene, state);
   make_interfaces(scene, state);
@@ -112,6 +113,10 @@ State initialise(const Scene& scene, const std::vector<Elasticity>& rocks) {
   set_start_reactions(state);
   rebuild(scene, rocks, state);
   return state;
+}
+
+void restore(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+  rebuild(scene, rocks, state);
 }
 
 }  // namespace strata

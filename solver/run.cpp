@@ -22,9 +22,6 @@ namespace {
 
 constexpr int done = 0, bad_input = 2, numerics_failed = 3, interrupted = 130;
 
-// Copies are rebuilt at these steps in every run, and checkpoints are written at no others, so that a resumed run
-// starts from exactly what an uninterrupted one holds there.
-constexpr std::int64_t steps_between_rebuilds = 250;
 constexpr double seconds_between_checkpoints = 60.0;
 
 // A signal handler has nothing else to write to.
@@ -70,7 +67,17 @@ std::optional<std::string> reason_to_stop(const Scene& scene, const State& state
 struct Outcome {
   int exit = done;
   std::string reason;
+};
+
+// What a run holds while it goes on.
+struct Run {
+  const Scene& scene;
+  const std::vector<Elasticity>& rocks;
+  Recorder& recorder;
+  State state;
+  State good;  // the last state that was known to be sound
   double particle_steps = 0.0;
+  double last_output = -1.0;  // time of the last output (s)
 };
 
 void add_stop_event(State& state) {
@@ -84,73 +91,73 @@ std::size_t fracture_points(const State& state) {
   return state.has_fracture ? state.fracture().points.size() : 0;
 }
 
-// Steps from `state` to the end of the run; `good` keeps the last state that was known to be sound.
-Outcome march(const Scene& scene, const std::vector<Elasticity>& rocks, Recorder& recorder, Progress& progress,
-              State& state, State& good) {
-  Outcome outcome;
-  const double interval = output_interval(scene);
-  Clock::time_point last_checkpoint = Clock::now();
-  const auto output = [&] {
-    state.ledger.strain = strain_energy(rocks, state.particles);
-    recorder.output(scene, state);
-  };
-  if (recorder.outputs() == 0) output();
-  while (true) {
-    if (auto reason = reason_to_stop(scene, state)) {
-      add_stop_event(state);
-      output();
-      outcome.reason = *reason;
-      return outcome;
-    }
-    if (state.step % steps_between_rebuilds == 0 && state.step > good.step) {
-      rebuild(scene, rocks, state);
-      good = state;
-      const bool stop = asked_to_stop != 0;
-      if (stop || seconds_since(last_checkpoint) > seconds_between_checkpoints) {
-        recorder.checkpoint(scene, state);
-        last_checkpoint = Clock::now();
-      }
-      if (stop) return {interrupted, "interrupted; `strata resume` goes on from here", outcome.particle_steps};
-    }
-    const std::size_t points = fracture_points(state);
-    advance(scene, rocks, state);
-    outcome.particle_steps += static_cast<double>(state.particles.size());
-    const bool grown = fracture_points(state) != points;
-    if (state.time >= static_cast<double>(recorder.outputs()) * interval - 0.5 * state.dt) {
-      output();
-    } else if (grown) {
-      state.ledger.strain = strain_energy(rocks, state.particles);
-      recorder.row(scene, state);
-    }
-    progress.show(scene, state);
+void output(Run& run) {
+  if (run.state.time == run.last_output) return;
+  run.state.ledger.strain = strain_energy(run.rocks, run.state.particles);
+  run.recorder.output(run.scene, run.state);
+  run.last_output = run.state.time;
+}
+
+// One step and what it leaves to write: fields at output times, a row of the history after growth.
+void step_and_record(Run& run, double interval) {
+  const std::size_t points = fracture_points(run.state);
+  advance(run.scene, run.rocks, run.state);
+  run.particle_steps += static_cast<double>(run.state.particles.size());
+  if (run.state.time >= static_cast<double>(run.recorder.outputs()) * interval - 0.5 * run.state.dt) {
+    output(run);
+  } else if (fracture_points(run.state) != points) {
+    run.state.ledger.strain = strain_energy(run.rocks, run.state.particles);
+    run.recorder.row(run.scene, run.state);
   }
 }
 
-int run_from(const Scene& scene, const std::vector<Elasticity>& rocks, const RunFolder& folder, Recorder& recorder,
-             State state, const RunOptions& options) {
-  const Clock::time_point start = Clock::now();
-  State good = state;
+// Steps from run.state to the end of the run.
+Outcome march(Run& run, Progress& progress) {
+  const double interval = output_interval(run.scene);
+  Clock::time_point last_checkpoint = Clock::now();
+  if (run.recorder.outputs() == 0) output(run);
+  while (true) {
+    if (auto reason = reason_to_stop(run.scene, run.state)) {
+      add_stop_event(run.state);
+      output(run);
+      return {done, *reason};
+    }
+    if (run.state.step % steps_between_rebuilds == 0 && run.state.step > run.good.step) {
+      run.good = run.state;
+      const bool stop = asked_to_stop != 0;
+      if (stop || seconds_since(last_checkpoint) > seconds_between_checkpoints) {
+        run.recorder.checkpoint(run.scene, run.state);
+        last_checkpoint = Clock::now();
+      }
+      if (stop) return {interrupted, "interrupted; `strata resume` goes on from here"};
+    }
+    step_and_record(run, interval);
+    progress.show(run.scene, run.state);
+  }
+}
+
+int run_from(Run run, const RunFolder& folder, const RunOptions& options, Clock::time_point start) {
   RunRecord record;
-  record.scene_name = scene.title;
+  record.scene_name = run.scene.title.empty() ? run.scene.name : run.scene.title;
   record.threads = omp_get_max_threads();
+  record.status = "completed";
   Outcome outcome;
-  Progress progress(scene, state, options.quiet);
+  Progress progress(run.scene, run.state, options.quiet);
   try {
-    outcome = march(scene, rocks, recorder, progress, state, good);
-    record.status = outcome.exit == done ? "completed" : "failed";
+    outcome = march(run, progress);
   } catch (const NumericalFailure& failure) {
     outcome = {numerics_failed,
-               fmt::format("{} The last good state is that of step {}, in result.h5.", failure.what(), good.step), 0.0};
+               fmt::format("{} The last good state, of step {}, is in checkpoint.bin.", failure.what(), run.good.step)};
     record.status = "failed";
-    state = good;
-    recorder.output(scene, state);
+    run.state = run.good;
+    run.recorder.checkpoint(run.scene, run.state);
   }
   progress.clear();
-  recorder.finish();
+  run.recorder.finish();
   record.reason = outcome.reason;
   record.wall_s = seconds_since(start);
-  record.particle_steps = outcome.particle_steps;
-  if (outcome.exit != interrupted) write_summary(folder.summary(), scene, state, record);
+  record.particle_steps = run.particle_steps;
+  if (outcome.exit != interrupted) write_summary(folder.summary(), run.scene, run.state, record);
   if (outcome.exit != done) fmt::print(stderr, "{}\n", outcome.reason);
   return outcome.exit;
 }
@@ -164,6 +171,7 @@ void set_up(const RunOptions& options) {
 }  // namespace
 
 int run_scene(const Scene& scene, const RunOptions& options) {
+  const Clock::time_point start = Clock::now();
   set_up(options);
   const std::vector<Elasticity> rocks = make_elasticities(scene);
   std::optional<RunFolder> folder;
@@ -176,7 +184,8 @@ int run_scene(const Scene& scene, const RunOptions& options) {
   }
   Recorder recorder(*folder);
   try {
-    return run_from(scene, rocks, *folder, recorder, initialise(scene, rocks), options);
+    const State state = initialise(scene, rocks);
+    return run_from({scene, rocks, recorder, state, state}, *folder, options, start);
   } catch (const NumericalFailure& failure) {
     fmt::print(stderr, "{}\n", failure.what());
     return numerics_failed;
@@ -184,29 +193,32 @@ int run_scene(const Scene& scene, const RunOptions& options) {
 }
 
 int resume_run(const std::filesystem::path& dir, const RunOptions& options) {
+  const Clock::time_point start = Clock::now();
   const RunFolder folder{dir};
   const ReadResult read = read_scene(folder.scene(), "", {});
   if (!read.scene) {
     for (const std::string& error : read.errors) fmt::print(stderr, "{}\n", error);
     return bad_input;
   }
+  const Scene& scene = *read.scene;
   if (std::filesystem::exists(folder.summary())) return done;
-  RunOptions same = options;
-  same.out = dir;
-  if (!std::filesystem::exists(folder.checkpoint())) return run_scene(*read.scene, same);
   set_up(options);
+  const std::vector<Elasticity> rocks = make_elasticities(scene);
+  std::optional<Checkpoint> checkpoint;
+  std::optional<Recorder> recorder;
   try {
-    Checkpoint checkpoint = load_checkpoint(folder.checkpoint(), *read.scene);
-    const std::vector<Elasticity> rocks = make_elasticities(*read.scene);
-    rebuild(*read.scene, rocks, checkpoint.state);
-    Recorder recorder(folder, checkpoint.mark);
-    return run_from(*read.scene, rocks, folder, recorder, std::move(checkpoint.state), options);
-  } catch (const NumericalFailure&) {
-    throw;
-  } catch (const std::runtime_error& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return bad_input;
+    checkpoint = load_checkpoint(folder.checkpoint(), scene);
+    recorder.emplace(folder, checkpoint->mark);
+  } catch (const std::runtime_error& error) {  // nothing to go on from, or files that hold less than it says
+    fmt::print(stderr, "{} The run starts anew.\n", error.what());
+    RunOptions same = options;
+    same.out = dir;
+    return run_scene(scene, same);
   }
+  State& state = checkpoint->state;
+  restore(scene, rocks, state);
+  const double last_output = recorder->outputs() > 0 ? state.time : -1.0;
+  return run_from({scene, rocks, *recorder, state, state, 0.0, last_output}, folder, options, start);
 }
 
 }  // namespace strata

@@ -78,4 +78,9 @@ void update_tip_ties(const Scene& scene, const std::vector<Elasticity>& rocks, S
   for (const TipTie& tie : old) state.ledger.fracture += energy(tie);
 }
 
+void rebuild(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+  rebuild_copies(scene, state);
+  update_tip_ties(scene, rocks, state);
+}
+
 }  // namespace strata
