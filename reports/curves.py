@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -188,7 +189,7 @@ def profile_figure(runs: list[Run], variants: tuple[str, ...] = ("perfect", "wea
     panels = tuple(_profile_panel(chosen[name], times[name], wanted) for name in variants if name in chosen)
     profiles = [profile for panel in panels for profile in panel.profiles]
     return ProfileFigure(
-        title=finding(outcome_of(chosen[panel.variant]) for panel in panels),
+        title=finding(outcomes_of([chosen[panel.variant] for panel in panels])),
         panels=panels,
         opening_mm=max((float(profile.opening_mm.max()) for profile in profiles), default=1.0),
         height_m=max((float(profile.height_m.max()) for profile in profiles), default=1.0),
@@ -333,9 +334,9 @@ def _drift(paths: tuple[Path, ...], side: float) -> str:
     return "the fracture goes " + ", ".join(parts)
 
 
-def held(run: Run) -> str:
-    """The longest arrest of a run in words, for captions; empty where there is none."""
-    arrest = longest(outcome_of(run))
+def held(run: Run, runs: Sequence[Run]) -> str:
+    """The longest arrest of a run among its experiment's in words; empty where there is none."""
+    arrest = longest(outcome_of(run, runs))
     if arrest is None:
         return ""
     until = "the end" if arrest.until_Pa is None else mpa(arrest.until_Pa)

@@ -163,7 +163,7 @@ def _height_words(runs: list[Run]) -> Callable[[HeightFigure], str]:
     def words(data: HeightFigure) -> str:
         """Caption with every variant's longest arrest."""
         known = [run for run in runs if run.is_main and run.drawable]
-        stays = [f"{plain(run.variant)} {held(run)}" for run in known if held(run)]
+        stays = [f"{plain(run.variant)} {held(run, runs)}" for run in known if held(run, runs)]
         arrests = f" Longest arrests: {listed(stays)}." if stays else " No variant was arrested."
         places = [metres(height) for height in data.layout.heights_m]
         flag = (

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from reports.layout import settings_between
 from reports.outcome import Outcome, outcome_of
 from reports.runs import NotAvailable, Run
-from reports.words import listed, mpa, number, plain, quantity, share
+from reports.words import listed, metres, mpa, plain, setting, share
 
 _SUPPLIED: tuple[str, ...] = ("work", "supplied")
 _STORED: tuple[str, ...] = ("kinetic", "strain")
@@ -165,8 +164,8 @@ def _variant_row(run: Run, runs: list[Run]) -> VariantRow:
     """One variant's line."""
     label = plain(run.variant)
     if not run.drawable:
-        return VariantRow(label, run.variant, run.is_main, (), f"{run.status}: {run.reason}")
-    outcome = outcome_of(run)
+        return VariantRow(label, run.variant, run.is_main, (), run.status)
+    outcome = outcome_of(run, runs)
     note = "" if run.status == "completed" else run.status
     return VariantRow(label, run.variant, run.is_main, tuple(_dots(outcome)), note)
 
@@ -226,19 +225,8 @@ def differences(run: Run, runs: list[Run]) -> str:
     if base is None:
         return ""
     changed = settings_between(run, base)
-    parts = [f"{key} {_value(key, old)} → {_value(key, new)}" for key, old, new in changed]
+    parts = [f"{key} {setting(old)} → {setting(new)}" for key, old, new in changed]
     return f"as {plain(base.variant)} but " + "; ".join(parts) if parts else f"as {plain(base.variant)}"
-
-
-def _value(key: str, value: Any) -> str:
-    """A setting's value with its unit; 'unset' where the key is absent."""
-    if value is None:
-        return "unset"
-    if isinstance(value, list):
-        return "[" + ", ".join(_value("", item) for item in value) + "]"
-    if isinstance(value, dict):
-        return " ".join(quantity(name, item) for name, item in value.items())
-    return quantity(key, value)
 
 
 def spread_of(run: Run) -> float | None:
@@ -260,7 +248,7 @@ def suspicions(run: Run) -> list[str]:
         outcome = outcome_of(run)
         by_J = [arrest for arrest in outcome.arrests if arrest.by_J]
         if by_J:
-            places = list(dict.fromkeys(f"{number(arrest.height_m)} m" for arrest in by_J))
+            places = list(dict.fromkeys(metres(arrest.height_m) for arrest in by_J))
             flags.append(f"J at interface ({listed(places)})")
     closure = closure_of(run)
     if closure is not None and abs(closure) > 0.01:

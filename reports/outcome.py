@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from reports.layout import layout_of
+from reports.layout import layout_of, settings_between
 from reports.runs import Arrays, NotAvailable, Run, interfaces_at, output_times
 from reports.words import listed, metres, mpa, number, plain
+
+
+ARREST_PA = 0.05e6  # the rise of inlet pressure without growth that makes an arrest
 
 
 @dataclass(frozen=True)
@@ -39,8 +42,8 @@ class Outcome:
     grew: bool
 
 
-def outcome_of(run: Run) -> Outcome:
-    """What the run's events and its last history row say."""
+def outcome_of(run: Run, runs: Sequence[Run] = ()) -> Outcome:
+    """What the run's events and last history row say; an arrest that its bonded twin among the runs shares is a pause."""
     if not run.drawable:
         raise NotAvailable(f"{run.experiment}/{run.variant}: {run.reason or 'no history'}")
     heights, inlet = run.history["height_m"], run.history["inlet_Pa"]
@@ -49,11 +52,35 @@ def outcome_of(run: Run) -> Outcome:
         status=run.status,
         start_Pa=event_inlet(run, "start"),
         reached_Pa=event_inlet(run, "reach_interface"),
-        arrests=arrests_of(run),
+        arrests=_own(arrests_of(run), run, runs),
         final_height_m=float(heights[-1]),
         final_inlet_Pa=float(inlet[-1]),
         grew=float(np.max(heights)) > float(heights[0]) + 0.25 * run.cell_m,
     )
+
+
+def _own(arrests: tuple[Arrest, ...], run: Run, runs: Sequence[Run]) -> tuple[Arrest, ...]:
+    """The arrests; those that last no longer where interfaces are bonded lose their interface: they are pauses."""
+    twin = next((other for other in runs if other is not run and other.drawable and _is_twin(other, run)), None)
+    theirs = arrests_of(twin) if twin else ()
+
+    def shared(arrest: Arrest) -> bool:
+        """Whether the bonded twin stops at the same height for nearly as long."""
+        if arrest.until_Pa is None:
+            return False
+        for other in theirs:
+            near = abs(other.height_m - arrest.height_m) < 0.25 * run.cell_m
+            if near and other.until_Pa and arrest.until_Pa - arrest.from_Pa < other.until_Pa - other.from_Pa + ARREST_PA:
+                return True
+        return False
+
+    return tuple(replace(arrest, interface=None) if shared(arrest) else arrest for arrest in arrests)
+
+
+def _is_twin(other: Run, run: Run) -> bool:
+    """Whether another run has perfect interfaces and else the same settings."""
+    perfect = all(name == "perfect" for name in other.scene["strata"].get("interfaces", []))
+    return perfect and {key for key, _, _ in settings_between(other, run)} <= {"strata.interfaces"}
 
 
 def event_inlet(run: Run, kind: str) -> float | None:
@@ -105,9 +132,9 @@ def interface_near(run: Run, event: dict[str, Any], anyway: bool = False) -> tup
     return nearest.name, at - nearest.at_m
 
 
-def outcomes_of(runs: Iterable[Run]) -> list[Outcome]:
+def outcomes_of(runs: Sequence[Run]) -> list[Outcome]:
     """The outcomes of those runs that have a history."""
-    return [outcome_of(run) for run in runs if run.drawable]
+    return [outcome_of(run, runs) for run in runs if run.drawable]
 
 
 def longest(outcome: Outcome) -> Arrest | None:

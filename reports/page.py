@@ -17,7 +17,7 @@ from reports.ledger import closure_of, differences, spread_of, suspicions
 from reports.outcome import interface_states, outcome_of
 from reports.runs import Run
 from reports.verdicts import ClaimRow, claim_rows, counts
-from reports.words import listed, metres, mpa, number, plain, share
+from reports.words import listed, metres, mpa, number, plain, setting, share
 
 COPIED: tuple[str, ...] = ("scene.toml", "summary.json", "history.csv")
 
@@ -122,7 +122,7 @@ def section(stem: str, runs: list[Run], claims: list[ClaimRow], figures: list[Ma
 def run_row(run: Run, runs: list[Run]) -> dict[str, Any]:
     """One run's line in its experiment's table."""
     summary = run.summary
-    outcome = outcome_of(run) if run.drawable else None
+    outcome = outcome_of(run, runs) if run.drawable else None
     closure, spread = closure_of(run), spread_of(run)
     return {
         "variant": plain(run.variant),
@@ -133,7 +133,7 @@ def run_row(run: Run, runs: list[Run]) -> dict[str, Any]:
         "files": [name for name in COPIED if (run.folder / name).exists()],
         "differs": differences(run, runs),
         "start": mpa(outcome.start_Pa) if outcome and outcome.start_Pa is not None else "–",
-        "arrest": (held(run) or "–") if outcome else "–",
+        "arrest": (held(run, runs) or "–") if outcome else "–",
         "end": f"{metres(outcome.final_height_m)} at {mpa(outcome.final_inlet_Pa)}" if outcome else "–",
         "interfaces": interface_states(run),
         "steps": _count(summary.get("steps")),
@@ -163,20 +163,7 @@ def _millions(value: Any) -> str:
 def settings_of(run: Run) -> list[tuple[str, str]]:
     """The resolved scene of a run as key and value."""
     nothing = Run(experiment="", variant="", folder=run.folder)
-    return [(key, _setting(key, value)) for key, _, value in settings_between(run, nothing)]
-
-
-def _setting(key: str, value: Any) -> str:
-    """A setting's value as the scene has it, units being in the key."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, float):
-        return f"{value:g}"
-    if isinstance(value, list):
-        return "[" + ", ".join(_setting(key, item) for item in value) + "]"
-    if isinstance(value, dict):
-        return "{" + ", ".join(f"{name} = {_setting(name, item)}" for name, item in value.items()) + "}"
-    return str(value)
+    return [(key, setting(value)) for key, _, value in settings_between(run, nothing)]
 
 
 def made_of(runs: list[Run]) -> list[tuple[str, str]]:

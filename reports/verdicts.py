@@ -13,7 +13,7 @@ VERDICTS: dict[str, str] = {
     "not reproduced": "no",
     "not evaluated": "open",
 }
-_UNIT_SUFFIX: dict[str, str] = {"Pa": "Pa", "m": "m", "degrees": "deg", "deg": "deg", "s": "s"}
+_UNIT_SUFFIX: dict[str, str] = {"Pa": "Pa", "m": "m", "degrees": "deg", "deg": "deg", "s": "s", "J/m": "J"}
 
 
 @dataclass(frozen=True)

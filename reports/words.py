@@ -11,7 +11,7 @@ _SCALES: tuple[tuple[str, float, str], ...] = (
     ("Pa_per_m", 1e-6, "MPa/m"),
     ("Pa_m", 1e-6, "MPa/m"),
     ("MPa", 1.0, "MPa"),
-    ("Pa_s", 1.0, "Pa s"),
+    ("1_s", 1.0, "1/s"),
     ("kg_m3", 1.0, "kg/m³"),
     ("N_m", 1.0, "N/m"),
     ("J_m", 1.0, "J/m"),
@@ -84,6 +84,21 @@ def split_unit(key: str) -> tuple[str, float, str]:
         if key == suffix or key.endswith("_" + suffix):
             return plain(key[: len(key) - len(suffix)].rstrip("_")), factor, unit
     return plain(key), 1.0, ""
+
+
+def setting(value: Any) -> str:
+    """A scene key's value as the scene has it, its unit being in the key; 'unset' where there is none."""
+    if value is None:
+        return "unset"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, float):
+        return f"{value:g}"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(setting(item) for item in value) + "]"
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{name} = {setting(item)}" for name, item in value.items()) + "}"
+    return str(value)
 
 
 def quantity(key: str, value: Any) -> str:

@@ -71,6 +71,15 @@ def test_an_arrest_past_its_interface_says_how_far(tmp_path: Path) -> None:
     assert "past the soft interface) until 3.0" in finding([outcome_of(run)])
 
 
+def test_an_arrest_that_bonded_interfaces_show_too_is_a_pause(tmp_path: Path) -> None:
+    """Stopping where and as long as the bonded twin does is not the interface's doing; stopping longer is."""
+    for name, restart in (("perfect", 2.8e6), ("friction", 2.8e6), ("weak", 3.2e6)):
+        write_run(tmp_path, 1, Plan(name, (name,), stop_at_m=10.0, restart_Pa=restart))
+    runs = load_runs(tmp_path)
+    assert [outcome_of(run, runs).arrests[0].interface for run in runs] == [None, None, "weak"]
+    assert finding(outcomes_of(runs)).startswith("Perfect and friction grew to")
+
+
 def test_like_outcomes_are_told_together(tmp_path: Path) -> None:
     """Two variants that run through share a clause; one that stops for good has its own."""
     for plan in (Plan("perfect"), Plan("friction", ("friction",)), Plan("soft", ("soft",), stop_at_m=10.0)):
