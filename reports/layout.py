@@ -107,20 +107,35 @@ def _law(scene: dict[str, Any], name: str) -> str:
     return str(scene.get("interface", {}).get(name, {}).get("law", name))
 
 
+INTERFACE = "interface "  # begins the keys of what acts at a place, such as "interface 1 coefficient"
+
+
 def settings_between(run: Run, base: Run) -> list[tuple[str, Any, Any]]:
-    """The scene keys in which a run differs from another: key, value there, value here."""
-    here, there = _flat(run.scene), _flat(base.scene)
-    ignored = ("title", "variant", "variants", "claim", "output", "resolved_from")
-    keys = [key for key in sorted(here.keys() | there.keys()) if key.split(".")[0] not in ignored]
-    return [(key, there.get(key), here.get(key)) for key in keys if here.get(key) != there.get(key)]
+    """The settings in which a run differs from another, interfaces by what acts there: key, value there, value here."""
+    here, there = settings_of(run.scene), settings_of(base.scene)
+    return [(key, there.get(key), here.get(key)) for key in sorted(here.keys() | there.keys())
+            if here.get(key) != there.get(key)]
 
 
-def _flat(table: dict[str, Any], prefix: str = "") -> dict[str, Any]:
-    """A nested table as dotted keys."""
+def settings_of(scene: dict[str, Any]) -> dict[str, Any]:
+    """What decides on a run, as dotted keys; for each interface the law that acts there, whatever its name."""
+    flat = {key: value for key, value in flat_keys(scene).items() if key.split(".")[0] != "interface"}
+    names = flat.pop("strata.interfaces", None) or []
+    for place, name in enumerate(names, 1):
+        for key, value in scene.get("interface", {}).get(name, {"law": name}).items():
+            flat[f"{INTERFACE}{place} {key}"] = value
+    return flat
+
+
+def flat_keys(table: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+    """A nested table as dotted keys, without what does not decide on a run."""
+    ignored = ("title", "variant", "variants", "claim", "output", "resolved_from") if not prefix else ()
     flat: dict[str, Any] = {}
     for key, value in table.items():
+        if key in ignored:
+            continue
         if isinstance(value, dict):
-            flat.update(_flat(value, f"{prefix}{key}."))
+            flat.update(flat_keys(value, f"{prefix}{key}."))
         else:
             flat[prefix + key] = value
     return flat

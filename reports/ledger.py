@@ -216,7 +216,12 @@ def base_of(run: Run, runs: list[Run]) -> Run | None:
     if run.is_main or not run.scene:
         return None
     others = [other for other in runs if other.is_main and other.scene and other.experiment == run.experiment]
-    return min(others, key=lambda other: len(settings_between(run, other)), default=None)
+
+    def distance(other: Run) -> tuple[int, bool]:
+        """How many settings differ, and whether the name differs too."""
+        return len(settings_between(run, other)), other.variant not in run.variant
+
+    return min(others, key=distance, default=None)
 
 
 def differences(run: Run, runs: list[Run]) -> str:

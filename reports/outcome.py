@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from reports.layout import layout_of, settings_between
+from reports.layout import INTERFACE, layout_of, settings_between
 from reports.runs import Arrays, NotAvailable, Run, interfaces_at, output_times
 from reports.words import listed, metres, mpa, number, plain
 
@@ -80,7 +80,7 @@ def _own(arrests: tuple[Arrest, ...], run: Run, runs: Sequence[Run]) -> tuple[Ar
 def _is_twin(other: Run, run: Run) -> bool:
     """Whether another run has perfect interfaces and else the same settings."""
     perfect = all(name == "perfect" for name in other.scene["strata"].get("interfaces", []))
-    return perfect and {key for key, _, _ in settings_between(other, run)} <= {"strata.interfaces"}
+    return perfect and all(key.startswith(INTERFACE) for key, _, _ in settings_between(other, run))
 
 
 def event_inlet(run: Run, kind: str) -> float | None:

@@ -12,7 +12,7 @@ import jinja2
 
 from reports.curves import held
 from reports.figures import Made
-from reports.layout import settings_between
+from reports.layout import flat_keys
 from reports.ledger import closure_of, differences, spread_of, suspicions
 from reports.outcome import interface_states, outcome_of
 from reports.runs import Run
@@ -162,8 +162,7 @@ def _millions(value: Any) -> str:
 
 def settings_of(run: Run) -> list[tuple[str, str]]:
     """The resolved scene of a run as key and value."""
-    nothing = Run(experiment="", variant="", folder=run.folder)
-    return [(key, setting(value)) for key, _, value in settings_between(run, nothing)]
+    return [(key, setting(value)) for key, value in flat_keys(run.scene).items()]
 
 
 def made_of(runs: list[Run]) -> list[tuple[str, str]]:
