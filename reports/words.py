@@ -30,7 +30,7 @@ def number(value: float, digits: int = 3) -> str:
     """A number with so many significant digits, without a needless exponent, and exact ones without trailing zeros."""
     if not math.isfinite(value):
         return "not finite"
-    if value == 0.0:
+    if abs(value) < 1e-13:  # round-off of any quantity shown here
         return "0"
     if abs(value) < 1e4 and abs(value - float(f"{value:.{digits}g}")) < 1e-9 * abs(value):
         return f"{value:.{digits}g}".replace("-", "−") if abs(value) >= 1e-3 else _scientific(value, digits)

@@ -84,7 +84,7 @@ def draw_variants(data: VariantFigure) -> Figure:
     handles = [Line2D([], [], marker=MARKERS[kind], color=INK, linestyle="none", label=name)
                for kind, name in KIND_NAMES.items()]
     handles.append(Line2D([], [], color=INK, linewidth=4.5, alpha=0.35, label="arrested"))
-    handles.append(Line2D([], [], color=INK, linewidth=1.0, label="paused away from interfaces"))
+    handles.append(Line2D([], [], color=INK, linewidth=1.0, label="paused, not by an interface"))
     handles.append(Line2D([], [], marker="o", markersize=10, markerfacecolor="none", markeredgecolor=FLAG,
                           linestyle="none", label="J at interface"))
     put_legend(figure, handles, 5)
