@@ -207,7 +207,8 @@ def _variant_words(data: VariantFigure) -> str:
     return (
         f"Inlet pressure in MPa at which each of {count} runs starts to grow, reaches an interface, is arrested, starts"
         " again and ends. A band is an arrest at an interface or to the end; a thin line is a pause away from"
-        " interfaces, or one that the run with perfect interfaces makes as well. Grey: readings of what the study leaves open; the tables of the experiments say in which settings each differs."
+        " interfaces, or one that the run with perfect interfaces makes as well. Grey: readings of what the study leaves open;"
+        " the tables of the experiments say in which settings each differs."
     )
 
 

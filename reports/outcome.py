@@ -43,7 +43,7 @@ class Outcome:
 
 
 def outcome_of(run: Run, runs: Sequence[Run] = ()) -> Outcome:
-    """What the run's events and last history row say; an arrest that its bonded twin among the runs shares is a pause."""
+    """What the run's events and last row say; an arrest that its bonded twin among the runs shares is a pause."""
     if not run.drawable:
         raise NotAvailable(f"{run.experiment}/{run.variant}: {run.reason or 'no history'}")
     heights, inlet = run.history["height_m"], run.history["inlet_Pa"]
@@ -70,7 +70,8 @@ def _own(arrests: tuple[Arrest, ...], run: Run, runs: Sequence[Run]) -> tuple[Ar
             return False
         for other in theirs:
             near = abs(other.height_m - arrest.height_m) < 0.25 * run.cell_m
-            if near and other.until_Pa and arrest.until_Pa - arrest.from_Pa < other.until_Pa - other.from_Pa + ARREST_PA:
+            theirs_Pa = (other.until_Pa or other.from_Pa) - other.from_Pa
+            if near and arrest.until_Pa - arrest.from_Pa < theirs_Pa + ARREST_PA:
                 return True
         return False
 
