@@ -15,12 +15,29 @@ double coulomb(double mu, double n, const FreeJump& w) {
   return std::clamp(stick, -mu * n, mu * n);
 }
 
+// Reaction of contact: none while open, else what closes the jump but for contact_compliance.
+double contact(const FreeJump& w) {
+  if (!(w.per_n > 0.0)) return 0.0;
+  const double compliance = contact_compliance * w.per_n;
+  return std::max(0.0, (compliance * w.n_rest - w.n) / (w.per_n + compliance));
+}
+
 Reaction react_soft(const InterfaceLaw& law, const FreeJump& w) {
-  const bool contact = law.compression == InterfaceLaw::Compression::contact && w.n < 0.0;
-  // -D w with w = w_free + per r: r = -w_free/(1/D + per); rigid contact is D = infinity.
+  // -D w with w = w_free + per r: r = -w_free/(1/D + per).
   const auto spring = [](double D, double w_free, double per) { return D > 0.0 ? -w_free / (1.0 / D + per) : 0.0; };
-  const double n = contact ? (w.per_n > 0.0 ? -w.n / w.per_n : 0.0) : spring(law.normal_stiffness_Pa_m, w.n, w.per_n);
+  const double pushed = law.compression == InterfaceLaw::Compression::contact ? contact(w) : 0.0;
+  const double n = pushed > 0.0 ? pushed : spring(law.normal_stiffness_Pa_m, w.n, w.per_n);
   return {n, spring(law.shear_stiffness_Pa_m, w.t, w.per_t)};
+}
+
+// Places share nodes with about six neighbours; plain Gauss-Seidel (1) takes ten times the sweeps of 1.5.
+constexpr double over_relaxation = 1.5;
+
+// The reaction nearest to r that a law allows whatever the jump: contact only pushes, friction is bounded.
+Reaction admissible(const InterfaceLaw& law, Reaction r) {
+  if (law.kind == Kind::soft) return r;
+  const double n = std::max(0.0, r.n), mu = law.kind == Kind::weak ? law.residual_friction : law.coefficient;
+  return {n, std::clamp(r.t, -mu * n, mu * n)};
 }
 
 // A split place with its stencil folded to master records: jump = sum_k (c_x v_x, c_y v_y).
@@ -82,7 +99,8 @@ Vec2 jump_rate(const Place& place, const std::vector<NodeMotion>& motion) {
   return v;
 }
 
-// One Gauss-Seidel visit: the law's reaction given all others; returns how much it changed (Pa).
+// One visit of successive over-relaxation: past the law's reaction given all others, but never out of what the law
+// allows; returns how much the reaction changed (Pa).
 double relax(const Place& place, double dt, std::vector<NodeMotion>& motion) {
   SurfacePoint& s = *place.s;
   const Vec2 tangent{s.n.y(), -s.n.x()};
@@ -91,7 +109,10 @@ double relax(const Place& place, double dt, std::vector<NodeMotion>& motion) {
                       w.dot(tangent) - place.per_t * s.reaction.dot(tangent), s.w.dot(tangent), place.per_n,
                       place.per_t};
   const Reaction r = react(*place.law, free);
-  const Vec2 change = r.n * s.n + r.t * tangent - s.reaction;
+  const Reaction over =
+      admissible(*place.law, {s.reaction.dot(s.n) + over_relaxation * (r.n - s.reaction.dot(s.n)),
+                              s.reaction.dot(tangent) + over_relaxation * (r.t - s.reaction.dot(tangent))});
+  const Vec2 change = over.n * s.n + over.t * tangent - s.reaction;
   push(place, change, motion);
   s.reaction += change;
   return change.norm();
@@ -139,12 +160,24 @@ double spring_energy_at(const InterfaceLaw& law, const SurfacePoint& s) {
   return 0.5 * s.A * ((closed ? 0.0 : law.normal_stiffness_Pa_m * w_n * w_n) + law.shear_stiffness_Pa_m * w_t * w_t);
 }
 
+// Mean total stress over the samples.
+Stress sampled_stress(const std::vector<Elasticity>& rocks, const Particles& p,
+                      const std::vector<StressSample>& samples) {
+  Stress mean;
+  for (const StressSample& sample : samples) {
+    const auto q = static_cast<std::size_t>(sample.particle);
+    const Stress change = stress_of(rocks[p.rock[q]], p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]);
+    mean = mean + sample.weight * (p.in_situ[q] + change);
+  }
+  return mean;
+}
+
 }  // namespace
 
 Reaction react(const InterfaceLaw& law, const FreeJump& w) {
   if (law.kind == Kind::perfect) return {};
   if (law.kind == Kind::soft) return react_soft(law, w);
-  const double n = w.per_n > 0.0 ? std::max(0.0, -w.n / w.per_n) : 0.0;
+  const double n = contact(w);
   return {n, coulomb(law.kind == Kind::weak ? law.residual_friction : law.coefficient, n, w)};
 }
 
@@ -156,27 +189,24 @@ bool fails(const InterfaceLaw& law, const Reaction& r) {
 }
 
 bool fail_interfaces(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
-  const Particles& p = state.particles;
   bool any = false;
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
     Surface& surface = state.surfaces[k];
-    const auto& columns = state.column_samples[k];
-    if (columns.empty()) continue;
-    std::vector<Stress> mean(columns.size());
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      for (const StressSample& sample : columns[c]) {
-        const auto q = static_cast<std::size_t>(sample.particle);
-        const Stress change = stress_of(rocks[p.rock[q]], p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]);
-        mean[c] = mean[c] + sample.weight * (p.in_situ[q] + change);
-      }
-    }
-    for (SurfacePoint& s : surface.points) {
+    if (state.stress_samples[k].empty()) continue;
+    std::vector<Vec2> carried(surface.points.size());
+    std::vector<char> failed(surface.points.size(), 0);  // by column; there are fewer columns than points
+    for (std::size_t q = 0; q < surface.points.size(); ++q) {
+      const SurfacePoint& s = surface.points[q];
       if (s.split) continue;
-      const Vec2 r = -mean[static_cast<std::size_t>(s.column)].on(s.n);
-      const Vec2 tangent{s.n.y(), -s.n.x()};
-      if (!fails(scene.laws[surface.law], {r.dot(s.n), r.dot(tangent)})) continue;
+      carried[q] = -sampled_stress(rocks, state.particles, state.stress_samples[k][q]).on(s.n);
+      const Reaction r{carried[q].dot(s.n), carried[q].dot(Vec2{s.n.y(), -s.n.x()})};
+      if (fails(scene.laws[surface.law], r)) failed[static_cast<std::size_t>(s.column)] = 1;
+    }
+    for (std::size_t q = 0; q < surface.points.size(); ++q) {
+      SurfacePoint& s = surface.points[q];
+      if (s.split || failed[static_cast<std::size_t>(s.column)] == 0) continue;
       s.split = true;
-      s.reaction = std::max(0.0, r.dot(s.n)) * s.n;
+      s.reaction = std::max(0.0, carried[q].dot(s.n)) * s.n;
       any = true;
     }
   }
@@ -184,8 +214,10 @@ bool fail_interfaces(const Scene& scene, const std::vector<Elasticity>& rocks, S
 }
 
 void solve_reactions(const Scene& scene, State& state) {
-  constexpr double tolerance = 1e-9;  // of the largest reaction; 1 Pa where there is none
-  constexpr int most_sweeps = 400;
+  // Change of a sweep, of the largest reaction. What is left is not lost: the next step starts from these reactions and
+  // sees the jumps they led to.
+  constexpr double tolerance = 1e-6;
+  constexpr int most_sweeps = 200;
   InterfaceLaw faces;  // the fracture's own faces: frictionless contact
   faces.kind = Kind::friction;
   faces.coefficient = 0.0;
@@ -213,8 +245,8 @@ void solve_reactions(const Scene& scene, State& state) {
     const double stored = spring_energy_at(*place.law, after) - spring_energy_at(*place.law, s);
     state.ledger.friction -= s.A * s.reaction.dot(dw) + stored;
     if (place.law->kind != Kind::soft) s.slip += std::abs(dw.dot(tangent));
-    const bool contact = place.law->kind != Kind::soft || place.law->compression == InterfaceLaw::Compression::contact;
-    if (contact) state.monitors.largest_penetration = std::max(state.monitors.largest_penetration, -after.opening());
+    const bool closes = place.law->kind != Kind::soft || place.law->compression == InterfaceLaw::Compression::contact;
+    if (closes) state.monitors.largest_penetration = std::max(state.monitors.largest_penetration, -after.opening());
   }
 }
 

@@ -16,7 +16,14 @@ struct FreeJump {
   double t_start = 0.0;  // tangential jump at the start of the step (m), where sticking holds it
   double per_n = 0.0;    // change of the normal jump per unit of normal reaction (m/Pa)
   double per_t = 0.0;    // and of the tangential one
+  double n_rest =
+      0.0;  // normal reaction of closed contact at zero jump (Pa): the in-situ one less the fluid's pressure
 };
+
+// Contact yields by this fraction of per_n for each unit of reaction beyond n_rest, some 1e-4 of what a cell of rock
+// yields. Rigid contact at two points a cell asks for more than the one jump a cell that exists, and the reactions
+// drift.
+constexpr double contact_compliance = 1e-3;
 
 struct Reaction {
   double n = 0.0;  // Pa
@@ -32,12 +39,12 @@ Reaction react(const InterfaceLaw& law, const FreeJump& w);
 /// study's eq. 5); friction where |t| > mu n or in tension.
 bool fails(const InterfaceLaw& law, const Reaction& r);
 
-/// Checks the bonded columns of weak and friction interfaces against the mean total stress of the particles around them
-/// and splits those that fail, with the reaction they carried as first guess. Returns true if any did; the copies must
-/// then be rebuilt.
+/// Checks the bonded points of weak and friction interfaces against the mean total stress of the particles around them
+/// and splits the columns of those that fail, with the reaction they carried as first guess. Returns true if any did;
+/// the copies must then be rebuilt.
 bool fail_interfaces(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
 
-/// Finds the reactions of all split places together (Gauss-Seidel over places on D M^-1 D^T, started from the last
+/// Finds the reactions of all split places together (successive over-relaxation on D M^-1 D^T, started from the last
 /// step's reactions) and adds what they do to state.motion, which holds the motion without them. Jumps are those at the
 /// end of the step. Adds to the ledger's friction and interface_strain and to the monitors.
 void solve_reactions(const Scene& scene, State& state);

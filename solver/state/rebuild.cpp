@@ -272,47 +272,45 @@ void make_masters(const Scene& scene, State& state) {
   }
 }
 
-// Stress on a bonded interface is the mean over the particles around a column's middle, weighted with the quadratic
-// B-spline that stands there: exact where stress is uniform or linear.
-std::vector<std::vector<StressSample>> sample_columns(const Scene& scene, const State& state, const Surface& s) {
-  const bool along_x = scene.strata.along == Strata::Along::y;
-  const Grid& g = state.grid;
-  std::vector<std::vector<StressSample>> columns(static_cast<std::size_t>(along_x ? g.nx : g.ny) + 1);
-  const double at = along_x ? s.vertices[0].x.y() : s.vertices[0].x.x();
-  const auto spline = [](double f) {
-    f = std::abs(f);
-    if (f < 0.5) return 0.75 - f * f;
-    return f < 1.5 ? 0.5 * (1.5 - f) * (1.5 - f) : 0.0;
-  };
+// Stress at a point of a bonded interface: the mean over the particles around it, weighted with a hat half a cell wide
+// to each side. Exact where stress is uniform or linear. With 4 points a cell on a grid line these are the two
+// particles right above and below: a wider mean would hide the shear beside an approaching tip, which changes sign
+// across it.
+std::vector<std::vector<StressSample>> sample_stress(const State& state, const Surface& s) {
+  const double half = 0.5 * state.grid.h;
   const Particles& p = state.particles;
+  const Vec2 from = s.vertices.front().x, to = s.vertices.back().x;
+  const Vec2 along = (to - from).normalized(), across{-along.y(), along.x()};
+  std::vector<std::vector<StressSample>> samples(s.points.size());
   for (int q = 0; q < static_cast<int>(p.size()); ++q) {
     const auto k = static_cast<std::size_t>(q);
-    const double across = spline(((along_x ? p.y[k] : p.x[k]) - at) / g.h);
-    if (across == 0.0) continue;
-    const double along = along_x ? p.x[k] : p.y[k];
-    const int column = g.nearest(along);
-    for (int c = std::max(0, column - 1); c <= std::min(static_cast<int>(columns.size()) - 1, column + 1); ++c) {
-      const double weight = across * spline(along / g.h - c) * p.V[k];
-      if (weight > 0.0) columns[static_cast<std::size_t>(c)].push_back({q, weight});
+    const Vec2 off = Vec2{p.x[k], p.y[k]} - from;
+    const double share = 1.0 - std::abs(off.dot(across)) / half;
+    if (share <= 0.0) continue;
+    const auto near = static_cast<std::ptrdiff_t>(off.dot(along) / s.length() * static_cast<double>(s.points.size()));
+    for (std::ptrdiff_t c = near - 2; c <= near + 2; ++c) {
+      if (c < 0 || c >= static_cast<std::ptrdiff_t>(s.points.size())) continue;
+      const auto point = static_cast<std::size_t>(c);
+      const double weight = share * (1.0 - std::abs(off.dot(along) - s.points[point].arc) / half) * p.V[k];
+      if (weight > 1e-3 * p.V[k]) samples[point].push_back({q, weight});
     }
   }
-  for (auto& column : columns) {
+  for (auto& point : samples) {
     double sum = 0.0;
-    for (const StressSample& sample : column) sum += sample.weight;
-    for (StressSample& sample : column) sample.weight /= sum;
+    for (const StressSample& sample : point) sum += sample.weight;
+    for (StressSample& sample : point) sample.weight /= sum;
   }
-  return columns;
+  return samples;
 }
 
-void make_column_samples(const Scene& scene, State& state) {
-  state.column_samples.assign(state.surfaces.size(), {});
+void make_stress_samples(const Scene& scene, State& state) {
+  state.stress_samples.assign(state.surfaces.size(), {});
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
     const Surface& s = state.surfaces[k];
     if (s.kind != Surface::Kind::interface) continue;
     const auto kind = scene.laws[s.law].kind;
-    if (kind == InterfaceLaw::Kind::weak || kind == InterfaceLaw::Kind::friction) {
-      state.column_samples[k] = sample_columns(scene, state, s);
-    }
+    if (kind == InterfaceLaw::Kind::weak || kind == InterfaceLaw::Kind::friction)
+      state.stress_samples[k] = sample_stress(state, s);
   }
 }
 
@@ -365,7 +363,7 @@ void rebuild_copies(const Scene& scene, State& state) {
   sort_particles(state.particles, keys);
   make_bins(state, keys);
   make_masters(scene, state);
-  make_column_samples(scene, state);
+  make_stress_samples(scene, state);
   make_surface_stencils(state);
   state.sums.assign(static_cast<std::size_t>(state.copies.records()), NodeSums{});
   state.motion.assign(static_cast<std::size_t>(state.copies.records()), NodeMotion{});

@@ -107,7 +107,7 @@ struct State {
   std::vector<Master> masters;  // of each record
   std::vector<int> tied;        // the records whose master is another one or has a factor 0
   std::vector<std::vector<std::vector<StressSample>>>
-      column_samples;  // of each surface's columns; empty where it never fails
+      stress_samples;  // of each surface's points; empty where it never fails
   std::vector<std::vector<SurfaceStencil>> point_stencils, vertex_stencils;  // of each surface
   std::vector<NodeSums> sums;
   std::vector<NodeMotion> motion;
