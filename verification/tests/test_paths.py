@@ -5,6 +5,7 @@ import math
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from verification.harness.compare import compare, require, within
@@ -50,8 +51,8 @@ def reference_kink_deg(scene: Path) -> float:
 def test_the_first_turn_at_rest(name: str, cell_m: float) -> None:
     scene = EXPERIMENTS / f"{name}.toml"
     run = completed(scene, "perfect", (f"numerics.cell_m={cell_m}", *AT_REST))
-    # The block's edges are 35 to 75 m away and act on K_II too; the reference has none: half of it is allowed.
-    require(compare("kink", run.summary.tips[0].kink_deg, within(reference_kink_deg(scene), 0.5, "degrees")))
+    # The block's edges are 35 to 75 m away and act on K_II too; the reference has none, so a tenth is allowed.
+    require(compare("kink", run.summary.tips[0].kink_deg, within(reference_kink_deg(scene), 0.1, "degrees")))
 
 
 @pytest.mark.slow
@@ -66,3 +67,14 @@ def test_the_path_turns_the_same_way(name: str, cell_m: float) -> None:
     assert math.copysign(1.0, deflection) == -math.copysign(1.0, kink), "counter-clockwise is towards smaller x"
     # An increment of 1 m that turns by the reference's kink moves the tip sideways by its sine; three of them by more.
     assert abs(deflection) > math.sin(math.radians(abs(kink)))
+
+
+@pytest.mark.slow
+@pytest.mark.xfail(reason="K_II after a kink shorter than the rings is not yet right: the path turns to and fro by up to 25 degrees")
+def test_the_path_of_experiment_5_is_smooth() -> None:
+    """Every turn makes K_II smaller, so none is larger than a few times the first."""
+    scene = EXPERIMENTS / "exp5_parallel_interface.toml"
+    run = completed(scene, "perfect", ("numerics.cell_m=1.0", *FIRST_METRES[1.0]))
+    legs = np.diff(run.path, axis=0)
+    turns = np.degrees(np.diff(np.arctan2(legs[:, 0], legs[:, 1])))
+    assert np.max(np.abs(turns)) < 3.0 * abs(reference_kink_deg(scene)), turns.round(1).tolist()
