@@ -84,8 +84,8 @@ void move_tip(const Scene& scene, State& state, Tip& tip) {
   const Vec2 from = tip_position(state, tip);
   Vec2 direction = tip_direction(fracture, tip.at_back);
   if (scene.fracture->direction == Fracture::Direction::max_hoop) {
-    direction = Vec2{std::cos(tip.kink) * direction.x() - std::sin(tip.kink) * direction.y(),
-                     std::sin(tip.kink) * direction.x() + std::cos(tip.kink) * direction.y()};
+    direction = Vec2{std::cos(tip.turn) * direction.x() - std::sin(tip.turn) * direction.y(),
+                     std::sin(tip.turn) * direction.x() + std::cos(tip.turn) * direction.y()};
   }
   const double old_length = fracture.length();
   const std::size_t old_points = fracture.points.size();

@@ -220,6 +220,30 @@ double ring_radius(const Scene& scene, const State& state, const Tip& tip, const
   return std::max(radius, narrowest_ring_cells * h);
 }
 
+// The share of the maximum-hoop kink that one increment turns by. A kink over less than about three cells is not
+// resolved: particles beside it keep their sides, K_II is read off a fracture that has hardly turned, and a path that
+// takes the whole kink at once zigzags ever more (K_II/K_I answers a turn with about 0.9 of it, the kink is twice
+// that). The path of local symmetry, K_II = 0, does not depend on the share (Cotterell & Rice 1980); the length in
+// which it is reached does.
+double turn_taken(const Scene& scene) {
+  constexpr double resolved_cells = 3.0;
+  return std::min(1.0, scene.fracture->increment_m / (resolved_cells * scene.numerics.cell_m));
+}
+
+// Direction from the place a distance `back` (m) behind the tip to the tip. K is a property of the fracture as the
+// rings see it: measured in the frame of the last increment alone, a kink of the size of a ring's inner part comes back
+// twice too large with the opposite sign, and a path that follows it zigzags ever more.
+Vec2 mean_direction(const Surface& fracture, bool at_back, double back) {
+  const auto& v = fracture.vertices;
+  const Vec2 tip = at_back ? v.back().x : v.front().x;
+  const double arc = std::clamp(at_back ? fracture.length() - back : back, 0.0, fracture.length());
+  const auto after =
+      std::find_if(v.begin() + 1, v.end() - 1, [arc](const SurfacePoint& vertex) { return vertex.arc >= arc; });
+  const SurfacePoint &a = *(after - 1), &b = *after;
+  const Vec2 from = a.x + (b.x - a.x) * ((arc - a.arc) / (b.arc - a.arc));
+  return (tip - from).normalized();
+}
+
 void finish_tip(const Scene& scene, const Elasticity& rock, const State& state, const std::vector<Sums>& sums,
                 Tip& tip) {
   double mean = 0.0, K_I = 0.0, K_II = 0.0, least = sums[0].J, most = sums[0].J;
@@ -252,10 +276,10 @@ void measure_tips(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
   for (Tip& tip : state.tips) {
     Frame frame;
     frame.tip = tip.at_back ? fracture.vertices.back().x : fracture.vertices.front().x;
-    frame.e_1 = tip_direction(fracture, tip.at_back);
-    frame.e_2 = {-frame.e_1.y(), frame.e_1.x()};
     frame.sign = tip.at_back ? 1.0 : -1.0;
     tip.ring_m = ring_radius(scene, state, tip, frame.tip, tip.at_interface);
+    frame.e_1 = mean_direction(fracture, tip.at_back, tip.ring_m);
+    frame.e_2 = {-frame.e_1.y(), frame.e_1.x()};
     std::vector<Ring> rings;
     for (const double fraction : ring_fractions)
       rings.push_back({inner_fraction * fraction * tip.ring_m, fraction * tip.ring_m});
@@ -276,6 +300,10 @@ void measure_tips(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
     }
     add_faces(rock, state.grid, fracture, frame, tip.at_back, rings, sums);
     finish_tip(scene, rock, state, sums, tip);
+    const Vec2 last = tip_direction(fracture, tip.at_back);
+    const double lag = std::atan2(cross(last, frame.e_1), last.dot(frame.e_1));
+    tip.turn = lag + turn_taken(scene) * tip.kink;
+    tip.kink += lag;
   }
 }
 

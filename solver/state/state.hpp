@@ -37,6 +37,7 @@ struct Tip {
   double J_spread = 0.0;         // (max - min)/mean over rings
   double ring_m = 0.0;           // outer radius of the widest ring (m)
   double kink = 0.0;             // next growth direction from the present one (rad), counter-clockwise positive
+  double turn = 0.0;             // what the next increment turns by (rad)
   bool at_interface = false;     // an interface is so near that J and K are not to be trusted
   double last_growth_s = -1.0;   // time of its last growth, -1 before the first
   double last_growth_Pa = 0.0;   // inlet pressure then
