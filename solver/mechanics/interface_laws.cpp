@@ -106,8 +106,11 @@ double relax(const Place& place, double dt, std::vector<NodeMotion>& motion) {
   const Vec2 tangent{s.n.y(), -s.n.x()};
   const Vec2 w = s.w + dt * jump_rate(place, motion);
   const FreeJump free{w.dot(s.n) - place.per_n * s.reaction.dot(s.n),
-                      w.dot(tangent) - place.per_t * s.reaction.dot(tangent), s.w.dot(tangent), place.per_n,
-                      place.per_t};
+                      w.dot(tangent) - place.per_t * s.reaction.dot(tangent),
+                      s.w.dot(tangent),
+                      place.per_n,
+                      place.per_t,
+                      s.closing_stress() - s.P};
   const Reaction r = react(*place.law, free);
   const Reaction over =
       admissible(*place.law, {s.reaction.dot(s.n) + over_relaxation * (r.n - s.reaction.dot(s.n)),
