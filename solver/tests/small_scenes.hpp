@@ -1,6 +1,8 @@
 // Small blocks for the tests of the solver's core, and what several of them do with a state.
 #pragma once
 
+#include <omp.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -87,7 +89,10 @@ struct Run {
   std::vector<Elasticity> rocks;
   State state;
 
-  explicit Run(const Scene& from) : scene(from), rocks(make_elasticities(scene)), state(initialise(scene, rocks)) {}
+  // Blocks this small gain nothing by threads.
+  explicit Run(const Scene& from) : scene(from), rocks(make_elasticities(scene)), state(initialise(scene, rocks)) {
+    omp_set_num_threads(1);
+  }
   void advance(int steps) {
     for (int k = 0; k < steps; ++k) strata::advance(scene, rocks, state);
   }

@@ -85,7 +85,7 @@ TEST_CASE("the jump operator and the force of tractions are adjoint") {
           by_jump += work, scale += std::abs(work);
         }
       }
-      CHECK(scale > 1e6);
+      CHECK(scale > 1e4);
       CHECK(std::abs(by_jump) > 1e-3 * scale);
       CHECK(std::abs(power(state, forces) - by_jump) < 1e-13 * scale);
     }
@@ -202,7 +202,7 @@ TEST_CASE("pressure equal to the closing stress moves nothing, inclined") {
 }
 
 // Requires that a fracture whose pressure is below the closing stress stays shut: contact takes the difference, by hand
-// 0.5 MPa on the whole, and the rock stays at rest but for what contact gives way (1e-3 of a step's, 1e-10 m).
+// 0.5 MPa on the whole, and the rock stays where it was.
 TEST_CASE("a closed fracture rests on contact") {
   for (const double x : {6.0, 6.5}) {
     Run run(pressed(x, 1.5e6, 2e6));
@@ -211,9 +211,10 @@ TEST_CASE("a closed fracture rests on contact") {
     for (const SurfacePoint& s : run.state.fracture().points) {
       carried += s.A * s.reaction.dot(s.n);
       length += s.A;
-      CHECK(std::abs(s.opening()) < 1e-8);
+      CHECK(std::abs(s.opening()) < 1e-12);
     }
-    CHECK(carried / length == Approx(0.5e6).epsilon(1e-2));
+    CHECK(carried / length == Approx(0.5e6).epsilon(1e-9));
     CHECK(run.state.tips[0].K_I == 0.0);
+    CHECK(top_speed(run.state.particles) < 1e-9);
   }
 }
