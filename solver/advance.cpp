@@ -19,7 +19,7 @@ namespace {
 
 // Stored energies now, and what the transfer lost: the grid's gain in kinetic energy that the particles did not take
 // up.
-void close_ledger(const Scene& scene, const GridEnergy& grid, double grid_after, const ParticleEnergy& particles,
+void close_ledger(const Scene& scene, const GridEnergy& grid, double grid_after, const ParticleReport& particles,
                   State& state) {
   Ledger& ledger = state.ledger;
   if (!std::isfinite(particles.after)) {
@@ -51,7 +51,7 @@ void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& st
   const double grid_after = grid_energy(state);
   spread_to_tied(state);
   const double keep = prepare_transfer(scene, state);                      // FLIP, PIC or XPIC
-  const ParticleEnergy particles = grid_to_particles(scene, state, keep);  // v_p, x_p, grad u_p (and with it stress)
+  const ParticleReport particles = grid_to_particles(scene, state, keep);  // v_p, x_p, grad u_p (and with it stress)
   follow_surfaces(state);                                                  // w += dt D v
   state.time += state.dt;
   ++state.step;
@@ -60,7 +60,8 @@ void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& st
   measure_tips(scene, rocks, state);                    // J, K_I, K_II with the same P
   changed = grow(scene, rocks, state) || changed;       // a new point ahead of the tip
   watch_tips(scene, state);
-  if (changed || state.step % steps_between_rebuilds == 0 || particles_left_bins(state)) rebuild(scene, rocks, state);
+  if (changed || state.step % steps_between_rebuilds == 0 || particles.farthest_cells > bin_reach_cells)
+    rebuild(scene, rocks, state);
 }
 
 }  // namespace strata

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include "state/shape_functions.hpp"
 
@@ -42,16 +43,25 @@ struct Weight {
   Vec2 grad = Vec2::Zero();
 };
 
-Weight weight_at(const Grid& g, const Frame& frame, const Ring& ring, const Vec2& x) {
-  const int i = g.nearest(x.x()), j = g.nearest(x.y());
+// q at the nine nodes around a place.
+using NodalWeights = std::array<double, 9>;
+
+NodalWeights nodal_weights(const Grid& g, const Vec2& tip, const Ring& ring, int i, int j) {
+  NodalWeights q{};
+  for (int n = 0; n < 9; ++n) {
+    const Vec2 x{(i + n % 3 - 1) * g.h, (j + n / 3 - 1) * g.h};
+    q[static_cast<std::size_t>(n)] = ring.at_node((x - tip).norm());
+  }
+  return q;
+}
+
+Weight weight_at(const Grid& g, const Frame& frame, const NodalWeights& nodes, int i, int j, const Vec2& x) {
   const Weights X = QuadraticBspline::at(x.x() / g.h - i, 0.0), Y = QuadraticBspline::at(x.y() / g.h - j, 0.0);
   double q = 0.0;
   Vec2 grad = Vec2::Zero();
-  for (int n = 0; n < 9; ++n) {
-    const auto a = static_cast<std::size_t>(n % 3), b = static_cast<std::size_t>(n / 3);
-    const double q_i = ring.at_node((Vec2{(i + n % 3 - 1) * g.h, (j + n / 3 - 1) * g.h} - frame.tip).norm());
-    q += X.N[a] * Y.N[b] * q_i;
-    grad += q_i / g.h * Vec2{X.dN[a] * Y.N[b], X.N[a] * Y.dN[b]};
+  for (std::size_t n = 0; n < 9; ++n) {
+    q += X.N[n % 3] * Y.N[n / 3] * nodes[n];
+    grad += nodes[n] / g.h * Vec2{X.dN[n % 3] * Y.N[n / 3], X.N[n % 3] * Y.dN[n / 3]};
   }
   return {q, frame.local(grad)};
 }
@@ -98,7 +108,7 @@ AuxiliaryFields williams(const Elasticity& rock, int mode, double r, double thet
   return aux;
 }
 
-void add_domain(const Elasticity& rock, const LocalFields& p, const std::vector<Weight>& weights,
+void add_domain(const Elasticity& rock, const LocalFields& p, std::span<const Weight> weights,
                 std::vector<Sums>& sums) {
   const Vec2 u_1{p.H[0][0], p.H[1][0]};
   const double e_12 = 0.5 * (p.H[0][1] + p.H[1][0]);
@@ -161,6 +171,25 @@ LocalFields fields_at(const State& state, const Elasticity& rock, const Frame& f
   return f;
 }
 
+// Adds the particles of a bin to the sums of all rings; a bin that no ring weighs adds nothing.
+void add_bin(const std::vector<Elasticity>& rocks, const State& state, const Frame& frame,
+             const std::vector<Ring>& rings, const Bin& bin, std::vector<Sums>& sums) {
+  std::array<NodalWeights, ring_fractions.size()> nodes;
+  bool any = false;
+  for (std::size_t k = 0; k < rings.size(); ++k) {
+    nodes[k] = nodal_weights(state.grid, frame.tip, rings[k], bin.i, bin.j);
+    any = any || *std::max_element(nodes[k].begin(), nodes[k].end()) > 0.0;
+  }
+  if (!any) return;
+  std::array<Weight, ring_fractions.size()> weights;
+  for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
+    const Vec2 x{state.particles.x[q], state.particles.y[q]};
+    for (std::size_t k = 0; k < rings.size(); ++k) weights[k] = weight_at(state.grid, frame, nodes[k], bin.i, bin.j, x);
+    const Elasticity& own = rocks[state.particles.rock[q]];
+    add_domain(own, fields_at(state, own, frame, state.fracture().mask(), bin, q), weights, sums);
+  }
+}
+
 // Face terms: w . d(t q)/ds of J, and of the interaction integral + t 4/E' q/sqrt(2 pi r) dr, exact for t constant on a
 // piece.
 void add_faces(const Elasticity& rock, const Grid& grid, const Surface& fracture, const Frame& frame, bool at_back,
@@ -186,7 +215,8 @@ void add_faces(const Elasticity& rock, const Grid& grid, const Surface& fracture
         4.0 / rock.E_prime * 2.0 * (std::sqrt(far) - std::sqrt(std::max(near, 0.0))) / std::sqrt(2.0 * pi);
     const Vec2 forward = frame.local(at_back ? Vec2{s.n.y(), -s.n.x()} : Vec2{-s.n.y(), s.n.x()});
     for (std::size_t j = 0; j < rings.size(); ++j) {
-      const Weight weight = weight_at(grid, frame, rings[j], s.x);
+      const int i_s = grid.nearest(s.x.x()), j_s = grid.nearest(s.x.y());
+      const Weight weight = weight_at(grid, frame, nodal_weights(grid, frame.tip, rings[j], i_s, j_s), i_s, j_s, s.x);
       const double q = weight.q, dq_ds = weight.grad.dot(forward);
       sums[j].J += s.A * (w.dot(t) * dq_ds + q * w.dot(dt_ds));
       sums[j].I[0] += t.y() * q * root;
@@ -290,13 +320,7 @@ void measure_tips(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
       if (std::abs(bin.i - frame.tip.x() / state.grid.h) > reach ||
           std::abs(bin.j - frame.tip.y() / state.grid.h) > reach)
         continue;
-      for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
-        const Vec2 x{state.particles.x[q], state.particles.y[q]};
-        std::vector<Weight> weights;
-        for (const Ring& ring : rings) weights.push_back(weight_at(state.grid, frame, ring, x));
-        const Elasticity& own = rocks[state.particles.rock[q]];
-        add_domain(own, fields_at(state, own, frame, fracture.mask(), bin, q), weights, sums);
-      }
+      add_bin(rocks, state, frame, rings, bin, sums);
     }
     add_faces(rock, state.grid, fracture, frame, tip.at_back, rings, sums);
     finish_tip(scene, rock, state, sums, tip);

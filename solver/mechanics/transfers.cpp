@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "state/shape_functions.hpp"
 
@@ -74,7 +75,8 @@ struct Advance {
 
 template <class Shape>
 void move_bin(const Grid& grid, const Bin& bin, const Advance& by, const std::vector<NodeMotion>& motion, Particles& p,
-              ParticleEnergy& energy) {
+              ParticleReport& report) {
+  const double inverse_h = 1.0 / grid.h;
   std::array<Four, 9> record;
   for (std::size_t n = 0; n < 9; ++n) record[n] = load<Four>(motion[static_cast<std::size_t>(bin.record[n])]);
   for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
@@ -86,12 +88,14 @@ void move_bin(const Grid& grid, const Bin& bin, const Advance& by, const std::ve
       d_y += w.N_y[n] * record[n];
     }
     const double m = p.m[q];
-    energy.before += 0.5 * m * (p.v_x[q] * p.v_x[q] + p.v_y[q] * p.v_y[q]);
+    report.before += 0.5 * m * (p.v_x[q] * p.v_x[q] + p.v_y[q] * p.v_y[q]);
     p.v_x[q] = by.keep * p.v_x[q] + v[2];
     p.v_y[q] = by.keep * p.v_y[q] + v[3];
     const double speed2 = p.v_x[q] * p.v_x[q] + p.v_y[q] * p.v_y[q];
-    energy.after += 0.5 * m * speed2;
-    energy.largest_speed2 = std::max(energy.largest_speed2, speed2);
+    report.after += 0.5 * m * speed2;
+    report.largest_speed2 = std::max(report.largest_speed2, speed2);
+    const double off_x = std::abs(p.x[q] * inverse_h - bin.i), off_y = std::abs(p.y[q] * inverse_h - bin.j);
+    report.farthest_cells = std::max(report.farthest_cells, std::max(off_x, off_y));
     p.x[q] += by.dt * v[0], p.y[q] += by.dt * v[1];
     p.u_x[q] += by.dt * v[0], p.u_y[q] += by.dt * v[1];
     p.g_xx[q] += by.dt * d_x[0], p.g_yx[q] += by.dt * d_x[1];
@@ -146,8 +150,8 @@ std::vector<Vec2> filter_velocity(const Scene& scene, State& state, const std::v
   return filtered;
 }
 
-ParticleEnergy grid_to_particles(const Scene& scene, State& state, double keep) {
-  std::vector<ParticleEnergy> of_strip(state.strips.size());
+ParticleReport grid_to_particles(const Scene& scene, State& state, double keep) {
+  std::vector<ParticleReport> of_strip(state.strips.size());
   const Advance by{state.dt, keep};
   with_shape(scene.numerics.shape, [&](auto shape) {
     for_each_strip(state, [&](std::size_t k) {
@@ -157,11 +161,12 @@ ParticleEnergy grid_to_particles(const Scene& scene, State& state, double keep) 
       }
     });
   });
-  ParticleEnergy total;  // summed strip by strip, so that the digits do not depend on the number of threads
-  for (const ParticleEnergy& e : of_strip) {
+  ParticleReport total;  // summed strip by strip, so that the digits do not depend on the number of threads
+  for (const ParticleReport& e : of_strip) {
     total.before += e.before;
     total.after += e.after;
     total.largest_speed2 = std::max(total.largest_speed2, e.largest_speed2);
+    total.farthest_cells = std::max(total.farthest_cells, e.farthest_cells);
   }
   return total;
 }

@@ -8,11 +8,13 @@
 
 namespace strata {
 
-// Kinetic energy of the particles (J/m) before and after they took up the grid's motion, and their largest speed (m/s).
-struct ParticleEnergy {
+// What the particles say of a step: their kinetic energy (J/m) before and after they took up the grid's motion, the
+// square of their largest speed (m^2/s^2), and how far any is from the middle node of its bin (cells, along x or y).
+struct ParticleReport {
   double before = 0.0;
   double after = 0.0;
   double largest_speed2 = 0.0;
+  double farthest_cells = 0.0;
 };
 
 /// Particles to grid: m_i = sum_p N_ip m_p, mom_i = sum_p N_ip m_p v_p, f_i = -sum_p V_p sigma_p grad N_ip, where
@@ -26,7 +28,7 @@ std::vector<Vec2> filter_velocity(const Scene& scene, State& state, const std::v
 /// Grid to particles over state.dt: v_p = keep v_p + sum_i N_ip dv_i, x_p and u_p += dt sum_i N_ip v_i,
 /// g_p += dt sum_i v_i grad N_ip. FLIP keeps v_p (keep = 1 without damping) and adds increments; PIC and XPIC keep
 /// nothing and find the whole velocity in dv.
-ParticleEnergy grid_to_particles(const Scene& scene, State& state, double keep);
+ParticleReport grid_to_particles(const Scene& scene, State& state, double keep);
 
 /// Adds what tied records gathered to their masters (see Master), component by component, and clears the records
 /// outside symmetric edges.

@@ -369,17 +369,4 @@ void rebuild_copies(const Scene& scene, State& state) {
   state.motion.assign(static_cast<std::size_t>(state.copies.records()), NodeMotion{});
 }
 
-bool particles_left_bins(const State& state) {
-  constexpr double margin = 0.5 + 1e-3;
-  const Particles& p = state.particles;
-  for (const Bin& bin : state.bins) {
-    for (int k = bin.first; k < bin.last; ++k) {
-      const auto q = static_cast<std::size_t>(k);
-      if (std::abs(p.x[q] / state.grid.h - bin.i) > margin || std::abs(p.y[q] / state.grid.h - bin.j) > margin)
-        return true;
-    }
-  }
-  return false;
-}
-
 }  // namespace strata

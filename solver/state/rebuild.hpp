@@ -16,9 +16,10 @@ double support_in_cells(const Scene& scene);
 /// left the block.
 void rebuild_copies(const Scene& scene, State& state);
 
-/// True if a particle has left the bin it was sorted into, by more than a thousandth of a cell. Within that margin the
-/// polynomial pieces of the old bin still reproduce linear fields exactly and differ by less than 1e-6.
-bool particles_left_bins(const State& state);
+// A particle may be this far from the middle node of its bin (cells) before it is sorted anew. The polynomial pieces of
+// its old bin still reproduce linear fields exactly there and differ by less than 1e-6; a lattice of 3 x 3 points,
+// whose middle stands on the border of two bins, would change bins at every step without the margin.
+constexpr double bin_reach_cells = 0.5 + 1e-3;
 
 /// The side word of a place (m): the one rule side() applied to every surface but `except` (-1: to all).
 SideWord sides_at(const State& state, const Vec2& x, int except);
