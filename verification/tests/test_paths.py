@@ -70,7 +70,6 @@ def test_the_path_turns_the_same_way(name: str, cell_m: float) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(reason="K_II after a kink shorter than the rings is not yet right: the path turns to and fro by up to 25 degrees")
 def test_the_path_of_experiment_5_is_smooth() -> None:
     """Every turn makes K_II smaller, so none is larger than a few times the first."""
     scene = EXPERIMENTS / "exp5_parallel_interface.toml"
