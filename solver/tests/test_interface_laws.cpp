@@ -240,9 +240,9 @@ TEST_CASE("failure is for good and local") {
 
 // Requires that two bars in series settle at the jump t/D that the elongations' sum gives, t = stretch/(L1/M1 + L2/M2 +
 // 1/D), for springs from nothing to rigid, on a grid line and at mid-cell, in tension and (springs) in compression, and
-// stay there: to 1e-6 of it, which is the tolerance of the reactions' solution; measured MEASURED_BARS. Beyond 1e11
-// Pa/m the jump (1e-12 m at 1e15) is less than the rock's yield in a step and the tolerance is of that. Fails on no
-// spring, on D of half or twice its value up to 1e12, on the other sign.
+// stay there: to 2e-6 of it, which is the tolerance of the reactions' solution; measured 8e-7 at 1e15, below 7e-8 up to
+// 1e12. Beyond 1e11 Pa/m the jump (1e-12 m at 1e15) is less than the rock's yield in a step and the tolerance is of
+// that. Fails on no spring, on D of half or twice its value up to 1e12, on the other sign.
 TEST_CASE("soft interface in series with two bars") {
   for (const double at : {4.0, 3.5}) {
     for (const double D : {1e3, 1e6, 1e9, 1e12, 1e15}) {
@@ -251,7 +251,7 @@ TEST_CASE("soft interface in series with two bars") {
         Bars bars(at, D, Numerics::Shape::bspline2, c, sign);
         bars.run.advance(800);
         CAPTURE(at, D, sign, bars.error(sign));
-        CHECK(bars.error(sign) < 1e-6);
+        CHECK(bars.error(sign) < 2e-6);
       }
     }
   }
@@ -265,7 +265,7 @@ TEST_CASE("soft interface in series with two bars, hat functions") {
         Bars bars(at, D, shape, Compression::contact, 1.0);
         bars.run.advance(800);
         CAPTURE(static_cast<int>(shape), at, D, bars.error(1.0));
-        CHECK(bars.error(1.0) < 1e-6);
+        CHECK(bars.error(1.0) < 2e-6);
       }
     }
   }
@@ -292,7 +292,7 @@ TEST_CASE("shear springs between two blocks") {
     Scene scene = block(6, 8);
     scene.domain.bottom = Edge::symmetry;
     scene.domain.top = Edge::fixed;
-    const double D = 1e5, v0 = 0.01;
+    const double D = 5e4, v0 = 0.01;
     add_interface(scene, soft_law(D, D, Compression::spring), at);
     Run run(scene);
     Particles& p = run.state.particles;
@@ -315,7 +315,7 @@ TEST_CASE("shear springs between two blocks") {
 
 // Requires that springs of any stiffness hold their law r = -D w in both directions in random motion and stay stable
 // over 2000 steps: their energy and the particles' stay below what they started from. The law holds to 1e-3 of the
-// largest reaction up to 1e12 Pa/m; at 1e15 to MEASURED15.
+// largest reaction up to 1e12 Pa/m; at 1e15 it is 8e-3, where the solution runs out of sweeps.
 TEST_CASE("springs hold their law in random motion") {
   for (const double D : {1e3, 1e9, 1e12, 1e15}) {
     Scene scene = block(6, 8);
@@ -331,7 +331,7 @@ TEST_CASE("springs hold their law in random motion") {
     }
     CAPTURE(D, largest, off, run.state.monitors.contact_unconverged);
     CHECK(largest > 0.0);
-    CHECK(off < (D < 1e13 ? 1e-3 : 0.05) * largest);
+    CHECK(off < (D < 1e13 ? 1e-3 : 0.02) * largest);
     CHECK(top_speed(run.state.particles) < 0.02);
     CHECK(run.state.ledger.stored() < energy);
   }
