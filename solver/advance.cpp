@@ -19,8 +19,8 @@ namespace {
 
 // Stored energies now, and what the transfer lost: the grid's gain in kinetic energy that the particles did not take
 // up.
-void close_ledger(const Scene& scene, const GridEnergy& grid, double grid_after, const ParticleReport& particles,
-                  State& state) {
+void close_ledger(const Scene& scene, const GridEnergy& grid, const GridEnergyAfter& after,
+                  const ParticleReport& particles, State& state) {
   Ledger& ledger = state.ledger;
   if (!std::isfinite(particles.after)) {
     throw NumericalFailure(
@@ -29,7 +29,8 @@ void close_ledger(const Scene& scene, const GridEnergy& grid, double grid_after,
         std::to_string(scene.numerics.courant) + ")");
   }
   ledger.kinetic = particles.after;
-  ledger.transfer += (grid_after - grid.mapped) - (particles.after - particles.before);
+  ledger.transfer += (after.kinetic - grid.mapped) - (particles.after - particles.before);
+  ledger.integration += after.increment - particles.step_strain;
   ledger.interface_strain = spring_energy(scene, state);
   Monitors& monitors = state.monitors;
   monitors.largest_particle_velocity =
@@ -48,20 +49,23 @@ void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& st
   fold_to_masters(state, state.sums);      // symmetric and fixed edges
   const GridEnergy grid = advance_momentum(scene.numerics.damping_1_s, state);  // v_i = mom_i/m_i + dt f_i/m_i
   solve_reactions(scene, state);  // contact, friction, springs at the step's end
-  const double grid_after = grid_energy(state);
+  const GridEnergyAfter after = grid_energy(state);
   spread_to_tied(state);
-  const double keep = prepare_transfer(scene, state);                      // FLIP, PIC or XPIC
-  const ParticleReport particles = grid_to_particles(scene, state, keep);  // v_p, x_p, grad u_p (and with it stress)
-  follow_surfaces(state);                                                  // w += dt D v
+  const double keep = prepare_transfer(scene, state);  // FLIP, PIC or XPIC
+  const ParticleReport particles =
+      grid_to_particles(scene, rocks, state, keep);  // v_p, x_p, grad u_p (and with it stress)
+  follow_surfaces(state);                            // w += dt D v
   state.time += state.dt;
   ++state.step;
-  close_ledger(scene, grid, grid_after, particles, state);
+  close_ledger(scene, grid, after, particles, state);
   bool changed = fail_interfaces(scene, rocks, state);  // bonded places that now let go
   measure_tips(scene, rocks, state);                    // J, K_I, K_II with the same P
   changed = grow(scene, rocks, state) || changed;       // a new point ahead of the tip
   watch_tips(scene, state);
-  if (changed || state.step % steps_between_rebuilds == 0 || particles.farthest_cells > bin_reach_cells)
+  if (changed || state.step % steps_between_rebuilds == 0 || particles.farthest_cells > bin_reach_cells) {
     rebuild(scene, rocks, state);
+    state.ledger.interface_strain = spring_energy(scene, state);
+  }
 }
 
 }  // namespace strata

@@ -26,11 +26,13 @@ GridEnergy advance_momentum(double damping, State& state) {
   return energy;
 }
 
-double grid_energy(const State& state) {
-  double energy = 0.0;
+GridEnergyAfter grid_energy(const State& state) {
+  GridEnergyAfter energy;
   for (std::size_t r = 0; r < state.sums.size(); ++r) {
     const NodeMotion& node = state.motion[r];
-    energy += 0.5 * state.sums[r].m * (node.v_x * node.v_x + node.v_y * node.v_y);
+    const double half_m = 0.5 * state.sums[r].m;
+    energy.kinetic += half_m * (node.v_x * node.v_x + node.v_y * node.v_y);
+    energy.increment += half_m * (node.dv_x * node.dv_x + node.dv_y * node.dv_y);
   }
   return energy;
 }

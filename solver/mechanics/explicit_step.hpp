@@ -15,8 +15,14 @@ struct GridEnergy {
 /// increment dt f_i/m_i beside it. Ghosts must be folded before. Adds to the ledger's damping.
 GridEnergy advance_momentum(double damping, State& state);
 
-/// Kinetic energy of the grid, sum m_i v_i^2/2 over masters (J/m).
-double grid_energy(const State& state);
+// Kinetic energy of the grid at the end of a step and that of the step's increments alone, sum m_i dv_i^2/2 (J/m).
+struct GridEnergyAfter {
+  double kinetic = 0.0;
+  double increment = 0.0;
+};
+
+/// Both over masters, once reactions have been added.
+GridEnergyAfter grid_energy(const State& state);
 
 /// Gives tied records the motion of their masters.
 void spread_to_tied(State& state);

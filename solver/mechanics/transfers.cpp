@@ -74,9 +74,9 @@ struct Advance {
 };
 
 template <class Shape>
-void move_bin(const Grid& grid, const Bin& bin, const Advance& by, const std::vector<NodeMotion>& motion, Particles& p,
-              ParticleReport& report) {
-  const double inverse_h = 1.0 / grid.h;
+void move_bin(const std::vector<Elasticity>& rocks, const Grid& grid, const Bin& bin, const Advance& by,
+              const std::vector<NodeMotion>& motion, Particles& p, ParticleReport& report) {
+  const double inverse_h = 1.0 / grid.h, half_dt2 = 0.5 * by.dt * by.dt;
   std::array<Four, 9> record;
   for (std::size_t n = 0; n < 9; ++n) record[n] = load<Four>(motion[static_cast<std::size_t>(bin.record[n])]);
   for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
@@ -98,6 +98,8 @@ void move_bin(const Grid& grid, const Bin& bin, const Advance& by, const std::ve
     report.farthest_cells = std::max(report.farthest_cells, std::max(off_x, off_y));
     p.x[q] += by.dt * v[0], p.y[q] += by.dt * v[1];
     p.u_x[q] += by.dt * v[0], p.u_y[q] += by.dt * v[1];
+    const Stress rate = stress_of(rocks[p.rock[q]], d_x[0], d_y[0], d_x[1], d_y[1]);
+    report.step_strain += half_dt2 * p.V[q] * (rate.xx * d_x[0] + rate.yy * d_y[1] + rate.xy * (d_y[0] + d_x[1]));
     p.g_xx[q] += by.dt * d_x[0], p.g_yx[q] += by.dt * d_x[1];
     p.g_xy[q] += by.dt * d_y[0], p.g_yy[q] += by.dt * d_y[1];
   }
@@ -150,13 +152,13 @@ std::vector<Vec2> filter_velocity(const Scene& scene, State& state, const std::v
   return filtered;
 }
 
-ParticleReport grid_to_particles(const Scene& scene, State& state, double keep) {
+ParticleReport grid_to_particles(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, double keep) {
   std::vector<ParticleReport> of_strip(state.strips.size());
   const Advance by{state.dt, keep};
   with_shape(scene.numerics.shape, [&](auto shape) {
     for_each_strip(state, [&](std::size_t k) {
       for (int b = state.strips[k].first; b < state.strips[k].last; ++b) {
-        move_bin<decltype(shape)>(state.grid, state.bins[static_cast<std::size_t>(b)], by, state.motion,
+        move_bin<decltype(shape)>(rocks, state.grid, state.bins[static_cast<std::size_t>(b)], by, state.motion,
                                   state.particles, of_strip[k]);
       }
     });
@@ -165,6 +167,7 @@ ParticleReport grid_to_particles(const Scene& scene, State& state, double keep) 
   for (const ParticleReport& e : of_strip) {
     total.before += e.before;
     total.after += e.after;
+    total.step_strain += e.step_strain;
     total.largest_speed2 = std::max(total.largest_speed2, e.largest_speed2);
     total.farthest_cells = std::max(total.farthest_cells, e.farthest_cells);
   }

@@ -13,6 +13,7 @@ namespace strata {
 struct ParticleReport {
   double before = 0.0;
   double after = 0.0;
+  double step_strain = 0.0;  // energy of the step's own strain, sum V dsigma : de/2 (J/m)
   double largest_speed2 = 0.0;
   double farthest_cells = 0.0;
 };
@@ -28,7 +29,7 @@ std::vector<Vec2> filter_velocity(const Scene& scene, State& state, const std::v
 /// Grid to particles over state.dt: v_p = keep v_p + sum_i N_ip dv_i, x_p and u_p += dt sum_i N_ip v_i,
 /// g_p += dt sum_i v_i grad N_ip. FLIP keeps v_p (keep = 1 without damping) and adds increments; PIC and XPIC keep
 /// nothing and find the whole velocity in dv.
-ParticleReport grid_to_particles(const Scene& scene, State& state, double keep);
+ParticleReport grid_to_particles(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, double keep);
 
 /// Adds what tied records gathered to their masters (see Master), component by component, and clears the records
 /// outside symmetric edges.

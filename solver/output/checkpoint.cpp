@@ -87,9 +87,9 @@ void fields(Archive& ar, Is<Event> auto& event) {
 
 template <class Archive>
 void fields(Archive& ar, Is<Ledger> auto& ledger) {
-  auto& [kinetic, strain, interface_strain, fluid_work, in_situ_work, edge_work, damping, transfer, contact, friction,
-         fracture, largest] = ledger;
-  ar(kinetic, strain, interface_strain, fluid_work, in_situ_work, edge_work, damping, transfer, contact, friction,
+  auto& [kinetic, strain, interface_strain, fluid_work, in_situ_work, edge_work, damping, transfer, integration,
+         friction, fracture, largest] = ledger;
+  ar(kinetic, strain, interface_strain, fluid_work, in_situ_work, edge_work, damping, transfer, integration, friction,
      fracture, largest);
 }
 

@@ -34,7 +34,7 @@ constexpr HistoryColumn columns[] = {
     {"edge_work_J", "J/m", &HistoryRow::edge_work_J},
     {"damping_J", "J/m", &HistoryRow::damping_J},
     {"transfer_J", "J/m", &HistoryRow::transfer_J},
-    {"contact_J", "J/m", &HistoryRow::contact_J},
+    {"integration_J", "J/m", &HistoryRow::integration_J},
     {"friction_J", "J/m", &HistoryRow::friction_J},
     {"fracture_J", "J/m", &HistoryRow::fracture_J},
     {"energy_closure", "1", &HistoryRow::energy_closure},
@@ -167,7 +167,7 @@ HistoryRow history_row(const Scene&, const State& state) {
   row.edge_work_J = ledger.edge_work;
   row.damping_J = ledger.damping;
   row.transfer_J = ledger.transfer;
-  row.contact_J = ledger.contact;
+  row.integration_J = ledger.integration;
   row.friction_J = ledger.friction;
   row.fracture_J = ledger.fracture;
   row.energy_closure = ledger.closure();

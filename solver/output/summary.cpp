@@ -24,7 +24,7 @@ Json energy_json(const Ledger& ledger) {
           {"edge_work_J", ledger.edge_work},
           {"damping_J", ledger.damping},
           {"transfer_J", ledger.transfer},
-          {"contact_J", ledger.contact},
+          {"integration_J", ledger.integration},
           {"friction_J", ledger.friction},
           {"fracture_J", ledger.fracture},
           {"stored_J", ledger.stored()},

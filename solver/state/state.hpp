@@ -66,14 +66,14 @@ struct Ledger {
   double edge_work = 0.0;         // of the edges' tractions beyond the in-situ ones
   double damping = 0.0;           // dissipated by damping_1_s
   double transfer = 0.0;          // dissipated between particles and grid
-  double contact = 0.0;           // dissipated by impacts on contact
-  double friction = 0.0;          // dissipated by sliding and by the failure of interfaces
-  double fracture = 0.0;          // released from the springs of tips that moved on (see TipTie)
-  double largest = 0.0;           // largest of the stored or supplied energies so far, the scale for closure()
+  double integration = 0.0;  // lost by the time step itself: sum of dt^2 (f M^-1 f - v K v)/2, most of it at shocks
+  double friction = 0.0;     // dissipated by sliding and by the failure of interfaces
+  double fracture = 0.0;     // released from the springs of tips that moved on (see TipTie)
+  double largest = 0.0;      // largest of the stored or supplied energies so far, the scale for closure()
 
   double supplied() const { return fluid_work + in_situ_work + edge_work; }
   double stored() const { return kinetic + strain + interface_strain; }
-  double dissipated() const { return damping + transfer + contact + friction + fracture; }
+  double dissipated() const { return damping + transfer + integration + friction + fracture; }
   double closure() const { return largest > 0.0 ? (stored() + dissipated() - supplied()) / largest : 0.0; }
 };
 

@@ -86,7 +86,7 @@ void require_same(const Ledger& a, const Ledger& b) {
   CHECK(a.edge_work == b.edge_work);
   CHECK(a.damping == b.damping);
   CHECK(a.transfer == b.transfer);
-  CHECK(a.contact == b.contact);
+  CHECK(a.integration == b.integration);
   CHECK(a.friction == b.friction);
   CHECK(a.fracture == b.fracture);
   CHECK(a.largest == b.largest);

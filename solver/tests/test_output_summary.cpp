@@ -49,7 +49,7 @@ TEST_CASE("the summary holds the keys of the contract with the values of the sta
   CHECK(energy.at("edge_work_J") == l.edge_work);
   CHECK(energy.at("damping_J") == l.damping);
   CHECK(energy.at("transfer_J") == l.transfer);
-  CHECK(energy.at("contact_J") == l.contact);
+  CHECK(energy.at("integration_J") == l.integration);
   CHECK(energy.at("friction_J") == l.friction);
   CHECK(energy.at("fracture_J") == l.fracture);
   CHECK(energy.at("closure") == l.closure());

@@ -9,7 +9,7 @@ from verification.harness.load import Run
 from verification.tests.cases import completed
 
 STORED = ("kinetic_J", "strain_J", "interface_strain_J")
-DISSIPATED = ("damping_J", "transfer_J", "contact_J", "friction_J", "fracture_J")
+DISSIPATED = ("damping_J", "transfer_J", "integration_J", "friction_J", "fracture_J")
 SUPPLIED = ("fluid_work_J", "in_situ_work_J", "edge_work_J")
 
 
