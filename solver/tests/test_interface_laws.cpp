@@ -314,8 +314,9 @@ TEST_CASE("shear springs between two blocks") {
 }
 
 // Requires that springs of any stiffness hold their law r = -D w in both directions in random motion and stay stable
-// over 2000 steps: their energy and the particles' stay below what they started from. The law holds to 1e-3 of the
-// largest reaction up to 1e12 Pa/m; at 1e15 it is 8e-3, where the solution runs out of sweeps.
+// over 2000 steps: springs and rock hold no more than 1.2 of the energy they started from (velocities and jumps are
+// half a step apart). The law holds to 1e-3 of the largest reaction up to 1e12 Pa/m; at 1e15 it is 8e-3, where the
+// solution runs out of sweeps.
 TEST_CASE("springs hold their law in random motion") {
   for (const double D : {1e3, 1e9, 1e12, 1e15}) {
     Scene scene = block(6, 8);
@@ -333,7 +334,7 @@ TEST_CASE("springs hold their law in random motion") {
     CHECK(largest > 0.0);
     CHECK(off < (D < 1e13 ? 1e-3 : 0.02) * largest);
     CHECK(top_speed(run.state.particles) < 0.02);
-    CHECK(run.state.ledger.stored() < energy);
+    CHECK(run.state.ledger.stored() + strain_energy(run.rocks, run.state.particles) < 1.2 * energy);
   }
 }
 
