@@ -1,0 +1,233 @@
+#include "fracture/j_integral.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+#include <numbers>
+
+#include "fracture/growth.hpp"
+#include "small_scenes.hpp"
+
+using namespace strata;
+using namespace strata::test;
+
+namespace {
+
+using std::numbers::pi;
+
+struct Intensity {
+  double K_I = 0.0, K_II = 0.0;
+};
+
+// Displacement near a tip in its own frame (crack along the negative first axis), plane strain: Anderson 2005, table
+// 2.2.
+Vec2 near_tip(const Elasticity& rock, const Intensity& K, double r, double theta) {
+  const double kappa = 3.0 - 4.0 * rock.nu, c = std::cos(0.5 * theta), s = std::sin(0.5 * theta);
+  const double scale = std::sqrt(r / (2.0 * pi)) / (2.0 * rock.mu);
+  return scale * (K.K_I * Vec2{c * (kappa - 1.0 + 2.0 * s * s), s * (kappa + 1.0 - 2.0 * c * c)} +
+                  K.K_II * Vec2{s * (kappa + 1.0 + 2.0 * c * c), -c * (kappa - 1.0 - 2.0 * s * s)});
+}
+
+struct Frame {
+  Vec2 tip, e_1, e_2;
+  Frame(const State& state, bool at_back) {
+    const auto& v = state.fracture().vertices;
+    tip = at_back ? v.back().x : v.front().x;
+    e_1 = (tip - (at_back ? v.front().x : v.back().x)).normalized();
+    e_2 = {-e_1.y(), e_1.x()};
+  }
+  Vec2 local(const Vec2& x) const { return {x.dot(e_1), x.dot(e_2)}; }
+  Vec2 global(const Vec2& x) const { return x.x() * e_1 + x.y() * e_2; }
+};
+
+Vec2 displacement(const Elasticity& rock, const Intensity& K, const Frame& frame, const Vec2& x) {
+  const Vec2 at = frame.local(x - frame.tip);
+  return frame.global(near_tip(rock, K, at.norm(), std::atan2(at.y(), at.x())));
+}
+
+// Lays the near-tip field of one tip on all particles and the fracture's points, with a uniform pressure on the faces
+// and the uniform stress -p n n that goes with it, which has no intensity of its own.
+void impose(Run& run, bool at_back, const Intensity& K, double pressure = 0.0) {
+  State& state = run.state;
+  const Elasticity& rock = run.rocks[0];
+  const Frame frame(state, at_back);
+  const Vec2 n = state.fracture().points[0].n;
+  const auto uniform = gradient_of(run.scene.rocks[0],
+                                   {-pressure * n.x() * n.x(), -pressure * n.y() * n.y(), -pressure * n.x() * n.y()});
+  Particles& p = state.particles;
+  for (std::size_t q = 0; q < p.size(); ++q) {
+    const Vec2 x{p.x[q], p.y[q]};
+    const double d = 1e-5 * (x - frame.tip).norm();
+    const auto u = [&](double a, double b) { return displacement(rock, K, frame, x + Vec2{a, b}); };
+    const Vec2 by_x = (u(d, 0.0) - u(-d, 0.0)) / (2.0 * d), by_y = (u(0.0, d) - u(0.0, -d)) / (2.0 * d);
+    strain(state, q, {by_x.x() + uniform[0], by_y.x() + uniform[1], by_x.y() + uniform[2], by_y.y() + uniform[3]});
+  }
+  for (SurfacePoint& s : state.fracture().points) {
+    const double r = (s.x - frame.tip).norm();
+    const Vec2 jump = near_tip(rock, K, r, pi) - near_tip(rock, K, r, -pi);
+    s.w = (at_back ? 1.0 : -1.0) * frame.global(jump);  // u(+) - u(-); + is on the left of the way to the back
+    s.P = pressure;
+    s.reaction = Vec2::Zero();
+  }
+}
+
+struct Measured {
+  double K_I, K_II, J;
+};
+
+const Tip& tip_of(const State& state, bool at_back) {
+  return *std::find_if(state.tips.begin(), state.tips.end(), [&](const Tip& tip) { return tip.at_back == at_back; });
+}
+
+Measured measure(Run& run, bool at_back) {
+  measure_tips(run.scene, run.rocks, run.state);
+  const Tip& tip = tip_of(run.state, at_back);
+  return {tip.K_I, tip.K_II, tip.J};
+}
+
+Run cracked(const std::vector<std::array<double, 2>>& path, int points = 4) {
+  Scene scene = block(20, 20);
+  scene.numerics.particles_per_cell = points;
+  add_fracture(scene, path);
+  return Run(scene);
+}
+
+constexpr double K_unit = 1e6;  // Pa sqrt(m)
+const std::vector<Intensity> mixes{
+    {K_unit, 0.0}, {K_unit, 0.3 * K_unit}, {K_unit, -0.3 * K_unit}, {0.2 * K_unit, K_unit}};
+
+// Largest errors of K (over |K|) and of J, for all mixes at one end, with and without pressure.
+struct Errors {
+  double K = 0.0, J = 0.0;
+};
+
+Errors errors(Run& run, bool at_back) {
+  Errors most;
+  for (const Intensity& K : mixes) {
+    for (const double pressure : {0.0, 3e5}) {
+      impose(run, at_back, K, pressure);
+      const Measured m = measure(run, at_back);
+      const double size2 = K.K_I * K.K_I + K.K_II * K.K_II, J = size2 / run.rocks[0].E_prime;
+      most.K =
+          std::max({most.K, std::abs(m.K_I - K.K_I) / std::sqrt(size2), std::abs(m.K_II - K.K_II) / std::sqrt(size2)});
+      most.J = std::max(most.J, std::abs(m.J - J) / J);
+    }
+  }
+  return most;
+}
+
+}  // namespace
+
+// Requires K_I, K_II and J of an imposed near-tip field, with free faces and with pressure on them, at both ends of a
+// fracture on a grid line and at mid-cell, along and across the grid. Measured: MEASURED_STRAIGHT.
+// Mutations that fail: the face term left out, doubled or of the other sign (pressure); a sign of K_II.
+TEST_CASE("K and J of a straight fracture") {
+  for (const auto& path : std::vector<std::vector<std::array<double, 2>>>{
+           {{10.0, 4.0}, {10.0, 16.0}}, {{9.5, 4.0}, {9.5, 16.0}}, {{16.0, 10.0}, {4.0, 10.0}}}) {
+    Run run = cracked(path);
+    for (const bool at_back : {true, false}) {
+      const Errors e = errors(run, at_back);
+      CAPTURE(path[0][0], path[0][1], at_back, e.K, e.J);
+      CHECK(e.K < 0.01);
+      CHECK(e.J < 0.02);
+    }
+  }
+}
+
+// Requires the same of inclined fractures, whose particles are refined to 16 points a cell. Measured:
+// MEASURED_INCLINED.
+TEST_CASE("K and J of an inclined fracture") {
+  for (const auto& path : std::vector<std::vector<std::array<double, 2>>>{
+           {{5.2, 5.4}, {14.7, 13.9}}, {{13.3, 4.4}, {6.1, 15.8}}, {{4.3, 9.2}, {15.9, 11.3}}}) {
+    Run run = cracked(path);
+    for (const bool at_back : {true, false}) {
+      const Errors e = errors(run, at_back);
+      CAPTURE(path[0][0], path[0][1], at_back, e.K, e.J);
+      CHECK(e.K < 0.01);
+      CHECK(e.J < 0.02);
+    }
+  }
+}
+
+// Requires signs and scales: K and the kink change sign with K_II, J does not; K doubles and J quadruples with the
+// field; nothing gives nothing. A kink turns a tip clockwise for K_II > 0, as it sees it, at either end.
+TEST_CASE("signs and scales of K") {
+  for (const bool at_back : {true, false}) {
+    Run run = cracked({{10.0, 4.0}, {10.0, 16.0}});
+    impose(run, at_back, {K_unit, 0.3 * K_unit});
+    const Measured plus = measure(run, at_back);
+    const double kink = tip_of(run.state, at_back).kink;
+    CHECK(plus.K_II > 0.2 * K_unit);
+    CHECK(kink < -0.4);
+    impose(run, at_back, {K_unit, -0.3 * K_unit});
+    const Measured minus = measure(run, at_back);
+    CHECK(minus.K_II == Approx(-plus.K_II).epsilon(1e-6));
+    CHECK(minus.J == Approx(plus.J).epsilon(1e-6));
+    CHECK(tip_of(run.state, at_back).kink == Approx(-kink).epsilon(1e-6));
+    impose(run, at_back, {2.0 * K_unit, 0.6 * K_unit});
+    CHECK(measure(run, at_back).K_I == Approx(2.0 * plus.K_I).epsilon(1e-8));
+    CHECK(measure(run, at_back).J == Approx(4.0 * plus.J).epsilon(1e-8));
+    impose(run, at_back, {});
+    CHECK(measure(run, at_back).K_I == 0.0);
+    CHECK(measure(run, at_back).J == 0.0);
+    // A tip whose last point is in contact has no K_I.
+    impose(run, at_back, {K_unit, 0.0});
+    auto& points = run.state.fracture().points;
+    (at_back ? points.back() : points.front()).reaction = 1.0 * points[0].n;
+    CHECK(measure(run, at_back).K_I == 0.0);
+  }
+}
+
+// Requires that the imposed field is path independent: rings agree to 2 %, and more points a cell do not change K by
+// more than 0.5 %.
+TEST_CASE("rings and points agree") {
+  Run coarse = cracked({{10.0, 5.0}, {10.0, 15.0}}), fine = cracked({{10.0, 5.0}, {10.0, 15.0}}, 16);
+  impose(coarse, true, {K_unit, 0.3 * K_unit});
+  impose(fine, true, {K_unit, 0.3 * K_unit});
+  const Measured a = measure(coarse, true), b = measure(fine, true);
+  CAPTURE(a.K_I, b.K_I, a.J, b.J, tip_of(coarse.state, true).J_spread);
+  CHECK(tip_of(coarse.state, true).J_spread < 0.02);
+  CHECK(tip_of(coarse.state, true).J_spread > 0.0);
+  CHECK(tip_of(coarse.state, true).ring_m == Approx(4.0));
+  CHECK(b.K_I == Approx(a.K_I).epsilon(0.005));
+}
+
+// Requires the maximum-hoop angles by hand: -2 K_II/K_I for little K_II, -70.53 degrees in pure mode II, 0 in pure mode
+// I, and that they make the hoop stress stationary: K_I sin(th) + K_II (3 cos(th) - 1) = 0.
+TEST_CASE("kink angles") {
+  CHECK(kink_angle(1e6, 0.0) == 0.0);
+  for (const double sign : {1.0, -1.0}) {
+    CHECK(kink_angle(1e6, sign * 1e3) == Approx(-sign * 2e-3).epsilon(1e-4));
+    CHECK(kink_angle(0.0, sign) * 180.0 / pi == Approx(-sign * 70.528779).epsilon(1e-7));
+    for (const double K_II : {0.1, 0.5, 1.0, 4.0}) {
+      const double angle = kink_angle(1.0, sign * K_II);
+      CHECK(std::sin(angle) + sign * K_II * (3.0 * std::cos(angle) - 1.0) == Approx(0.0).margin(1e-14));
+      CHECK(angle * sign < 0.0);
+    }
+  }
+}
+
+// Requires that a tip's direction points away from its fracture at both ends, and that K beside an interface is
+// flagged.
+TEST_CASE("tip directions and trust") {
+  const Surface s = make_surface(Surface::Kind::fracture, 0, {{1.0, 1.0}, {4.0, 5.0}}, 0.5);
+  CHECK((tip_direction(s, true) - Vec2{0.6, 0.8}).norm() < 1e-14);
+  CHECK((tip_direction(s, false) + Vec2{0.6, 0.8}).norm() < 1e-14);
+  for (const double at : {13.0, 15.0}) {
+    Scene scene = block(20, 20);
+    add_fracture(scene, {{10.0, 2.0}, {10.0, 10.0}});
+    add_interface(scene, weak_law(1e6, 1e6), at);
+    Run run(scene);
+    measure_tips(run.scene, run.rocks, run.state);
+    CHECK(tip_of(run.state, true).at_interface == (at < 14.0));
+  }
+}
+
+// Requires that a field that is not finite is reported, not measured.
+TEST_CASE("a field that is not finite throws") {
+  Run run = cracked({{10.0, 4.0}, {10.0, 16.0}});
+  Particles& p = run.state.particles;
+  for (std::size_t q = 0; q < p.size(); ++q) {
+    if (std::abs(p.x[q] - 10.0) < 4.0 && p.y[q] > 13.0) p.g_xx[q] = std::numeric_limits<double>::quiet_NaN();
+  }
+  CHECK_THROWS_AS(measure_tips(run.scene, run.rocks, run.state), NumericalFailure);
+}
