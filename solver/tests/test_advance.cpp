@@ -74,36 +74,56 @@ bool same_bits(const State& a, const State& b) {
 
 }  // namespace
 
-// Requires that the ledger of a pressurised fracture closes to 1 % of the net work supplied, undamped and damped, on a
-// grid line and at mid-cell, for each transfer: what pressure supplies is found as strain, motion and dissipation.
-// Measured: MEASURED_LEDGER. No term is a spectator: without the strain energy, or the damped share, it would not
-// close. Mutations that fail: the fluid's or the in-situ work left out, doubled or of the other sign; damping counted
-// twice.
+// Requires that the ledger of a pressurised fracture closes to round-off of the net work supplied, undamped and damped,
+// on a grid line and at mid-cell, for each transfer: what pressure supplies is found as strain, motion and dissipation.
+// What the time step itself loses, a term of its own, stays below 2 %; damped to rest, half of a suddenly applied
+// pressure's work is strain energy (Clapeyron; 2 % for what still moves and the springs at the tip). Measured: 2e-14.
+// Mutations that fail: the fluid's work of the other sign, the in-situ work or damping counted twice.
 TEST_CASE("the energy ledger closes") {
   for (const double x : {6.0, 6.5}) {
     for (const double damping : {0.0, 100.0}) {
       for (const auto transfer : transfers) {
         const Balance b = balance(pressed(x, damping, transfer), 300);
         CAPTURE(x, damping, static_cast<int>(transfer), 1e9 * b.off, b.net, b.ledger.kinetic, b.ledger.strain,
-                b.ledger.damping, b.ledger.transfer);
+                b.ledger.damping, b.ledger.transfer, b.ledger.integration);
         CHECK(b.net > 10.0);
-        CHECK(std::abs(b.off) < 0.01);
+        CHECK(std::abs(b.off) < 1e-12);
         CHECK(b.ledger.strain > 0.3 * b.net);
         CHECK(b.ledger.transfer > -0.005 * b.net);
-        if (damping > 0.0) CHECK(b.ledger.damping > 0.03 * b.net);
+        if (damping > 0.0) {
+          CHECK(b.ledger.damping > 0.1 * b.net);
+          CHECK(b.ledger.strain == Approx(0.5 * b.net).epsilon(0.02));
+        }
       }
     }
   }
 }
 
-// Requires the same with a soft interface ahead, whose springs hold part of the energy.
+// Requires that a smooth load loses next to nothing in the time step and the transfer: with the pressure ramped over
+// 300 steps, more than 97 % of the work is strain energy, undamped and damped, and the time step's own term is below
+// 0.5 %.
+TEST_CASE("a smooth load is stored") {
+  for (const double damping : {0.0, 100.0}) {
+    Scene scene = pressed(6.0, damping);
+    scene.fluid.start_Pa = 2e6;
+    scene.fluid.rate_Pa_s = 15e6;
+    const Balance b = balance(scene, 300);
+    CAPTURE(damping, 1e9 * b.off, b.net, b.ledger.kinetic, b.ledger.strain, b.ledger.transfer, b.ledger.integration);
+    CHECK(std::abs(b.off) < 1e-12);
+    CHECK(b.ledger.strain > 0.97 * b.net);
+    CHECK(std::abs(b.ledger.integration) < 0.005 * b.net);
+  }
+}
+
+// Requires the same with a soft interface ahead, whose springs hold part of the energy, to 2e-5 (measured 5e-6: the
+// law's reactions are solved to 1e-6).
 TEST_CASE("the energy ledger closes with springs") {
   for (const double damping : {0.0, 100.0}) {
     Scene scene = pressed(6.0, damping);
     add_interface(scene, soft_law(1e9, 1e9, InterfaceLaw::Compression::spring), 7.0);
     const Balance b = balance(scene, 300);
     CAPTURE(damping, 1e9 * b.off, b.net, b.ledger.interface_strain);
-    CHECK(std::abs(b.off) < 0.01);
+    CHECK(std::abs(b.off) < 2e-5);
     CHECK(b.ledger.interface_strain > 0.02 * b.net);
   }
 }

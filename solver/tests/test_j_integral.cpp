@@ -118,7 +118,8 @@ Errors errors(Run& run, bool at_back) {
 }  // namespace
 
 // Requires K_I, K_II and J of an imposed near-tip field, with free faces and with pressure on them, at both ends of a
-// fracture on a grid line and at mid-cell, along and across the grid. Measured: MEASURED_STRAIGHT.
+// fracture on a grid line and at mid-cell, along and across the grid. Measured: K 0.04 % and J 0.04 % on a grid
+// line, 0.09 % and 0.12 % at mid-cell.
 // Mutations that fail: the face term left out, doubled or of the other sign (pressure); a sign of K_II.
 TEST_CASE("K and J of a straight fracture") {
   for (const auto& path : std::vector<std::vector<std::array<double, 2>>>{
@@ -127,14 +128,14 @@ TEST_CASE("K and J of a straight fracture") {
     for (const bool at_back : {true, false}) {
       const Errors e = errors(run, at_back);
       CAPTURE(path[0][0], path[0][1], at_back, e.K, e.J);
-      CHECK(e.K < 0.01);
-      CHECK(e.J < 0.02);
+      CHECK(e.K < 0.002);
+      CHECK(e.J < 0.0025);
     }
   }
 }
 
 // Requires the same of inclined fractures, whose particles are refined to 16 points a cell. Measured:
-// MEASURED_INCLINED.
+// K 0.12 to 0.37 %, J 0.2 to 1.5 % (the exact field is in no equilibrium with the grid's functions).
 TEST_CASE("K and J of an inclined fracture") {
   for (const auto& path : std::vector<std::vector<std::array<double, 2>>>{
            {{5.2, 5.4}, {14.7, 13.9}}, {{13.3, 4.4}, {6.1, 15.8}}, {{4.3, 9.2}, {15.9, 11.3}}}) {
@@ -142,7 +143,7 @@ TEST_CASE("K and J of an inclined fracture") {
     for (const bool at_back : {true, false}) {
       const Errors e = errors(run, at_back);
       CAPTURE(path[0][0], path[0][1], at_back, e.K, e.J);
-      CHECK(e.K < 0.01);
+      CHECK(e.K < 0.006);
       CHECK(e.J < 0.02);
     }
   }
