@@ -155,7 +155,7 @@ TEST_CASE("a linear field of node velocities has an exact gradient everywhere") 
       const double v_x = rate[0] * x + rate[1] * y, v_y = rate[2] * x + rate[3] * y;
       run.state.motion[static_cast<std::size_t>(r)] = {v_x, v_y, 0.0, 0.0};
     }
-    grid_to_particles(run.scene, rocks, run.state, 1.0);
+    grid_to_particles(run.scene, run.rocks, run.state, 1.0);
     CHECK(gradient_error(run, rate, 0.0) < 1e-11);
   }
 }
