@@ -20,26 +20,6 @@ Vector load(const Record& record) {
   return std::bit_cast<Vector>(record);
 }
 
-struct PlaneWeights {
-  std::array<double, 9> N, N_x, N_y;
-};
-
-template <class Shape>
-inline PlaneWeights plane_weights(const Grid& g, const Bin& bin, double x, double y, double half) {
-  const double inverse_h = 1.0 / g.h;
-  const Weights X = Shape::at(x * inverse_h - bin.i, half * inverse_h);
-  const Weights Y = Shape::at(y * inverse_h - bin.j, half * inverse_h);
-  PlaneWeights w;
-  for (std::size_t b = 0; b < 3; ++b) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      w.N[3 * b + a] = X.N[a] * Y.N[b];
-      w.N_x[3 * b + a] = X.dN[a] * Y.N[b] * inverse_h;
-      w.N_y[3 * b + a] = X.N[a] * Y.dN[b] * inverse_h;
-    }
-  }
-  return w;
-}
-
 // Calls work(strip index) for all strips, one colour after the other; strips of a colour run on any number of threads.
 template <class Work>
 void for_each_strip(const State& state, Work work) {
@@ -50,18 +30,41 @@ void for_each_strip(const State& state, Work work) {
   }
 }
 
+// Shape functions of a particle along both axes, derivatives per metre.
+struct AxisWeights {
+  Weights x, y;
+};
+
+template <class Shape>
+inline AxisWeights axis_weights(double inverse_h, const Bin& bin, const Particles& p, std::size_t q) {
+  AxisWeights w{Shape::at(p.x[q] * inverse_h - bin.i, p.half[q] * inverse_h),
+                Shape::at(p.y[q] * inverse_h - bin.j, p.half[q] * inverse_h)};
+  for (std::size_t a = 0; a < 3; ++a) {
+    w.x.dN[a] *= inverse_h;
+    w.y.dN[a] *= inverse_h;
+  }
+  return w;
+}
+
+// Both loops take the product of the two axes' functions one axis at a time: a row of nodes first, then its three
+// nodes.
 template <class Shape>
 void gather_bin(const std::vector<Elasticity>& rocks, const Grid& grid, const Particles& p, const Bin& bin,
                 std::vector<NodeSums>& sums) {
+  const double inverse_h = 1.0 / grid.h;
   std::array<Eight, 9> acc{};
   for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
-    const PlaneWeights w = plane_weights<Shape>(grid, bin, p.x[q], p.y[q], p.half[q]);
+    const AxisWeights w = axis_weights<Shape>(inverse_h, bin, p, q);
     const Stress s = stress_of(rocks[p.rock[q]], p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]);
     const double m = p.m[q], V = p.V[q];
     const Eight with_N = {m, m * p.v_x[q], m * p.v_y[q], 0.0, 0.0, 0.0, 0.0, 0.0};
     const Eight with_N_x = {0.0, 0.0, 0.0, -V * s.xx, -V * s.xy, 0.0, 0.0, 0.0};
     const Eight with_N_y = {0.0, 0.0, 0.0, -V * s.xy, -V * s.yy, 0.0, 0.0, 0.0};
-    for (std::size_t n = 0; n < 9; ++n) acc[n] += w.N[n] * with_N + w.N_x[n] * with_N_x + w.N_y[n] * with_N_y;
+    for (std::size_t b = 0; b < 3; ++b) {
+      const Eight along_N = w.y.N[b] * with_N + w.y.dN[b] * with_N_y;
+      const Eight along_dN = w.y.N[b] * with_N_x;
+      for (std::size_t a = 0; a < 3; ++a) acc[3 * b + a] += w.x.N[a] * along_N + w.x.dN[a] * along_dN;
+    }
   }
   for (std::size_t n = 0; n < 9; ++n) {
     NodeSums& record = sums[static_cast<std::size_t>(bin.record[n])];
@@ -80,12 +83,14 @@ void move_bin(const std::vector<Elasticity>& rocks, const Grid& grid, const Bin&
   std::array<Four, 9> record;
   for (std::size_t n = 0; n < 9; ++n) record[n] = load<Four>(motion[static_cast<std::size_t>(bin.record[n])]);
   for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
-    const PlaneWeights w = plane_weights<Shape>(grid, bin, p.x[q], p.y[q], p.half[q]);
+    const AxisWeights w = axis_weights<Shape>(inverse_h, bin, p, q);
     Four v = {0.0, 0.0, 0.0, 0.0}, d_x = v, d_y = v;
-    for (std::size_t n = 0; n < 9; ++n) {
-      v += w.N[n] * record[n];
-      d_x += w.N_x[n] * record[n];
-      d_y += w.N_y[n] * record[n];
+    for (std::size_t b = 0; b < 3; ++b) {
+      const Four row = w.x.N[0] * record[3 * b] + w.x.N[1] * record[3 * b + 1] + w.x.N[2] * record[3 * b + 2];
+      const Four slope = w.x.dN[0] * record[3 * b] + w.x.dN[1] * record[3 * b + 1] + w.x.dN[2] * record[3 * b + 2];
+      v += w.y.N[b] * row;
+      d_x += w.y.N[b] * slope;
+      d_y += w.y.dN[b] * row;
     }
     const double m = p.m[q];
     report.before += 0.5 * m * (p.v_x[q] * p.v_x[q] + p.v_y[q] * p.v_y[q]);
@@ -109,14 +114,15 @@ template <class Shape>
 void filter_bin(const Grid& grid, const Particles& p, const Bin& bin, const std::vector<Vec2>& v,
                 std::vector<NodeSums>& sums) {
   for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
-    const PlaneWeights w = plane_weights<Shape>(grid, bin, p.x[q], p.y[q], p.half[q]);
+    const AxisWeights w = axis_weights<Shape>(1.0 / grid.h, bin, p, q);
+    const auto N = [&w](std::size_t n) { return w.x.N[n % 3] * w.y.N[n / 3]; };
     Vec2 v_p = Vec2::Zero();
-    for (std::size_t n = 0; n < 9; ++n) v_p += w.N[n] * v[static_cast<std::size_t>(bin.record[n])];
+    for (std::size_t n = 0; n < 9; ++n) v_p += N(n) * v[static_cast<std::size_t>(bin.record[n])];
     for (std::size_t n = 0; n < 9; ++n) {
       NodeSums& record = sums[static_cast<std::size_t>(bin.record[n])];
-      record.m += w.N[n] * p.m[q];
-      record.mom_x += w.N[n] * p.m[q] * v_p.x();
-      record.mom_y += w.N[n] * p.m[q] * v_p.y();
+      record.m += N(n) * p.m[q];
+      record.mom_x += N(n) * p.m[q] * v_p.x();
+      record.mom_y += N(n) * p.m[q] * v_p.y();
     }
   }
 }
