@@ -1,7 +1,7 @@
 #include "flow/paper_flow.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <string>
 
 namespace strata {
 

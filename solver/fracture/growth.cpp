@@ -98,17 +98,14 @@ void move_tip(const Scene& scene, State& state, Tip& tip) {
   for (Surface& surface : state.surfaces) place_points(scene, state, surface);
 }
 
-struct Lattice {
-  bool on_grid_line_or_mid_cell(double x, double h) const {
-    const double halves = 2.0 * x / h;
-    return std::abs(halves - std::round(halves)) < 0.04;
-  }
-};
+bool on_grid_line_or_mid_cell(double x, double h) {
+  const double halves = 2.0 * x / h;
+  return std::abs(halves - std::round(halves)) < 0.04;  // 0.02 cells, as for nodes: surfaces follow the rock
+}
 
 bool off_grid(const SurfacePoint& s, double h) {
-  const Lattice lattice;
-  if (std::abs(s.n.x()) > 1.0 - 1e-6) return !lattice.on_grid_line_or_mid_cell(s.x.x(), h);
-  if (std::abs(s.n.y()) > 1.0 - 1e-6) return !lattice.on_grid_line_or_mid_cell(s.x.y(), h);
+  if (std::abs(s.n.x()) > 1.0 - 1e-6) return !on_grid_line_or_mid_cell(s.x.x(), h);
+  if (std::abs(s.n.y()) > 1.0 - 1e-6) return !on_grid_line_or_mid_cell(s.x.y(), h);
   return true;
 }
 

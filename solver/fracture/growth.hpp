@@ -10,9 +10,10 @@ namespace strata {
 
 /// Moves every tip whose J has reached J_c = K_Ic^2/E' of the rock ahead by one increment, along its own direction or
 /// that of maximum hoop stress. A tip moves no faster than the Rayleigh speed of that rock: the next increment waits
-/// for increment/c_R. An increment that would end just short of an interface, or cross it, ends on it; one that starts
-/// on it goes on. A tip within 3 cells of an edge stops for good and says so. Returns true if any tip moved: the copies
-/// must then be rebuilt.
+/// for increment/c_R. An increment that would cross an interface, or end less than a quarter of an increment short of
+/// it, ends on it; one that starts on it, or less than a quarter of an increment before it, goes on. A tip that has
+/// grown to within 3 cells of an edge stops for good and says so. A closed tip (K_I = 0) does not grow. Returns true if
+/// any tip moved: the copies must then be rebuilt. Throws nothing.
 bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
 
 /// Appends the events reach_interface and arrest as they become true; start and restart come with grow().
@@ -23,18 +24,14 @@ void watch_tips(const Scene& scene, State& state);
 /// cell do not resolve the sides of such a fracture.
 void refine_particles(State& state, std::size_t first, std::size_t last);
 
-/// Position of a tip (m).
-inline Vec2 tip_position(const State& state, const Tip& tip) {
-  return tip.at_back ? state.fracture().vertices.back().x : state.fracture().vertices.front().x;
-}
-
 /// Spacing of the points of surfaces (m): two a cell.
 inline double surface_spacing(const Grid& grid) {
   return 0.5 * grid.h;
 }
 
-/// Sets the sides, the in-situ traction and, for the fracture, the split of points from `state` and the uniform in-situ
-/// stress of the scene or the particles' own, averaged near the point.
+/// Sets the sides of a surface's points and vertices and, at the points, the in-situ traction -sigma_0 n (Pa) from the
+/// scene's uniform in-situ stress or that of the particles of the same rock around; the fracture's points are split.
+/// Throws nothing.
 void place_points(const Scene& scene, State& state, Surface& surface);
 
 }  // namespace strata

@@ -1,8 +1,8 @@
 #include "fracture/j_integral.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <span>
 
@@ -13,9 +13,11 @@ namespace strata {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double widest_ring_cells = 4.0;
-constexpr double narrowest_ring_cells = 2.5;  // below, the tip's own error fills the ring; such a K is flagged
-constexpr double trusted_cells = 4.0;         // distance to an interface below which K is flagged
+constexpr double widest_ring_cells = 4.0;  // rings of 3.2 to 4 cells: wide enough to leave the tip's own error inside
+// No ring is smaller, since the tip's own error would fill it. An interface that would ask for less flags the K; an
+// edge nearer than 3.5 cells, or a second tip nearer than 7, does not: the ring then reaches over it.
+constexpr double narrowest_ring_cells = 2.5;
+constexpr double trusted_cells = 4.0;  // distance to an interface below which K is flagged
 constexpr std::array<double, 3> ring_fractions{0.8, 0.9, 1.0};
 constexpr double inner_fraction = 0.6;  // q is 1 inside this fraction of a ring's radius: 0.3 costs 1 % in J
 
@@ -78,7 +80,7 @@ struct LocalFields {
   double H[2][2] = {};  // displacement gradient, H[i][j] = u_i,j
   Stress s;             // change of stress
   Vec2 v, a, v_1;       // velocity, acceleration that forces gave, derivative of velocity along the fracture
-  double V = 0.0, m = 0.0;
+  double V = 0.0;
 };
 
 struct AuxiliaryFields {
@@ -152,7 +154,7 @@ LocalFields fields_at(const State& state, const Elasticity& rock, const Frame& f
     }
   }
   f.s = stress_of(rock, f.H[0][0], f.H[0][1], f.H[1][0], f.H[1][1]);
-  f.V = p.V[q], f.m = p.m[q];
+  f.V = p.V[q];
   f.v = frame.local({p.v_x[q], p.v_y[q]});
   // Acceleration and velocity gradient are interpolated with B-splines whatever the scene's shape: they only enter
   // here.

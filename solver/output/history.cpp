@@ -107,11 +107,6 @@ std::span<const HistoryColumn> history_columns() {
   return columns;
 }
 
-Vec2 tip_position(const State& state, const Tip& tip) {
-  const auto& v = state.fracture().vertices;
-  return tip.at_back ? v.back().x : v.front().x;
-}
-
 const Tip* leading_tip(const State& state) {
   if (!state.has_fracture || state.tips.empty()) return nullptr;
   return &*std::max_element(state.tips.begin(), state.tips.end(), [&](const Tip& a, const Tip& b) {

@@ -50,9 +50,6 @@ HistoryRow history_row(const Scene& scene, const State& state);
 /// The tip with the largest y, the first of equal ones, or nullptr where there is none; throws nothing.
 const Tip* leading_tip(const State& state);
 
-/// Where a tip is (m): the fracture's last vertex or its first; throws nothing.
-Vec2 tip_position(const State& state, const Tip& tip);
-
 /// Opening face to face (m) where the fracture starts on the symmetry line y = 0: at its first or its last vertex, or,
 /// where neither lies there, the largest of its vertices; 0 without a fracture. Throws nothing.
 double mouth_opening(const State& state);

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "state/grid.hpp"
-#include "state/particles.hpp"
 #include "state/surfaces.hpp"
 
 namespace strata {

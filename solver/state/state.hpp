@@ -45,7 +45,7 @@ struct Tip {
   double J_spread_at_growth = 0.0;
   bool has_grown = false;
   bool arrested = false;
-  std::vector<int> reached;  // interfaces (surface bits) already reported as reached
+  std::vector<int> reached;  // interfaces (index into Scene::strata) already reported as reached
 };
 
 struct Event {
@@ -60,16 +60,16 @@ struct Event {
 struct Ledger {
   double kinetic = 0.0;           // of the particles, now
   double strain = 0.0;            // of the change from the in-situ state, now
-  double interface_strain = 0.0;  // in the springs of soft interfaces, now
+  double interface_strain = 0.0;  // in the springs of soft interfaces and of tips, now
   double fluid_work = 0.0;        // integral of P dV
   double in_situ_work = 0.0;      // of the in-situ tractions released on surfaces
-  double edge_work = 0.0;         // of the edges' tractions beyond the in-situ ones
-  double damping = 0.0;           // dissipated by damping_1_s
-  double transfer = 0.0;          // dissipated between particles and grid
+  double edge_work = 0.0;    // of the edges' tractions beyond the in-situ ones: none, edges keep these or do not move
+  double damping = 0.0;      // dissipated by damping_1_s
+  double transfer = 0.0;     // dissipated between particles and grid
   double integration = 0.0;  // lost by the time step itself: sum of dt^2 (f M^-1 f - v K v)/2, most of it at shocks
-  double friction = 0.0;     // dissipated by sliding and by the failure of interfaces
+  double friction = 0.0;     // dissipated by sliding, the failure of interfaces and the implicit step of springs
   double fracture = 0.0;     // released from the springs of tips that moved on (see TipTie)
-  double largest = 0.0;      // largest of the stored or supplied energies so far, the scale for closure()
+  double largest = 0.0;      // largest fluid work, in-situ work or kinetic energy so far, the scale for closure()
 
   double supplied() const { return fluid_work + in_situ_work + edge_work; }
   double stored() const { return kinetic + strain + interface_strain; }
@@ -116,5 +116,10 @@ struct State {
   const Surface& fracture() const { return surfaces.front(); }
   Surface& fracture() { return surfaces.front(); }
 };
+
+/// Where a tip is (m): the fracture's last vertex or its first; throws nothing.
+inline Vec2 tip_position(const State& state, const Tip& tip) {
+  return tip.at_back ? state.fracture().vertices.back().x : state.fracture().vertices.front().x;
+}
 
 }  // namespace strata

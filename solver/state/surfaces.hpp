@@ -4,7 +4,6 @@
 
 #include <vector>
 
-#include "state/grid.hpp"
 #include "state/types.hpp"
 
 namespace strata {
@@ -55,7 +54,7 @@ bool side(const Surface& surface, const Vec2& x, double reach);
 /// Sets normals, arc lengths, lengths and middles of all segments from the positions of the vertices (m).
 void update_geometry(Surface& surface);
 
-/// A straight surface from `from` to `to` (m) with segments as near to `spacing` (m) as divide it evenly.
+/// A surface along the polyline `path` (m), each leg in equal segments no longer than `spacing` (m).
 Surface make_surface(Surface::Kind kind, int bit, const std::vector<Vec2>& path, double spacing);
 
 /// Adds a segment from the last vertex (at_back) or the first one to `to` (m), in pieces no longer than `spacing` (m).
