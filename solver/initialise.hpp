@@ -11,7 +11,7 @@ namespace strata {
 /// found.
 State initialise(const Scene& scene, const std::vector<Elasticity>& rocks);
 
-/// Builds the derived members of a state that was read back.
+/// Builds the derived members of a state that was read back. Throws NumericalFailure as rebuild_copies() does.
 void restore(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
 
 }  // namespace strata

@@ -22,7 +22,7 @@ namespace {
 
 constexpr int done = 0, bad_input = 2, numerics_failed = 3, interrupted = 130;
 
-constexpr double seconds_between_checkpoints = 60.0;
+constexpr double seconds_between_checkpoints = 60.0;  // what a crash costs at most, and rare enough to cost nothing
 
 // A signal handler has nothing else to write to.
 volatile std::sig_atomic_t asked_to_stop = 0;

@@ -24,6 +24,7 @@ void diffuse(const Channel& channel, double mobility, Fluid::TimeRule rule, doub
 
 /// Pressure at the end of the step state.dt: the inlet's ramp, and along the fracture by the scene's law with the
 /// opening of the step's start, at least minimum_opening_m; passes vertex pressures on to the fracture's points.
+/// Throws as diffuse().
 void advance_pressure(const Scene& scene, State& state);
 
 }  // namespace strata

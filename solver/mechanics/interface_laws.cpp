@@ -23,11 +23,16 @@ double contact(const FreeJump& w) {
 }
 
 Reaction react_soft(const InterfaceLaw& law, const FreeJump& w) {
-  // -D w with w = w_free + per r: r = -w_free/(1/D + per).
-  const auto spring = [](double D, double w_free, double per) { return D > 0.0 ? -w_free / (1.0 / D + per) : 0.0; };
-  const double pushed = law.compression == InterfaceLaw::Compression::contact ? contact(w) : 0.0;
-  const double n = pushed > 0.0 ? pushed : spring(law.normal_stiffness_Pa_m, w.n, w.per_n);
-  return {n, spring(law.shear_stiffness_Pa_m, w.t, w.per_t)};
+  // rest - D w with w = w_free + per r: r = (rest/D - w_free)/(1/D + per).
+  const auto spring = [](double D, double rest, double w_free, double per) {
+    return D > 0.0 ? (rest / D - w_free) / (1.0 / D + per) : 0.0;
+  };
+  const bool contacts = law.compression == InterfaceLaw::Compression::contact;
+  const double pushed = contacts ? contact(w) : 0.0;
+  // A spring that also takes compression starts from the in-situ reaction; one in tension only, from none.
+  const double rest = contacts ? 0.0 : w.n_rest;
+  return {pushed > 0.0 ? pushed : spring(law.normal_stiffness_Pa_m, rest, w.n, w.per_n),
+          spring(law.shear_stiffness_Pa_m, 0.0, w.t, w.per_t)};
 }
 
 // Places share nodes with about six neighbours; plain Gauss-Seidel (1) takes ten times the sweeps of 1.5.
@@ -159,8 +164,10 @@ double spring_energy_at(const InterfaceLaw& law, const SurfacePoint& s) {
   if (law.kind != Kind::soft || !s.split) return 0.0;
   const Vec2 tangent{s.n.y(), -s.n.x()};
   const double w_n = s.opening(), w_t = s.w.dot(tangent);
-  const bool closed = law.compression == InterfaceLaw::Compression::contact && w_n < 0.0;
-  return 0.5 * s.A * ((closed ? 0.0 : law.normal_stiffness_Pa_m * w_n * w_n) + law.shear_stiffness_Pa_m * w_t * w_t);
+  const bool contacts = law.compression == InterfaceLaw::Compression::contact;
+  const double normal = contacts && w_n < 0.0 ? 0.0 : 0.5 * law.normal_stiffness_Pa_m * w_n * w_n;
+  const double in_situ = contacts ? 0.0 : s.closing_stress() * w_n;  // a spring starts compressed by the in-situ stress
+  return s.A * (normal - in_situ + 0.5 * law.shear_stiffness_Pa_m * w_t * w_t);
 }
 
 // Mean total stress over the samples.
@@ -220,8 +227,8 @@ void solve_reactions(const Scene& scene, State& state) {
   // Change of a sweep, of the largest reaction. What is left is not lost: the next step starts from these reactions and
   // sees the jumps they led to.
   constexpr double tolerance = 1e-6;
-  constexpr int most_sweeps = 200;
-  InterfaceLaw faces;  // the fracture's own faces: frictionless contact
+  constexpr int most_sweeps = 200;  // bounds the time of a step; steps that end here are counted in the monitors
+  InterfaceLaw faces;               // the fracture's own faces: frictionless contact
   faces.kind = Kind::friction;
   faces.coefficient = 0.0;
   std::vector<InterfaceLaw> ties;

@@ -63,6 +63,7 @@ void update_tip_ties(const Scene& scene, const std::vector<Elasticity>& rocks, S
       if (cut.fracture == 0 || cut.records.size() < 2) continue;
       const int node = state.copies.node_of_record[static_cast<std::size_t>(cut.records.front())];
       const Vec2 x{state.grid.column(node) * state.grid.h, state.grid.row(node) * state.grid.h};
+      // A tied node is less than a cell behind the tip and no more than 1.5 cells across: never as far as this.
       if ((x - at).norm() > 3.0 * state.grid.h) continue;
       TipTie tie = make_tie(tip_tie_coefficient(scene), rock, state, node, tip.at_back);
       if (tie.stiffness == 0.0) continue;

@@ -32,7 +32,7 @@ std::vector<Vec2> filter_velocity(const Scene& scene, State& state, const std::v
 ParticleReport grid_to_particles(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, double keep);
 
 /// Adds what tied records gathered to their masters (see Master), component by component, and clears the records
-/// outside symmetric edges.
+/// outside symmetric and fixed edges.
 void fold_to_masters(const State& state, std::vector<NodeSums>& sums);
 
 }  // namespace strata

@@ -17,7 +17,7 @@ struct OutputMark {
 };
 
 struct Checkpoint {
-  State state;  // without its derived members: rebuild_copies() comes next
+  State state;  // without its derived members: restore() comes next
   OutputMark mark;
 };
 

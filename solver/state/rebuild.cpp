@@ -74,7 +74,7 @@ void mark_interface(const Scene& scene, const State& state, const Surface& s, st
   for (int across = static_cast<int>(std::ceil(at - half)); across <= static_cast<int>(std::floor(at + half));
        ++across) {
     for (int k = -1; k <= n + 1; ++k) {
-      const int column = k < 0 ? 1 : (k > n ? n - 1 : k);  // ghosts as the node they mirror
+      const int column = k < 0 ? 1 : (k > n ? n - 1 : k);  // a ghost as the node inside
       if (split[static_cast<std::size_t>(column)] == 0) continue;
       const int node = along_x ? g.node(k, across) : g.node(across, k);
       mask[static_cast<std::size_t>(node)] |= s.mask();
@@ -91,7 +91,7 @@ Mirrors mirrored_edges(const Scene& scene) {
           scene.domain.top != Edge::traction};
 }
 
-// The node that a ghost outside a symmetric edge mirrors, across x first; -1 if `node` is no such ghost.
+// The node that a ghost outside a symmetric or fixed edge mirrors, across x first; -1 if `node` is no such ghost.
 int mirror_of(const Grid& g, const Mirrors& m, int node, bool across_x) {
   const int i = g.column(node), j = g.row(node);
   if (across_x) {

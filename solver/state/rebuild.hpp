@@ -1,5 +1,6 @@
-// Builds everything in a State that follows from particles and surfaces: copies of nodes, bins, strips, mirror pairs
-// and surface stencils. Called at the start, after growth or failure, and when particles have changed bins.
+// Builds everything in a State that follows from particles and surfaces: copies of nodes, bins, strips, masters,
+// samples of stress on bonded interfaces and surface stencils. Called at the start, after growth or failure, and when
+// particles have changed bins.
 #pragma once
 
 #include "state/state.hpp"
