@@ -72,10 +72,24 @@ TEST_CASE("the other way round, the sides change") {
   }
 }
 
+// Requires that places on an inclined surface, which round-off puts a little to either side of it, all count as +.
+TEST_CASE("places on an inclined surface count as +") {
+  const Vec2 from{1.1, 2.3}, to{4.2, 3.9};
+  const Surface s = path({from, to});
+  int below = 0;
+  for (int k = -20; k <= 120; ++k) {
+    const Vec2 x = from + 0.01 * k * (to - from);
+    below += cross(to - from, x - from) < 0.0 ? 1 : 0;
+    CHECK(side(s, x, 4.0));
+  }
+  CHECK(below > 5);
+}
+
 // Requires one and the same side all around the inner and the outer corner of a kink, for turns either way, where the
-// nearest place is the kink itself: a ring of places around it changes sides twice, on the two arms.
+// nearest place is the kink itself, and for turns by more than a right angle, where the normal of
+// one arm alone would err: a ring of places around it changes sides twice, on the two arms.
 TEST_CASE("sides at a kink") {
-  for (const double turn : {0.5, -0.5, 1.4, -1.4}) {
+  for (const double turn : {0.5, -0.5, 1.4, -1.4, 2.2, -2.2}) {
     const Vec2 end = Vec2{4.0, 4.0} + 3.0 * Vec2{std::cos(turn), std::sin(turn)};
     const Surface s = path({{1.0, 4.0}, {4.0, 4.0}, end});
     int changes = 0;
