@@ -120,11 +120,11 @@ TEST_CASE("a smooth load is stored") {
 TEST_CASE("the energy ledger closes with springs") {
   for (const double damping : {0.0, 100.0}) {
     Scene scene = pressed(6.0, damping);
-    add_interface(scene, soft_law(1e9, 1e9, InterfaceLaw::Compression::spring), 7.0);
+    add_interface(scene, soft_law(3e9, 3e9, InterfaceLaw::Compression::spring), 6.0);
     const Balance b = balance(scene, 300);
     CAPTURE(damping, 1e9 * b.off, b.net, b.ledger.interface_strain);
     CHECK(std::abs(b.off) < 2e-5);
-    CHECK(b.ledger.interface_strain > 0.02 * b.net);
+    CHECK(b.ledger.interface_strain > 0.005 * b.net);
   }
 }
 

@@ -192,6 +192,30 @@ TEST_CASE("rings and points agree") {
   CHECK(b.K_I == Approx(a.K_I).epsilon(0.005));
 }
 
+// Requires that J and K do not see a uniform motion of the whole block, with any transfer: accelerations are what
+// forces give, whatever the transfer makes of velocities. Taken from the particles' change under PIC, they would be 42
+// m/s^2.
+TEST_CASE("J does not see uniform motion") {
+  for (const auto transfer : transfers) {
+    std::vector<Measured> at_rest_and_moving;
+    for (const double v : {0.0, 0.01}) {
+      Run run = cracked({{10.0, 5.0}, {10.0, 15.0}});
+      run.scene.numerics.transfer = transfer;
+      impose(run, true, {K_unit, 0.3 * K_unit});
+      stir(run.state, {v, 0.7 * v}, 0.0);
+      run.advance(1);
+      const Tip& tip = tip_of(run.state, true);
+      at_rest_and_moving.push_back({tip.K_I, tip.K_II, tip.J});
+    }
+    const Measured &rest = at_rest_and_moving[0], &moving = at_rest_and_moving[1];
+    CAPTURE(static_cast<int>(transfer), rest.J, moving.J, rest.K_II, moving.K_II);
+    CHECK(rest.J > 50.0);
+    CHECK(moving.J == Approx(rest.J).epsilon(1e-5));
+    CHECK(moving.K_I == Approx(rest.K_I).epsilon(1e-5));
+    CHECK(moving.K_II == Approx(rest.K_II).epsilon(1e-5));
+  }
+}
+
 // Requires the maximum-hoop angles by hand: -2 K_II/K_I for little K_II, -70.53 degrees in pure mode II, 0 in pure mode
 // I, and that they make the hoop stress stationary: K_I sin(th) + K_II (3 cos(th) - 1) = 0.
 TEST_CASE("kink angles") {

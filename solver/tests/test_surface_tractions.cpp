@@ -201,6 +201,24 @@ TEST_CASE("pressure equal to the closing stress moves nothing, inclined") {
   CHECK(top_speed(still.state.particles) < 1e-12 * top_speed(open.state.particles));
 }
 
+// Requires that a soft interface bears the in-situ stress from the start, in contact or by springs, on a grid line and
+// at mid-cell: nothing moves, to round-off of a step's speed under that stress (0.1 m/s).
+TEST_CASE("a soft interface under in-situ stress moves nothing") {
+  using Compression = InterfaceLaw::Compression;
+  for (const auto compression : {Compression::contact, Compression::spring}) {
+    for (const double at : {8.0, 8.5}) {
+      Scene scene = pressed(6.0, 2e6, 2e6);
+      scene.strata.layers = {{0, 0.0, 12.0}};
+      add_interface(scene, soft_law(1e9, 1e9, compression), at);
+      Run run(scene);
+      run.advance(100);
+      CAPTURE(at, compression == Compression::spring);
+      CHECK(top_speed(run.state.particles) < 1e-9);
+      CHECK(run.state.tips[0].J < 1e-12);
+    }
+  }
+}
+
 // Requires that a fracture whose pressure is below the closing stress stays shut: contact takes the difference, by hand
 // 0.5 MPa on the whole, and the rock stays where it was.
 TEST_CASE("a closed fracture rests on contact") {
