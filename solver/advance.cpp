@@ -51,10 +51,12 @@ void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& st
   solve_reactions(scene, state);  // contact, friction, springs at the step's end
   const GridEnergyAfter after = grid_energy(state);
   spread_to_tied(state);
-  const double keep = prepare_transfer(scene, state);  // FLIP, PIC or XPIC
-  const ParticleReport particles =
-      grid_to_particles(scene, rocks, state, keep);  // v_p, x_p, grad u_p (and with it stress)
-  follow_surfaces(state);                            // w += dt D v
+  const std::vector<NodeMotion> by_forces = state.motion;  // J takes accelerations from it
+  const double keep = prepare_transfer(scene, state);      // FLIP, PIC or XPIC
+  // v_p, x_p, grad u_p (and with it stress)
+  const ParticleReport particles = grid_to_particles(scene, rocks, state, keep);
+  state.motion = by_forces;
+  follow_surfaces(state);  // w += dt D v
   state.time += state.dt;
   ++state.step;
   close_ledger(scene, grid, after, particles, state);

@@ -61,6 +61,9 @@ std::optional<std::string> reason_to_stop(const Scene& scene, const State& state
   if (stop.tip_y_m && tip != nullptr && tip_position(state, *tip).y() >= *stop.tip_y_m - 1e-3 * state.grid.h) {
     return fmt::format("tip reached y = {} m", *stop.tip_y_m);
   }
+  const bool stuck =
+      !state.tips.empty() && std::none_of(state.tips.begin(), state.tips.end(), [](const Tip& t) { return t.growing; });
+  if (stuck && !stop.time_s && !stop.inlet_Pa) return "no tip can grow any further: " + state.tips.front().stopped_by;
   return std::nullopt;
 }
 

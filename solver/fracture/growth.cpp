@@ -23,25 +23,38 @@ bool real_interface(const Scene& scene, std::size_t k) {
          scene.strata.layers[k].rock != scene.strata.layers[k + 1].rock;
 }
 
+bool two_way_spring(const Scene& scene, const Surface& surface) {
+  const InterfaceLaw& law = scene.laws[surface.law];
+  return surface.kind == Surface::Kind::interface && law.kind == InterfaceLaw::Kind::soft &&
+         law.compression == InterfaceLaw::Compression::spring;
+}
+
 // Length of the next increment from `tip` along `direction`: ends on the first interface it would cross or nearly
 // reach.
 double increment_to_interface(const Scene& scene, const Vec2& tip, const Vec2& direction) {
   const double da = scene.fracture->increment_m;
-  double length = da;
+  double length = (1.0 + sliver) * da;
+  bool meets = false;
   for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
     if (!real_interface(scene, k)) continue;
     const double rate = stacking_coordinate(scene, direction);
     const double distance = scene.strata.interfaces[k].at_m - stacking_coordinate(scene, tip);
     if (std::abs(rate) < 1e-6) continue;
     const double to_it = distance / rate;
-    if (to_it > sliver * da && to_it < (1.0 + sliver) * da) length = std::min(length == da ? to_it : length, to_it);
+    if (to_it <= sliver * da || to_it >= length) continue;
+    length = to_it;
+    meets = true;
   }
-  return length;
+  return meets ? length : da;
 }
 
-bool near_edge(const Scene& scene, const Vec2& x, double h) {
+// True where a tip at x is too near to an edge that it heads for.
+bool near_edge(const Scene& scene, const Vec2& x, const Vec2& direction, double h) {
   const double keep = edge_cells * h;
-  return x.x() < keep || x.x() > scene.domain.width_m - keep || x.y() > scene.domain.height_m - keep || x.y() < keep;
+  const bool left = x.x() < keep && direction.x() < 0.0, bottom = x.y() < keep && direction.y() < 0.0;
+  const bool right = x.x() > scene.domain.width_m - keep && direction.x() > 0.0;
+  const bool top = x.y() > scene.domain.height_m - keep && direction.y() > 0.0;
+  return left || right || bottom || top;
 }
 
 double rayleigh_wait(const Scene& scene, const Elasticity& rock) {
@@ -149,6 +162,7 @@ void refine_particles(State& state, std::size_t first, std::size_t last) {
   const double h = state.grid.h, sixteenth = h * h / 16.0;
   Particles& p = state.particles;
   const std::size_t before = p.size();
+  std::vector<std::size_t> split;
   for (std::size_t q = 0; q < before; ++q) {
     for (std::size_t k = first; k < last; ++k) {
       const SurfacePoint& s = state.fracture().points[k];
@@ -159,25 +173,25 @@ void refine_particles(State& state, std::size_t first, std::size_t last) {
       const bool hit = across < 1e-3 * h && beside <= 1.5 * h;
       if (!hit && !(coarse && across < 1.5 * h && beside < 1.5 * h)) continue;
       split_particle(p, q);
+      split.insert(split.end(), {q, p.size() - 3, p.size() - 2, p.size() - 1});
       break;
     }
   }
-  for (std::size_t q = 0; q < p.size(); ++q) {  // children may lie on the other side of the path ahead of the tip
-    if (q >= before || p.V[q] < 1.01 * sixteenth) {
-      const Vec2 x{p.x[q], p.y[q]};
-      if ((x - state.fracture().points[first].x).norm() > 8.0 * h &&
-          (x - state.fracture().points[last - 1].x).norm() > 8.0 * h)
-        continue;
-      const bool plus = side(state.fracture(), x, extension(state.grid));
-      p.sides[q] = plus ? p.sides[q] | state.fracture().mask() : p.sides[q] & ~state.fracture().mask();
-    }
+  // A child may lie on the other side than its parent's middle, beside the new points; beside older ones sides stay.
+  const Surface& fracture = state.fracture();
+  const double from = fracture.vertices[first].arc, to = fracture.vertices[last].arc;
+  for (const std::size_t q : split) {
+    const Projection on = project(fracture, {p.x[q], p.y[q]}, extension(state.grid));
+    if ((first > 0 && on.arc < from) || (last < fracture.points.size() && on.arc > to)) continue;
+    p.sides[q] = on.distance >= 0.0 ? p.sides[q] | fracture.mask() : p.sides[q] & ~fracture.mask();
   }
 }
 
 void place_points(const Scene& scene, State& state, Surface& surface) {
   for (SurfacePoint& s : surface.points) {
     s.sides = sides_at(state, s.x, surface.bit);
-    s.in_situ = -in_situ_at(scene, state, s.x).on(s.n);
+    // A spring that also takes compression goes on carrying the in-situ stress; its reaction is the change from it.
+    s.in_situ = two_way_spring(scene, surface) ? Vec2{Vec2::Zero()} : Vec2{-in_situ_at(scene, state, s.x).on(s.n)};
     if (surface.kind == Surface::Kind::fracture) s.split = true;
   }
   for (SurfacePoint& vertex : surface.vertices) vertex.sides = sides_at(state, vertex.x, surface.bit);
@@ -189,10 +203,10 @@ bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state
   for (Tip& tip : state.tips) {
     const Vec2 at = tip_position(state, tip);
     const Elasticity& ahead =
-        rocks[rock_at(scene, at + 1e-3 * state.grid.h * tip_direction(state.fracture(), tip.at_back))];
+        rocks[rock_at(scene, at + ahead_cells * state.grid.h * tip_direction(state.fracture(), tip.at_back))];
     if (!tip.growing || tip.K_I <= 0.0 || tip.J <= 0.0 || tip.J < ahead.J_c) continue;
     if (tip.last_growth_s >= 0.0 && state.time - tip.last_growth_s < rayleigh_wait(scene, ahead)) continue;
-    if (near_edge(scene, at, state.grid.h) && tip.has_grown) {
+    if (near_edge(scene, at, tip_direction(state.fracture(), tip.at_back), state.grid.h) && tip.has_grown) {
       tip.growing = false;
       tip.stopped_by = "within 3 cells of an edge of the block";
       continue;

@@ -249,6 +249,8 @@ double ring_radius(const Scene& scene, const State& state, const Tip& tip, const
     near_interface = near_interface || distance < (trusted_cells - 1e-3) * h;
     keep_off(distance);
   }
+  // Too near to an edge, the symmetry line or the other tip: the ring reaches over it, so K is flagged as well.
+  near_interface = near_interface || radius < narrowest_ring_cells * h;
   return std::max(radius, narrowest_ring_cells * h);
 }
 
@@ -316,7 +318,7 @@ void measure_tips(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
     for (const double fraction : ring_fractions)
       rings.push_back({inner_fraction * fraction * tip.ring_m, fraction * tip.ring_m});
     std::vector<Sums> sums(rings.size());
-    const Elasticity& rock = rocks[rock_at(scene, frame.tip + 1e-3 * state.grid.h * frame.e_1)];
+    const Elasticity& rock = rocks[rock_at(scene, frame.tip + ahead_cells * state.grid.h * frame.e_1)];
     const double reach = tip.ring_m / state.grid.h + 2.0;
     for (const Bin& bin : state.bins) {
       if (std::abs(bin.i - frame.tip.x() / state.grid.h) > reach ||
@@ -336,11 +338,6 @@ void measure_tips(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
 double kink_angle(double K_I, double K_II) {
   if (K_II == 0.0) return 0.0;
   return 2.0 * std::atan((K_I - std::sqrt(K_I * K_I + 8.0 * K_II * K_II)) / (4.0 * K_II));
-}
-
-Vec2 tip_direction(const Surface& fracture, bool at_back) {
-  const auto& v = fracture.vertices;
-  return at_back ? (v.back().x - v[v.size() - 2].x).normalized() : (v[0].x - v[1].x).normalized();
 }
 
 }  // namespace strata

@@ -20,7 +20,4 @@ void measure_tips(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
 /// Maximum hoop stress: tan(th/2) = (K_I - sqrt(K_I^2 + 8 K_II^2))/(4 K_II) (rad); 0 for K_II = 0.
 double kink_angle(double K_I, double K_II);
 
-/// Unit vector along which a tip points away from its fracture.
-Vec2 tip_direction(const Surface& fracture, bool at_back);
-
 }  // namespace strata

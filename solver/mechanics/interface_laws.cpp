@@ -23,16 +23,11 @@ double contact(const FreeJump& w) {
 }
 
 Reaction react_soft(const InterfaceLaw& law, const FreeJump& w) {
-  // rest - D w with w = w_free + per r: r = (rest/D - w_free)/(1/D + per).
-  const auto spring = [](double D, double rest, double w_free, double per) {
-    return D > 0.0 ? (rest / D - w_free) / (1.0 / D + per) : 0.0;
-  };
-  const bool contacts = law.compression == InterfaceLaw::Compression::contact;
-  const double pushed = contacts ? contact(w) : 0.0;
-  // A spring that also takes compression starts from the in-situ reaction; one in tension only, from none.
-  const double rest = contacts ? 0.0 : w.n_rest;
-  return {pushed > 0.0 ? pushed : spring(law.normal_stiffness_Pa_m, rest, w.n, w.per_n),
-          spring(law.shear_stiffness_Pa_m, 0.0, w.t, w.per_t)};
+  // -D w with w = w_free + per r: r = -w_free/(1/D + per).
+  const auto spring = [](double D, double w_free, double per) { return D > 0.0 ? -w_free / (1.0 / D + per) : 0.0; };
+  const double pushed = law.compression == InterfaceLaw::Compression::contact ? contact(w) : 0.0;
+  const double n = pushed > 0.0 ? pushed : spring(law.normal_stiffness_Pa_m, w.n, w.per_n);
+  return {n, spring(law.shear_stiffness_Pa_m, w.t, w.per_t)};
 }
 
 // Places share nodes with about six neighbours; plain Gauss-Seidel (1) takes ten times the sweeps of 1.5.
@@ -145,7 +140,11 @@ SurfaceStencil tie_stencil(const TipTie& tie) {
 std::vector<Place> split_places(const Scene& scene, State& state, const InterfaceLaw& faces,
                                 const std::vector<InterfaceLaw>& ties) {
   std::vector<Place> places;
+  const auto mass = [&](int record) {
+    return state.sums[static_cast<std::size_t>(state.masters[static_cast<std::size_t>(record)].record)].m;
+  };
   for (std::size_t k = 0; k < state.ties.size(); ++k) {
+    if (mass(state.ties[k].plus) == 0.0 || mass(state.ties[k].minus) == 0.0) continue;
     places.push_back(make_place(state, tie_stencil(state.ties[k]), state.ties[k].s, ties[k]));
   }
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
@@ -164,10 +163,8 @@ double spring_energy_at(const InterfaceLaw& law, const SurfacePoint& s) {
   if (law.kind != Kind::soft || !s.split) return 0.0;
   const Vec2 tangent{s.n.y(), -s.n.x()};
   const double w_n = s.opening(), w_t = s.w.dot(tangent);
-  const bool contacts = law.compression == InterfaceLaw::Compression::contact;
-  const double normal = contacts && w_n < 0.0 ? 0.0 : 0.5 * law.normal_stiffness_Pa_m * w_n * w_n;
-  const double in_situ = contacts ? 0.0 : s.closing_stress() * w_n;  // a spring starts compressed by the in-situ stress
-  return s.A * (normal - in_situ + 0.5 * law.shear_stiffness_Pa_m * w_t * w_t);
+  const bool closed = law.compression == InterfaceLaw::Compression::contact && w_n < 0.0;
+  return 0.5 * s.A * ((closed ? 0.0 : law.normal_stiffness_Pa_m * w_n * w_n) + law.shear_stiffness_Pa_m * w_t * w_t);
 }
 
 // Mean total stress over the samples.

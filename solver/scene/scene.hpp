@@ -125,7 +125,7 @@ struct Numerics {
   int particles_per_cell = 4;  // 4, 9 or 16
   Shape shape = Shape::bspline2;
   Transfer transfer = Transfer::flip;
-  double courant = 0.6;  // c_P dt / h
+  double courant = 0.5;  // c_P dt / h
   double damping_1_s = 0.0;
 
   bool operator==(const Numerics&) const = default;

@@ -93,4 +93,9 @@ void extend(Surface& surface, bool at_back, const Vec2& to, double spacing) {
   update_geometry(surface);
 }
 
+Vec2 tip_direction(const Surface& fracture, bool at_back) {
+  const auto& v = fracture.vertices;
+  return at_back ? (v.back().x - v[v.size() - 2].x).normalized() : (v[0].x - v[1].x).normalized();
+}
+
 }  // namespace strata

@@ -60,4 +60,7 @@ Surface make_surface(Surface::Kind kind, int bit, const std::vector<Vec2>& path,
 /// Adds a segment from the last vertex (at_back) or the first one to `to` (m), in pieces no longer than `spacing` (m).
 void extend(Surface& surface, bool at_back, const Vec2& to, double spacing);
 
+/// Unit vector along which a tip points away from its fracture.
+Vec2 tip_direction(const Surface& fracture, bool at_back);
+
 }  // namespace strata
