@@ -213,6 +213,7 @@ bool fail_interfaces(const Scene& scene, const std::vector<Elasticity>& rocks, S
       SurfacePoint& s = surface.points[q];
       if (s.split || failed[static_cast<std::size_t>(s.column)] == 0) continue;
       s.split = true;
+      s.w = Vec2::Zero();  // what neighbours' splitting let it open while bonded is no gap, and no overlap to push back
       s.reaction = std::max(0.0, carried[q].dot(s.n)) * s.n;
       any = true;
     }
