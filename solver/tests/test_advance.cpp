@@ -78,7 +78,8 @@ bool same_bits(const State& a, const State& b) {
 // on a grid line and at mid-cell, for each transfer: what pressure supplies is found as strain, motion and dissipation.
 // What the time step itself loses, a term of its own, stays below 2 %; damped to rest, half of a suddenly applied
 // pressure's work is strain energy (Clapeyron; 2 % for what still moves and the springs at the tip). Measured: 2e-14.
-// Mutations that fail: the fluid's work of the other sign, the in-situ work or damping counted twice.
+// Mutations that fail: the fluid's work left out or of the other sign, the in-situ work or damping
+// counted twice, the transfer's loss left out.
 TEST_CASE("the energy ledger closes") {
   for (const double x : {6.0, 6.5}) {
     for (const double damping : {0.0, 100.0}) {

@@ -117,8 +117,9 @@ TEST_CASE("columns that a vertical fracture splits") {
   }
 }
 
-// Requires the tip rule: nodes strictly behind the tip are split, one at the tip is not; below a symmetry line ghosts
-// are split like the nodes they mirror. A fracture within the block obeys it at both tips.
+// Requires the tip rule (mutation that fails: the node at the tip split too): nodes strictly behind the tip are split,
+// one at the tip is not; below a symmetry line ghosts are split like the nodes they mirror. A fracture within the block
+// obeys it at both tips.
 TEST_CASE("rows that a vertical fracture splits") {
   const auto rows = [](const Path& path) { return split_rows(Run(cut_block(path)).state, 6); };
   CHECK(rows({{6.0, 0.0}, {6.0, 5.0}}) == std::pair{-1, 4});
@@ -165,6 +166,7 @@ TEST_CASE("copies where a fracture crosses a failed interface") {
 }
 
 // Requires that a fracture whose tip stands on a failed interface splits what lies below it only: three copies.
+// Mutation that fails: the rule of entered sides left out.
 TEST_CASE("copies where a fracture has reached a failed interface") {
   const Run run = crossing(6.0, 6.0);
   for (const int i : {5, 6, 7}) {
@@ -190,6 +192,7 @@ TEST_CASE("interfaces split by their law") {
 
 // Requires that every ghost beyond a held edge is tied to the mirrored node's copy with the same sides, with the sign
 // of the component across the edge turned, and nodes on the edge hold that component.
+// Mutation that fails: the sign not turned.
 TEST_CASE("ghosts mirror the copies inside") {
   for (const Run& run : all_kinds()) {
     const State& state = run.state;
@@ -283,7 +286,8 @@ TEST_CASE("bins partition the particles") {
   }
 }
 
-// Requires that strips cover the bins in order and that no two strips of one colour share a record.
+// Requires that strips cover the bins in order and that no two strips of one colour share a record. Mutation
+// that fails: strips of one row.
 TEST_CASE("strips of a colour share no record") {
   for (const Run& run : all_kinds()) {
     const State& state = run.state;

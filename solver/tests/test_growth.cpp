@@ -80,7 +80,7 @@ Totals totals(const Run& run) {
 }  // namespace
 
 // Requires that a tip moves at J >= J_c = K_Ic^2/E' and not below, not with a closed tip, nor where growth is off.
-// Fails where J_c is doubled, halved or zero.
+// Mutations that fail: J_c doubled, halved, zero.
 TEST_CASE("a tip grows at J_c") {
   Run run(growing({{7.0, 0.0}, {7.0, 5.0}}));
   CHECK(run.rocks[0].J_c == Approx(1.45e6 * 1.45e6 / (10e9 / 0.96)).epsilon(1e-12));
@@ -230,8 +230,8 @@ TEST_CASE("pressure in new points") {
 
 // Requires that refinement conserves mass, area, momentum, the centre of mass and of displacement and the strain
 // energy, to round-off, of a block with random velocities and strains; that it splits something, with new ids; and that
-// particles beside the fracture are on its right sides. Mutations that fail: a child lost or doubled, all children in
-// one place, displacements of the children without their gradient's sign.
+// particles beside the fracture are on its right sides. Mutations that fail: a child lost, a child's mass
+// doubled, all children moved one way.
 TEST_CASE("refined particles conserve") {
   Run run(growing({{7.0, 5.0}, {7.0, 9.0}}));
   State& state = run.state;
@@ -266,6 +266,7 @@ TEST_CASE("refined particles conserve") {
 }
 
 // Requires that children carry the parent's linear displacement: u of a child is the parent's plus g times the offset.
+// Mutations that fail: the gradient's term of the other sign, all children where their parent was.
 TEST_CASE("children continue the displacement of their parent") {
   Run run(growing({{7.0, 5.0}, {7.0, 9.0}}));
   State& state = run.state;

@@ -118,7 +118,7 @@ struct Bars {
 
 // Requires Coulomb's law: the tangential jump stays where it was while mu n suffices, and slips against |t| = mu n in
 // either direction beyond. By hand: n = 4e-6/2e-12 = 2e6, mu n = 1.2e6, 3e-12 per unit of t.
-// Mutations that fail: t without its sign or with the other, mu doubled or left out, t_start left out.
+// Mutations that fail: t of the other sign, mu doubled or left out, t_start left out.
 TEST_CASE("friction sticks and slips both ways") {
   const InterfaceLaw law = friction_law(0.6);
   for (const double sign : {1.0, -1.0}) {
@@ -199,7 +199,8 @@ TEST_CASE("strength envelopes") {
 
 // Requires that a weak interface in uniform stress fails at its strength to a part in 1e4, in tension, in shear of
 // either sign and in both, on a grid line and at mid-cell, whatever part of the stress is in situ; compression and
-// stress along the interface do not count. Fails where the in-situ stress is left out, doubled or of the wrong sign.
+// stress along the interface do not count. Mutations that fail: the in-situ stress left out, doubled, of
+// the other sign; compression counted.
 TEST_CASE("a weak interface fails at the exact stress") {
   const Stress none{}, squeeze{-2e6, -3e6, 0.2e6};
   for (const double at : {4.0, 3.5}) {
@@ -242,7 +243,7 @@ TEST_CASE("failure is for good and local") {
 // 1/D), for springs from nothing to rigid, on a grid line and at mid-cell, in tension and (springs) in compression, and
 // stay there: to 2e-6 of it, which is the tolerance of the reactions' solution; measured 8e-7 at 1e15, below 7e-8 up to
 // 1e12. Beyond 1e11 Pa/m the jump (1e-12 m at 1e15) is less than the rock's yield in a step and the tolerance is of
-// that. Fails on no spring, on D of half or twice its value up to 1e12, on the other sign.
+// that. Mutations that fail: no spring, D halved or doubled, a spring of the other sign.
 TEST_CASE("soft interface in series with two bars") {
   for (const double at : {4.0, 3.5}) {
     for (const double D : {1e3, 1e6, 1e9, 1e12, 1e15}) {
@@ -342,8 +343,8 @@ TEST_CASE("springs hold their law in random motion") {
 // -mu (N W t + dP_y) while all points slide, to 2e-5 (measured 4e-6; reactions are solved to 1e-6 a sweep), with either
 // sign, for friction and for the residual friction of a failed weak interface, on a grid line and at mid-cell; that the
 // relative velocity falls at mu N W (1/m1 + 1/m2) to 2 % (the block bounces on its foot), stops and stays zero, where
-// v0^2/2 over that slope says. Mutations that fail: mu left out, doubled or of the other sign, one half without its
-// reaction.
+// v0^2/2 over that slope says. Mutations that fail: mu left out or doubled, friction of the other sign, one
+// half without its reaction.
 TEST_CASE("a block slides, stops and sticks") {
   struct Case {
     InterfaceLaw law;

@@ -120,7 +120,8 @@ Errors errors(Run& run, bool at_back) {
 // Requires K_I, K_II and J of an imposed near-tip field, with free faces and with pressure on them, at both ends of a
 // fracture on a grid line and at mid-cell, along and across the grid. Measured: K 0.04 % and J 0.04 % on a grid
 // line, 0.09 % and 0.12 % at mid-cell.
-// Mutations that fail: the face term left out, doubled or of the other sign (pressure); a sign of K_II.
+// Mutations that fail: the face term left out, doubled or of the other sign (pressure); K_II of the other
+// sign; the same frame at both ends; the strain energy left out of J.
 TEST_CASE("K and J of a straight fracture") {
   for (const auto& path : std::vector<std::vector<std::array<double, 2>>>{
            {{10.0, 4.0}, {10.0, 16.0}}, {{9.5, 4.0}, {9.5, 16.0}}, {{16.0, 10.0}, {4.0, 10.0}}}) {

@@ -61,8 +61,9 @@ void add_reactions(const State& state, double times, std::vector<NodeSums>& sums
 }  // namespace
 
 // Requires that uniform strain gives no force inside, for every shape with 4, 9 and 16 points a cell, to 1e-13 of sigma
-// h. The edges show the stress: a force of the order of sigma h. Mutations that fail: a weight's derivative wrong by
-// any factor in one of the three nodes, V or sigma different in one row of particles.
+// h. The edges show the stress: a force of the order of sigma h. Mutation that fails: 1.9 for
+// 2 in the derivative at the B-spline's middle node. All stresses doubled pass here, as they must, and fail in the test
+// of the nodal forces of a particle.
 TEST_CASE("uniform strain gives no force inside") {
   const Stress s{3e6, -2e6, 1.5e6};
   for (const auto shape : shapes) {

@@ -136,7 +136,8 @@ TEST_CASE("jump, mean velocity and traction of a parted block") {
 
 // Requires that the work that the fluid's forces do on the nodes in a step is P dV to 1e-10, over 100 steps of an
 // opening fracture, and that the ledger says the same. (V changes by dw alone: lengths and normals change by 1e-4 of
-// it.) Mutations that fail: pressure on one face, twice, or pulling; a ledger of P w instead of P dw.
+// it.) Mutations that fail: pressure on one face, twice, or pulling; in the ledger, the other sign or P w for
+// P dw.
 TEST_CASE("the fluid's work is P dV") {
   for (const double x : {6.0, 6.5}) {
     Run run(pressed(x, 1e6, 0.0));
@@ -167,7 +168,7 @@ TEST_CASE("the fluid's work is P dV") {
 
 // Requires that nothing moves where the pressure is the closing stress, on a grid line and at mid-cell, with every
 // shape: no particle gets any velocity and J and K are zero, in 100 steps. 1 Pa more opens the fracture, so zero is no
-// insensitivity; fails if the in-situ traction is left out, doubled or of the wrong sign.
+// insensitivity. Mutations that fail: the in-situ traction left out, doubled, of the other sign.
 TEST_CASE("pressure equal to the closing stress moves nothing") {
   for (const double x : {6.0, 6.5}) {
     for (const auto shape : shapes) {

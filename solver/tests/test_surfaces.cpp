@@ -21,7 +21,8 @@ void check_projection(const Surface& s, const Vec2& x, double distance, double a
 }  // namespace
 
 // Requires pieces that divide each part of the path evenly, arc lengths, middles, unit normals to the left of the way
-// (from - to +) and the mean of two normals at a kink, by hand. Fails on normals turned or not of unit length.
+// (from - to +) and the mean of two normals at a kink, by hand. Mutations that fail: normals turned, not of unit
+// length.
 TEST_CASE("geometry of a kinked path") {
   const Surface s = path({{1.0, 1.0}, {3.0, 1.0}, {3.0, 2.2}});
   REQUIRE(s.points.size() == 7);
@@ -73,6 +74,7 @@ TEST_CASE("the other way round, the sides change") {
 }
 
 // Requires that places on an inclined surface, which round-off puts a little to either side of it, all count as +.
+// Mutation that fails: no tolerance on the + side.
 TEST_CASE("places on an inclined surface count as +") {
   const Vec2 from{1.1, 2.3}, to{4.2, 3.9};
   const Surface s = path({from, to});

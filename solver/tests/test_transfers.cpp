@@ -84,8 +84,7 @@ double torque(const Grid& g, const Copies& copies, int record, double f_x, doubl
 
 // Requires that a block without loads keeps its momentum to round-off over 200 steps of every transfer and shape, while
 // its particles hit each other at random. Measured: below 1e-14 of sum m |v|.
-// Mutations that fail: the increment dv taken twice or not at all, a force acc with the sign of one component turned
-// (the mean is not zero, so that momentum 0 and 2 fail as well).
+// Mutations that fail: the increment dv taken twice or not at all, the force of sigma_xy with the other sign.
 TEST_CASE("momentum is conserved without loads") {
   for (const auto shape : shapes) {
     for (const auto transfer : transfers) {
@@ -172,7 +171,8 @@ TEST_CASE("rigid translation gives no stress") {
 
 // Requires that a linear velocity field is found by a step as exactly that gradient by every shape, in the interior of
 // a lattice of 4, 9 or 16 points a cell (near edges a node's velocity is that of its particles' centre, not its own).
-// Measured: 1e-12 of the rates. Mutations that fail: a derivative left out, doubled, of the wrong sign, or transposed.
+// Measured: 1e-12 of the rates. Mutations that fail: g_xx left out, doubled or of the other sign, g_yx
+// taken for g_xy.
 TEST_CASE("a linear velocity field has an exact gradient in the interior") {
   const std::array<double, 4> rate{0.3, -0.7, 0.2, 0.5};
   for (const auto shape : shapes) {
@@ -222,8 +222,8 @@ TEST_CASE("rigid rotation gives no stress") {
 
 // Requires that particles bring their angular momentum to the grid whole, and that stresses exert no torque, for
 // random velocities and random symmetric and antisymmetric gradients. (What particles take back keeps it only for
-// lattices, which is the transfer's own limit.) Mutations that fail: V sigma_xy of one of the two rows left out,
-// doubled or turned; the weights of x and y exchanged.
+// lattices, which is the transfer's own limit.) Mutations that fail: sigma_xy in one of the two rows left out,
+// doubled or of the other sign.
 TEST_CASE("the grid holds the angular momentum of the particles and stresses exert no torque") {
   for (const auto shape : shapes) {
     Scene scene = block(8, 8);
@@ -253,7 +253,8 @@ TEST_CASE("the grid holds the angular momentum of the particles and stresses exe
 }
 
 // Requires that the nodal forces are -V sigma grad N: for one strained particle they sum up to zero, and their moment
-// sum x_i f_j to -V sigma_ij, by hand. Fails on zero, on twice and on the other sign of any stress component.
+// sum x_i f_j to -V sigma_ij, by hand. Mutations that fail: sigma_xx and sigma_xy left out,
+// doubled, of the other sign.
 TEST_CASE("the nodal forces of a particle are those of its stress") {
   for (const auto shape : shapes) {
     Scene scene = block(8, 8);
