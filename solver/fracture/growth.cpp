@@ -57,6 +57,13 @@ bool near_edge(const Scene& scene, const Vec2& x, const Vec2& direction, double 
   return left || right || bottom || top;
 }
 
+// In the step after a contact or a particle's change of side J may spike to several J_c while K stays near nothing:
+// such a J is no energy release rate. (K_I^2 + K_II^2)/E' has to reach half of J_c too; near interfaces K itself is not
+// to be trusted and J decides alone.
+bool confirmed_by_K(const Tip& tip, const Elasticity& rock) {
+  return tip.K_I * tip.K_I + tip.K_II * tip.K_II >= 0.5 * rock.J_c * rock.E_prime;
+}
+
 double rayleigh_wait(const Scene& scene, const Elasticity& rock) {
   return scene.fracture->increment_m / rock.c_R;
 }
@@ -205,6 +212,7 @@ bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state
     const Elasticity& ahead =
         rocks[rock_at(scene, at + ahead_cells * state.grid.h * tip_direction(state.fracture(), tip.at_back))];
     if (!tip.growing || tip.K_I <= 0.0 || tip.J <= 0.0 || tip.J < ahead.J_c) continue;
+    if (!tip.at_interface && !confirmed_by_K(tip, ahead)) continue;
     if (tip.last_growth_s >= 0.0 && state.time - tip.last_growth_s < rayleigh_wait(scene, ahead)) continue;
     if (near_edge(scene, at, tip_direction(state.fracture(), tip.at_back), state.grid.h) && tip.has_grown) {
       tip.growing = false;

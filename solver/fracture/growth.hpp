@@ -8,12 +8,12 @@
 
 namespace strata {
 
-/// Moves every tip whose J has reached J_c = K_Ic^2/E' of the rock ahead by one increment, along its own direction or
-/// that of maximum hoop stress. A tip moves no faster than the Rayleigh speed of that rock: the next increment waits
-/// for increment/c_R. An increment that would cross an interface, or end less than a quarter of an increment short of
-/// it, ends on it; one that starts on it, or less than a quarter of an increment before it, goes on. A tip that has
-/// grown to within 3 cells of an edge stops for good and says so. A closed tip (K_I = 0) does not grow. Returns true if
-/// any tip moved: the copies must then be rebuilt. Throws nothing.
+/// Moves every tip whose J has reached J_c = K_Ic^2/E' of the rock ahead (and whose K confirms it) by one increment,
+/// along its own direction or that of maximum hoop stress. A tip moves no faster than the Rayleigh speed of that rock:
+/// the next increment waits for increment/c_R. An increment that would cross an interface, or end less than a quarter
+/// of an increment short of it, ends on it; one that starts on it, or less than a quarter of an increment before it,
+/// goes on. A tip that has grown to within 3 cells of an edge stops for good and says so. A closed tip (K_I = 0) does
+/// not grow. Returns true if any tip moved: the copies must then be rebuilt. Throws nothing.
 bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
 
 /// Appends the events reach_interface and arrest as they become true; start and restart come with grow().
