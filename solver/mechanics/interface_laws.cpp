@@ -30,8 +30,8 @@ Reaction react_soft(const InterfaceLaw& law, const FreeJump& w) {
   return {n, spring(law.shear_stiffness_Pa_m, w.t, w.per_t)};
 }
 
-// Places share nodes with about six neighbours, so plain Gauss-Seidel (1) is slow: 327 sweeps a step in Experiment 1 soft,
-// to a tolerance of 1e-9, where 1.5 with today's tolerance takes 52. 1.5 was not tuned further.
+// Places share nodes with about six neighbours, so plain Gauss-Seidel (1) is slow: 327 sweeps a step in Experiment 1
+// soft, to a tolerance of 1e-9, where 1.5 with today's tolerance takes 52. 1.5 was not tuned further.
 constexpr double over_relaxation = 1.5;
 
 // The reaction nearest to r that a law allows whatever the jump: contact only pushes, friction is bounded.
