@@ -291,6 +291,9 @@ Scene build_scene(const Entries& entries, const Positions& positions, Faults& fa
   Scene scene;
   if (has_table(entries, "fracture")) scene.fracture.emplace();
   apply_plain_keys(entries, scene);
+  const bool quasistatic = scene.numerics.mechanics == Numerics::Mechanics::quasistatic;
+  if (scene.fracture && quasistatic && !positions.given("fracture.crossing"))
+    scene.fracture->crossing = Fracture::Crossing::energy;
   build_rocks(entries, scene);
   build_laws(entries, scene, faults);
   check_required(entries, positions, faults);

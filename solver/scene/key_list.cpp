@@ -52,17 +52,6 @@ Word as(std::string text, Enumerator value) {
   return {std::move(text), static_cast<int>(value), ""};
 }
 
-Word withheld_word(std::string text, std::string reason) {
-  return {std::move(text), -1, std::move(reason)};
-}
-
-Key withheld_key(std::string path, std::string unit, std::string reason, std::string help) {
-  Key key = other(std::move(path), KeyType::anything, {}, std::move(help));
-  key.unit = std::move(unit);
-  key.withheld = std::move(reason);
-  return key;
-}
-
 Key required(Key key) {
   key.required = true;
   return key;
@@ -206,9 +195,12 @@ std::vector<Key> fracture_keys() {
       required(other("fracture.path_m", KeyType::points, {},
                      "Points of the initial fracture, [[x, y], ...]; one end on the symmetry line, or neither.")),
       word(
-          "fracture.growth", {as("J", Fracture::Growth::J), as("none", Fracture::Growth::none)},
+          "fracture.growth",
+          {as("J", Fracture::Growth::J), as("none", Fracture::Growth::none), as("energy", Fracture::Growth::energy)},
           [](Scene& s, std::size_t) -> Fracture::Growth& { return s.fracture->growth; },
-          "Grow where J reaches J_c of the rock ahead, or never."),
+          "Grow where J reaches J_c of the rock ahead, or never; energy: by the energy released over a finite "
+          "increment "
+          "everywhere, as crossing does near interfaces."),
       number(
           "fracture.increment_m", "m", positive,
           +[](Scene& s, std::size_t) -> double& { return s.fracture->increment_m; }, "Length of a growth step.",
@@ -219,14 +211,14 @@ std::vector<Key> fracture_keys() {
           [](Scene& s, std::size_t) -> Fracture::Direction& { return s.fracture->direction; },
           "Ahead, or normal to the largest hoop stress by K_I and K_II."),
       word(
-          "fracture.crossing",
-          {as("J", Fracture::Crossing::J),
-           withheld_word("energy",
-                         "It compares equilibria and needs mechanics = \"quasistatic\". Use crossing = \"J\".")},
+          "fracture.crossing", {as("J", Fracture::Crossing::J), as("energy", Fracture::Crossing::energy)},
           [](Scene& s, std::size_t) -> Fracture::Crossing& { return s.fracture->crossing; },
-          "The criterion where an interface is near the tip."),
-      withheld_key("fracture.crossing_increment_m", "m", "It belongs to crossing = \"energy\". Leave it out.",
-                   "Length over which the energy of crossing is released."),
+          "The criterion where an interface is near the tip: J, or the energy released over crossing_increment_m. Left "
+          "out: energy in quasistatic, J in explicit."),
+      number(
+          "fracture.crossing_increment_m", "m", positive,
+          +[](Scene& s, std::size_t) -> std::optional<double>& { return s.fracture->crossing_increment_m; },
+          "Length over which the energy of crossing is released; by default increment_m."),
   };
 }
 
@@ -234,10 +226,11 @@ std::vector<Key> fluid_keys() {
   return {
       word(
           "fluid.law",
-          {as("paper", Fluid::Law::paper), as("uniform", Fluid::Law::uniform),
-           withheld_word("reynolds", "Use law = \"paper\" or \"uniform\".")},
+          {as("paper", Fluid::Law::paper), as("uniform", Fluid::Law::uniform), as("reynolds", Fluid::Law::reynolds)},
           [](Scene& s, std::size_t) -> Fluid::Law& { return s.fluid.law; },
-          "Pressure diffusion along the fracture by eq. (3), or the inlet's pressure everywhere in it."),
+          "Pressure diffusion along the fracture by eq. (3), the inlet's pressure everywhere in it, or lubrication "
+          "that "
+          "conserves mass."),
       number(
           "fluid.bulk_modulus_Pa", "Pa", positive,
           +[](Scene& s, std::size_t) -> double& { return s.fluid.bulk_modulus_Pa; }, "Bulk modulus M."),
@@ -256,8 +249,12 @@ std::vector<Key> fluid_keys() {
       number(
           "fluid.inlet.rate_Pa_s", "Pa/s", finite, +[](Scene& s, std::size_t) -> double& { return s.fluid.rate_Pa_s; },
           "Rise of the inlet pressure."),
-      withheld_key("fluid.inlet.rate_m2_s", "m^2/s", "Use inlet = {start_Pa, rate_Pa_s}.",
-                   "Fluid fed into the whole fracture per metre out of plane."),
+      number(
+          "fluid.inlet.rate_m2_s", "m^2/s", positive,
+          +[](Scene& s, std::size_t) -> std::optional<double>& { return s.fluid.rate_m2_s; },
+          "Fluid fed into the whole fracture per metre out of plane, instead of a pressure; with symmetry at the "
+          "bottom the "
+          "modelled half gets half of it."),
       word(
           "fluid.new_point", {as("dry", Fluid::NewPoint::dry), as("inherit", Fluid::NewPoint::inherit)},
           [](Scene& s, std::size_t) -> Fluid::NewPoint& { return s.fluid.new_point; },
@@ -267,8 +264,10 @@ std::vector<Key> fluid_keys() {
           {as("trapezoid", Fluid::TimeRule::trapezoid), as("backward-euler", Fluid::TimeRule::backward_euler),
            as("explicit", Fluid::TimeRule::explicit_euler)},
           [](Scene& s, std::size_t) -> Fluid::TimeRule& { return s.fluid.time_rule; }, "Time integration of the flow."),
-      withheld_key("fluid.cavitation_Pa", "Pa", "The fluid pressure has no lower bound. Leave it out.",
-                   "Absolute lower bound of the fluid pressure."),
+      number(
+          "fluid.cavitation_Pa", "Pa", not_negative,
+          +[](Scene& s, std::size_t) -> double& { return s.fluid.cavitation_Pa; },
+          "Absolute lower bound of the fluid pressure under law = \"reynolds\"."),
   };
 }
 
@@ -284,17 +283,18 @@ std::vector<Key> numerics_keys() {
   return {
       word(
           "numerics.mechanics",
-          {as("explicit", Mechanics::explicit_dynamics),
-           withheld_word("quasistatic",
-                         "Use mechanics = \"explicit\"; for a "
-                         "settled state add growth = \"none\" and damping_1_s.")},
+          {as("explicit", Mechanics::explicit_dynamics), as("quasistatic", Mechanics::quasistatic)},
           [](Scene& s, std::size_t) -> Mechanics& { return s.numerics.mechanics; },
-          "How the rock is solved: with inertia."),
+          "How the rock is solved: with inertia, or without."),
       required(number(
           "numerics.cell_m", "m", positive, +[](Scene& s, std::size_t) -> double& { return s.numerics.cell_m; },
           "Side of a square cell; divides width and height of the block.")),
-      withheld_key("numerics.far_cell_m", "m", "Grids are uniform. Leave it out.",
-                   "Cells far from fracture and interfaces."),
+      number(
+          "numerics.far_cell_m", "m", positive,
+          +[](Scene& s, std::size_t) -> std::optional<double>& { return s.numerics.far_cell_m; },
+          "Side of the cells far from fracture and interfaces, quasi-static only: cell_m within 10 cells of them, then "
+          "coarser "
+          "by at most 1.2 a cell. Left out: uniform."),
       particles,
       word(
           "numerics.shape", {as("bspline2", Shape::bspline2), as("linear", Shape::linear), as("gimp", Shape::gimp)},
@@ -306,9 +306,9 @@ std::vector<Key> numerics_keys() {
           "Velocity from the grid back to particles."),
       word(
           "numerics.kinematics",
-          {as("updated", Numerics::Kinematics::updated), withheld_word("total", "Use kinematics = \"updated\".")},
+          {as("updated", Numerics::Kinematics::updated), as("total", Numerics::Kinematics::total)},
           [](Scene& s, std::size_t) -> Numerics::Kinematics& { return s.numerics.kinematics; },
-          "Particles move and weights are computed again."),
+          "Particles move and weights are computed again, or all stays in its reference place between growth events."),
       number(
           "numerics.courant", "", {0.0, 1.0, true, false},
           +[](Scene& s, std::size_t) -> double& { return s.numerics.courant; }, "Time step as c_P dt / cell_m.",
@@ -331,10 +331,9 @@ std::vector<Key> run_keys() {
           +[](Scene& s, std::size_t) -> std::optional<double>& { return s.stop.inlet_Pa; },
           "Ends the run when the inlet pressure is as high."),
       number(
-          "stop.time_s", "s", positive, +[](Scene& s, std::size_t) -> std::optional<double>& { return s.stop.time_s; },
-          "Ends the run at this time.",
-          "Zero asks for a quasi-static equilibrium, which this version does not offer: run with growth = \"none\" and "
-          "damping_1_s until it has settled."),
+          "stop.time_s", "s", not_negative,
+          +[](Scene& s, std::size_t) -> std::optional<double>& { return s.stop.time_s; },
+          "Ends the run at this time; 0, quasi-static only: one equilibrium at the start pressure."),
       number(
           "output.fields_every_s", "s", positive,
           +[](Scene& s, std::size_t) -> std::optional<double>& { return s.output.fields_every_s; },

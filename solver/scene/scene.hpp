@@ -86,28 +86,33 @@ struct Strata {
 };
 
 struct Fracture {
-  enum class Growth { none, J };
+  enum class Growth { none, J, energy };
   enum class Direction { straight, max_hoop };
-  enum class Crossing { J };
+  enum class Crossing { J, energy };
   std::vector<std::array<double, 2>> path_m;  // an end on the symmetry line comes first
   Growth growth = Growth::J;
   double increment_m = 1.0;
   Direction direction = Direction::straight;
-  Crossing crossing = Crossing::J;
+  Crossing crossing = Crossing::J;             // left out of a quasi-static scene: energy
+  std::optional<double> crossing_increment_m;  // absent: increment_m
+
+  double crossing_increment() const { return crossing_increment_m.value_or(increment_m); }
 
   bool operator==(const Fracture&) const = default;
 };
 
 struct Fluid {
-  enum class Law { uniform, paper };
+  enum class Law { uniform, paper, reynolds };
   enum class NewPoint { dry, inherit };
   enum class TimeRule { trapezoid, backward_euler, explicit_euler };
   Law law = Law::paper;
   double bulk_modulus_Pa = 1.0e9;
   double viscosity_Pa_s = 0.1;
   double minimum_opening_m = 1.0e-4;
-  double start_Pa = 0.0;   // inlet pressure at time 0
-  double rate_Pa_s = 0.0;  // and its rise
+  double start_Pa = 0.0;            // inlet pressure at time 0
+  double rate_Pa_s = 0.0;           // and its rise
+  std::optional<double> rate_m2_s;  // instead of a pressure: what the whole fracture is fed
+  double cavitation_Pa = 0.0;       // absolute lower bound of the fluid pressure
   NewPoint new_point = NewPoint::dry;
   TimeRule time_rule = TimeRule::trapezoid;
 
@@ -115,14 +120,15 @@ struct Fluid {
 };
 
 struct Numerics {
-  enum class Mechanics { explicit_dynamics };
+  enum class Mechanics { explicit_dynamics, quasistatic };
   enum class Shape { bspline2, linear, gimp };
   enum class Transfer { flip, pic, xpic2 };
-  enum class Kinematics { updated };
+  enum class Kinematics { updated, total };
   Mechanics mechanics = Mechanics::explicit_dynamics;
   Kinematics kinematics = Kinematics::updated;
   double cell_m = 0.0;
-  int particles_per_cell = 4;  // 4, 9 or 16
+  std::optional<double> far_cell_m;  // absent: the grid is uniform
+  int particles_per_cell = 4;        // 4, 9 or 16
   Shape shape = Shape::bspline2;
   Transfer transfer = Transfer::flip;
   double courant = 0.5;  // c_P dt / h

@@ -1,0 +1,42 @@
+// The laws of split places as pure functions of the jump: what the solvers with and without inertia share.
+#pragma once
+
+#include <vector>
+
+#include "state/elasticity.hpp"
+#include "state/state.hpp"
+
+namespace strata {
+
+// What a law is asked at a place; the tangent is (n_y, -n_x).
+struct LawInput {
+  double w_n = 0.0;        // normal jump (m), positive open
+  double w_t = 0.0;        // tangential jump (m)
+  double w_t_start = 0.0;  // what friction remembers: tangential jump (m)
+  double r_t_start = 0.0;  // and reaction (Pa) of the last equilibrium
+  double n_rest = 0.0;     // normal reaction of closed contact at zero jump (Pa): in-situ less fluid
+};
+
+// The reaction on the + face (Pa, its normal component positive in compression) and how it changes with the jump
+// (Pa/m).
+struct LawAnswer {
+  double n = 0.0, t = 0.0;
+  double dn_dn = 0.0, dt_dt = 0.0, dt_dn = 0.0;
+};
+
+/// Stiffness of closed contact (Pa/m), the same on all places of a surface: 1e4 of what a cell of the scene's stiffest
+/// rock has, so that faces overlap by less than 1e-4 of what a cell deforms; above that of the springs of a soft
+/// interface, 10 D. Rigid contact at two places a cell would ask for more than the one jump a cell that exists, and its
+/// reactions would not be unique.
+double contact_stiffness(const InterfaceLaw& law, const std::vector<Elasticity>& rocks, const Grid& grid);
+
+/// Reaction of a law with contact stiffness k (Pa/m) at a jump.
+///   friction, failed weak: n = max(0, n_rest - k w_n), t = r_t_start - k (w_t - w_t_start), no more than mu n
+///   (Coulomb); soft: t = -D_t w_t, n = max(-D_n w_n, n_rest - k w_n), or -D_n w_n both ways (the study's eq. 6).
+/// Continuous and, but for the bound of friction, the gradient of a convex energy. Throws nothing.
+LawAnswer law_at(const InterfaceLaw& law, double k, const LawInput& in);
+
+/// The law of the fracture's own faces: contact without friction.
+InterfaceLaw face_law();
+
+}  // namespace strata
