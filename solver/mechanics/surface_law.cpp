@@ -28,6 +28,7 @@ LawAnswer law_at(const InterfaceLaw& law, double k, const LawInput& in) {
   r.n = pushed;
   r.dn_dn = -k;
   const double mu = law.kind == InterfaceLaw::Kind::weak ? law.residual_friction : law.coefficient;
+  if (mu == 0.0) return r;
   const double held = in.r_t_start - k * (in.w_t - in.w_t_start);
   r.t = std::clamp(held, -mu * r.n, mu * r.n);
   if (r.t == held) {
