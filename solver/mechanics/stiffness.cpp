@@ -1,0 +1,64 @@
+#include "mechanics/stiffness.hpp"
+
+#include "state/shape_functions.hpp"
+
+namespace strata {
+
+Gradients gradients_at(const Scene& scene, const Grid& g, int i, int j, const Vec2& x, double half) {
+  return with_shape(scene.numerics.shape, [&](auto shape) {
+    const Weights X = shape.at(x.x() / g.h - i, half / g.h), Y = shape.at(x.y() / g.h - j, half / g.h);
+    Gradients out;
+    for (std::size_t n = 0; n < 9; ++n) {
+      out.N[n] = X.N[n % 3] * Y.N[n / 3];
+      out.N_x[n] = X.dN[n % 3] * Y.N[n / 3] / g.h;
+      out.N_y[n] = X.N[n % 3] * Y.dN[n / 3] / g.h;
+    }
+    return out;
+  });
+}
+
+void add_stiffness(const Elasticity& rock, const Gradients& g, double V, LocalStiffness& K) {
+  Eigen::Matrix<double, 3, 18> B = Eigen::Matrix<double, 3, 18>::Zero();
+  for (int n = 0; n < 9; ++n) {
+    const auto k = static_cast<std::size_t>(n);
+    B(0, 2 * n) = g.N_x[k], B(1, 2 * n + 1) = g.N_y[k];
+    B(2, 2 * n) = g.N_y[k], B(2, 2 * n + 1) = g.N_x[k];  // engineering shear
+  }
+  Eigen::Matrix3d C;
+  C << rock.lambda + 2.0 * rock.mu, rock.lambda, 0.0, rock.lambda, rock.lambda + 2.0 * rock.mu, 0.0, 0.0, 0.0, rock.mu;
+  K += V * B.transpose() * C * B;
+}
+
+Eigen::SparseMatrix<double> assemble_stiffness(const Scene& scene, const std::vector<Elasticity>& rocks,
+                                               const State& state, const std::vector<Master>& masters) {
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(state.bins.size() * 324);
+  const Particles& p = state.particles;
+  std::vector<char> used(2 * masters.size(), 0);
+  for (const Bin& bin : state.bins) {
+    LocalStiffness K = LocalStiffness::Zero();
+    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
+      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]);
+      add_stiffness(rocks[p.rock[q]], g, p.V[q], K);
+    }
+    for (int r = 0; r < 18; ++r) {
+      const Unknown row = unknown_of(masters, bin.record[static_cast<std::size_t>(r / 2)], r % 2);
+      if (row.index < 0) continue;
+      for (int c = 0; c < 18; ++c) {
+        const Unknown column = unknown_of(masters, bin.record[static_cast<std::size_t>(c / 2)], c % 2);
+        if (column.index >= 0 && K(r, c) != 0.0)
+          entries.emplace_back(row.index, column.index, row.factor * column.factor * K(r, c));
+      }
+      if (K(r, r) != 0.0) used[static_cast<std::size_t>(row.index)] = 1;
+    }
+  }
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    if (used[k] == 0) entries.emplace_back(static_cast<int>(k), static_cast<int>(k), 1.0);  // no stiffness, no load
+  }
+  const auto n = static_cast<int>(used.size());
+  Eigen::SparseMatrix<double> K(n, n);
+  K.setFromTriplets(entries.begin(), entries.end());
+  return K;
+}
+
+}  // namespace strata
