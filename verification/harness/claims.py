@@ -1,28 +1,30 @@
-"""Evaluates the claims that scenes hold as data on the runs made of them.
+"""Evaluates the claims that scenes hold as data on the runs made of them, for each mechanics.
 
 A claim is reproduced when all its cases hold, "only under a variant" when they do not but those of one of its readings do.
+Readings are written in the scene, or follow from a choice of experiments/choices/points.toml by which other variants stand for
+those that the cases name.
 usage: python3 -m verification.harness.claims [--experiments DIR] [--runs DIR] [--out FILE]
 """
 from __future__ import annotations
 
 import argparse
-import json
 import math
 import sys
-import tomllib
-from dataclasses import asdict, dataclass, field
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from verification.harness.choices import Choice, read_points
+from verification.harness.claim_data import (
+    BY_J, CONFIRMED, CONTRADICTED, NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, Case, CaseResult, ClaimResult,
+    Reading, write_claims,
+)  # fmt: skip
 from verification.harness.load import LoadError, Run, load
 from verification.harness.observables import OBSERVABLES, Measured, measure
 from verification.harness.paths import EXPERIMENTS, ROOT
-
-REPRODUCED = "reproduced"
-NOT_REPRODUCED = "not reproduced"
-ONLY_UNDER_A_VARIANT = "only under a variant"
-NOT_EVALUATED = "not evaluated"
+from verification.harness.scenes import MECHANICS, mechanics_of, read_scene, scenes_of
 
 # Keys of a case that are not parameters of its observable.
 CASE_KEYS = ("observable", "variant", "against", "against_scene", "at_least", "at_most")
@@ -30,58 +32,6 @@ CASE_KEYS = ("observable", "variant", "against", "against_scene", "at_least", "a
 
 class BadClaim(Exception):
     """A claim that cannot be evaluated as it is written."""
-
-
-@dataclass(frozen=True)
-class Case:
-    """One thing that must hold: an observable of one run, or of one against another, within bounds (its unit)."""
-
-    observable: str
-    variant: str
-    against: str | None = None
-    against_scene: str | None = None
-    at_least: float | None = None
-    at_most: float | None = None
-    parameters: dict[str, Any] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class CaseResult:
-    """A case with what was measured: value in `unit`, its bounds (null: unbounded), whether it holds (null: open)."""
-
-    case: Case
-    unit: str
-    value: float | None
-    low: float | None
-    high: float | None
-    holds: bool | None
-    evaluated: bool
-    note: str
-    flags: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class Reading:
-    """Another way to read what the study leaves open, and whether the claim holds under it."""
-
-    name: str
-    holds: bool | None
-    cases: tuple[CaseResult, ...]
-
-
-@dataclass(frozen=True)
-class ClaimResult:
-    """A claim with its verdict and the numbers behind it."""
-
-    id: str
-    experiment: str
-    text: str
-    why: str
-    observable: str
-    verdict: str
-    cases: tuple[CaseResult, ...]
-    readings: tuple[Reading, ...]
-    flags: tuple[str, ...]
 
 
 def case_of(content: dict[str, Any], default_observable: str, where: str) -> Case:
@@ -99,10 +49,11 @@ def case_of(content: dict[str, Any], default_observable: str, where: str) -> Cas
 
 
 class Runs:
-    """The runs below a folder, each loaded once; a run that is missing or failed is None with the reason."""
+    """The runs of one mechanics below a folder, each loaded once; one that is missing or failed is None with the reason."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, mechanics: str = MECHANICS[0]) -> None:
         self.folder = folder
+        self.mechanics = mechanics
         self.get = lru_cache(maxsize=None)(self._get)
 
     def _get(self, experiment: str, variant: str) -> tuple[Run | None, str]:
@@ -129,14 +80,16 @@ def evaluate_case(case: Case, experiment: str, runs: Runs) -> CaseResult:
     against: Run | None = None
     if run is not None and case.against is not None:
         against, problem = runs.get(case.against_scene or experiment, case.against)
-    unit = OBSERVABLES[case.observable].unit
+    observable = OBSERVABLES[case.observable]
     if problem:
-        return CaseResult(case, unit, None, None, None, None, False, problem, ())
+        return CaseResult(case, observable.unit, None, None, None, None, False, problem, (), observable.meaning)
     assert run is not None
     found: Measured = measure(case.observable, case.parameters, run, against)
     holds = found.holds(case.at_least, case.at_most)
     flags = found.flags if found.exact else (*found.flags, "bound only")
-    return CaseResult(case, unit, found.value, finite(found.low), finite(found.high), holds, True, found.note, flags)
+    return CaseResult(
+        case, observable.unit, found.value, finite(found.low), finite(found.high), holds, True, found.note, flags, observable.meaning
+    )
 
 
 def all_hold(cases: tuple[CaseResult, ...]) -> bool | None:
@@ -147,68 +100,123 @@ def all_hold(cases: tuple[CaseResult, ...]) -> bool | None:
 
 
 def verdict_of(cases: tuple[CaseResult, ...], readings: tuple[Reading, ...]) -> str:
-    """The verdict on a claim from its cases and readings."""
+    """The verdict on a claim from its cases and those of its readings that have runs for all of them."""
     holds = all_hold(cases)
     if holds:
         return REPRODUCED
-    if any(reading.holds for reading in readings):
+    if any(reading.holds and reading.complete for reading in readings):
         return ONLY_UNDER_A_VARIANT
     if holds is None and not all(case.evaluated for case in cases):
         return NOT_EVALUATED
     return NOT_REPRODUCED
 
 
-def evaluate(claim: dict[str, Any], experiment: str, runs: Runs) -> ClaimResult:
+def under(choice: Choice, cases: Sequence[Case], experiment: str) -> list[Case]:
+    """The cases with the variants that stand for theirs under a choice; none where the choice changes no case."""
+    found, changed = [], False
+    for case in cases:
+        variant = choice.standing_for(experiment, case.variant)
+        against = choice.standing_for(case.against_scene or experiment, case.against) if case.against else None
+        if variant is None or (case.against and against is None):
+            continue
+        changed = changed or variant != case.variant or against != case.against
+        found.append(replace(case, variant=variant, against=against))
+    return found if changed else []
+
+
+def can_run(cases: Sequence[Case], experiment: str, experiments: Path, mechanics: str) -> bool:
+    """Whether the mechanics can run all variants of some cases."""
+    named = [(experiment, case.variant) for case in cases]
+    named += [(case.against_scene or experiment, case.against) for case in cases if case.against]
+    return all(mechanics in mechanics_of(experiments / f"{stem}.toml", variant) for stem, variant in named)
+
+
+def readings_of(
+    claim: dict[str, Any], cases: Sequence[Case], experiment: str, runs: Runs, choices: Sequence[Choice], experiments: Path
+) -> tuple[Reading, ...]:
+    """The readings that the scene writes, then those that follow from choices; one written for a choice stands for it."""
+    where = f"{experiment}, claim {claim['id']}"
+    titles = {choice.id: choice.title for choice in choices}
+    written: list[tuple[str, str, list[Case], bool]] = []
+    for reading in claim.get("reading", []):
+        asked = [case_of(content, claim["observable"], where) for content in reading["case"]]
+        choice_id = str(reading.get("choice", ""))
+        if choice_id and choices and choice_id not in titles:
+            raise BadClaim(f"{where}: there is no choice {choice_id}")
+        written.append((str(reading.get("name", choice_id)), choice_id, asked, not choice_id or len(asked) >= len(cases)))
+    spoken_for = {choice_id for _, choice_id, _, _ in written}
+    for choice in choices:
+        asked = under(choice, cases, experiment) if choice.id not in spoken_for else []
+        if asked and can_run(asked, experiment, experiments, runs.mechanics):
+            written.append(("", choice.id, asked, len(asked) == len(cases)))
+    found = []
+    for name, choice_id, asked, complete in written:
+        results = tuple(evaluate_case(case, experiment, runs) for case in asked)
+        found.append(Reading(titles.get(choice_id, name), all_hold(results), results, choice_id, complete))
+    return tuple(found)
+
+
+def evaluate(
+    claim: dict[str, Any], experiment: str, runs: Runs, choices: Sequence[Choice] = (), experiments: Path = EXPERIMENTS
+) -> ClaimResult:
     """Evaluate one claim of a scene."""
     where = f"{experiment}, claim {claim.get('id')}"
     for key in ("id", "text", "observable", "case", "why"):
         if not claim.get(key):
             raise BadClaim(f"{where}: no {key}")
-
-    def evaluated(contents: list[dict[str, Any]]) -> tuple[CaseResult, ...]:
-        return tuple(evaluate_case(case_of(content, claim["observable"], where), experiment, runs) for content in contents)
-
-    cases = evaluated(claim["case"])
-    others = [(str(reading["name"]), evaluated(reading["case"])) for reading in claim.get("reading", [])]
-    readings = tuple(Reading(name, all_hold(results), results) for name, results in others)
-    verdict = verdict_of(cases, readings)
+    asked = [case_of(content, claim["observable"], where) for content in claim["case"]]
+    cases = tuple(evaluate_case(case, experiment, runs) for case in asked)
+    readings = readings_of(claim, asked, experiment, runs, choices, experiments)
+    verdict, holds = verdict_of(cases, readings), all_hold(cases)
     flags = list(dict.fromkeys(flag for case in cases for flag in case.flags))
-    if verdict == NOT_REPRODUCED and all_hold(cases) is None:
+    if verdict == NOT_REPRODUCED and holds is None:
         flags.append("undecided: a run ended before it could show this")
     if verdict == REPRODUCED:
         flags += [f"does not hold under: {reading.name}" for reading in readings if reading.holds is False]
     return ClaimResult(
-        claim["id"], experiment, claim["text"], claim["why"], claim["observable"], verdict, cases, readings, tuple(flags)
-    )
+        claim["id"], experiment, runs.mechanics, claim["text"], claim["why"], claim["observable"], verdict, holds, cases, readings,
+        tuple(flags),
+    )  # fmt: skip
 
 
 def claims_of(scene: Path) -> list[dict[str, Any]]:
     """The claims of a scene file."""
-    return list(tomllib.loads(scene.read_text(encoding="utf-8")).get("claim", []))
+    return list(read_scene(scene).get("claim", []))
 
 
-def evaluate_all(experiments: Path, runs_folder: Path) -> list[ClaimResult]:
-    """Evaluate the claims of all scenes of a folder."""
-    runs = Runs(runs_folder)
-    return [evaluate(claim, scene.stem, runs) for scene in sorted(experiments.glob("*.toml")) for claim in claims_of(scene)]
+def evaluate_all(experiments: Path, runs_folder: Path, mechanics: str = MECHANICS[0]) -> list[ClaimResult]:
+    """Evaluate the claims of all scenes of a folder on the runs of one mechanics, which are below runs_folder/EXPERIMENT/."""
+    runs = Runs(runs_folder, mechanics)
+    choices = [choice for point in read_points(experiments) for choice in point.choices]
+    return [
+        evaluate(claim, scene.stem, runs, choices, experiments) for scene in scenes_of(experiments) for claim in claims_of(scene)
+    ]
 
 
-def as_json(results: list[ClaimResult]) -> str:
-    """The results as the text of claims.json; a case's keys stand beside what was measured."""
+def evaluate_each(experiments: Path, root: Path) -> list[ClaimResult]:
+    """Evaluate the claims in each mechanics that has runs below root/MECHANICS/ (in the first where none has)."""
+    present = [mechanics for mechanics in MECHANICS if (root / mechanics).is_dir()] or [MECHANICS[0]]
+    results = {mechanics: evaluate_all(experiments, root / mechanics, mechanics) for mechanics in present}
+    if set(MECHANICS) <= set(results):
+        by_energy = {result.id: result for result in results["quasistatic"]}
+        results["explicit"] = [confirmed(result, by_energy[result.id]) for result in results["explicit"]]
+    return [result for mechanics in present for result in results[mechanics]]
 
-    def flat(result: CaseResult) -> dict[str, Any]:
-        content = asdict(result)
-        meaning = OBSERVABLES[result.case.observable].meaning
-        return {**content.pop("case"), "meaning": meaning, **content}
 
-    claims = []
-    for result in results:
-        readings = [
-            {"name": reading.name, "holds": reading.holds, "cases": [flat(case) for case in reading.cases]}
-            for reading in result.readings
-        ]
-        claims.append({**asdict(result), "cases": [flat(case) for case in result.cases], "readings": readings})
-    return json.dumps({"claims": claims}, indent=1, allow_nan=False) + "\n"
+def confirmed(result: ClaimResult, by_energy: ClaimResult) -> ClaimResult:
+    """A claim whose cases that rest on J at an interface say whether the other mechanics decides them alike by energy."""
+    cases = tuple(_confirmed(case, other) for case, other in zip(result.cases, by_energy.cases))
+    flags = list(dict.fromkeys(flag for case in cases for flag in case.flags))
+    rest = [flag for flag in result.flags if flag not in flags and flag != BY_J]
+    return replace(result, cases=cases, flags=(*flags, *rest))
+
+
+def _confirmed(case: CaseResult, other: CaseResult) -> CaseResult:
+    """One case with its flag replaced where the other decides by energy."""
+    if BY_J not in case.flags or not other.evaluated or BY_J in other.flags or other.holds is None or case.holds is None:
+        return case
+    word = CONFIRMED if case.holds == other.holds else CONTRADICTED
+    return replace(case, flags=tuple(word if flag == BY_J else flag for flag in case.flags))
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -218,13 +226,12 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--runs", type=Path, default=ROOT / "runs")
     parser.add_argument("--out", type=Path, help="default: claims.json among the runs")
     options = parser.parse_args(arguments)
-    results = evaluate_all(options.experiments, options.runs)
+    results = evaluate_each(options.experiments, options.runs)
     out = options.out or options.runs / "claims.json"
-    out.parent.mkdir(parents=True, exist_ok=True)
-    out.write_text(as_json(results), encoding="utf-8")
+    write_claims(results, out)
     for result in results:
         flags = f"  [{'; '.join(result.flags)}]" if result.flags else ""
-        print(f"{result.id}  {result.verdict}{flags}")
+        print(f"{result.mechanics:11} {result.id}  {result.verdict}{flags}")
     print(f"claims: {out}")
     return 0
 

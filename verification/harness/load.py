@@ -5,7 +5,7 @@ import csv
 import json
 import math
 import tomllib
-from dataclasses import dataclass, field, fields
+from dataclasses import MISSING, dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
@@ -32,11 +32,16 @@ class Event:
     inlet_Pa: float
     tip_x_m: float
     tip_y_m: float
+    at_interface: bool = False  # decided by J with an interface too near for it to be trusted
+    by: str = ""  # what decided: "J", "energy", "failure"; empty where the run does not say
 
 
 @dataclass(frozen=True)
 class Tip:
-    """A tip at the end of a run: place (m), K (Pa sqrt(m)), J (N/m), ring spread (of J) and next kink (degrees)."""
+    """A tip at the end of a run: place (m), K (Pa sqrt(m)), J (N/m), ring spread (of J) and next kink (degrees).
+
+    G_N_m is the energy released per length over the next finite increment (N/m), NaN where the run does not measure it.
+    """
 
     x_m: float
     y_m: float
@@ -45,6 +50,7 @@ class Tip:
     J_N_m: float
     J_spread: float
     kink_deg: float
+    G_N_m: float = math.nan
 
 
 @dataclass(frozen=True)
@@ -70,6 +76,7 @@ class Summary:
     energy: dict[str, float]
     tips: tuple[Tip, ...]
     events: tuple[Event, ...]
+    monitors: dict[str, Any]
     raw: dict[str, Any] = field(repr=False)
 
 
@@ -128,12 +135,15 @@ def number(value: Any) -> float:
 
 
 def build(cls: type[T], content: dict[str, Any], where: Path) -> T:
-    """A flat dataclass of numbers and words from a JSON object; a missing key is a LoadError."""
+    """A flat dataclass of numbers and words from a JSON object; a missing key without a default is a LoadError."""
     values: dict[str, Any] = {}
     for item in fields(cls):  # type: ignore[arg-type]
         if item.name not in content:
-            raise LoadError(f"{where}: no key {item.name}")
-        values[item.name] = str(content[item.name]) if item.type == "str" else number(content[item.name])
+            if item.default is MISSING:
+                raise LoadError(f"{where}: no key {item.name}")
+            continue
+        reader = {"str": str, "bool": bool}.get(str(item.type), number)
+        values[item.name] = reader(content[item.name])
     return cls(**values)
 
 
@@ -148,11 +158,12 @@ def read_summary(path: Path) -> Summary:
         counts = {name: int(raw[name]) for name in ("cells", "particles", "steps")}
         sizes = ("time_s", "inlet_Pa", "wall_s", "particle_steps_per_s", "peak_memory_MB", "mouth_opening_m", "fracture_volume_m2")
         numbers = {name: number(raw[name]) for name in sizes}
+        monitors = dict(raw.get("monitors") or {})
     except KeyError as error:
         raise LoadError(f"{path}: no key {error.args[0]}") from error
     except (OSError, ValueError, TypeError, AttributeError) as error:
         raise LoadError(f"{path}: {error}") from error
-    return Summary(**words, **counts, **numbers, energy=energy, tips=tips, events=events, raw=raw)
+    return Summary(**words, **counts, **numbers, energy=energy, tips=tips, events=events, monitors=monitors, raw=raw)
 
 
 def read_history(path: Path) -> dict[str, Array]:

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from verification.harness.claim_data import BY_J
 from verification.harness.load import GROWTH_M, Array, LoadError, Run, frames
 
 Parameters = dict[str, Any]
@@ -99,6 +100,13 @@ def interface_height(run: Run, number: int) -> float:
     return run.interfaces_m[number - 1]
 
 
+def height_of(run: Run, given: Any) -> float:
+    """A height given in m, or as {interface, plus_m}: so far above an interface, m."""
+    if isinstance(given, dict):
+        return interface_height(run, int(given["interface"])) + float(given.get("plus_m", 0.0))
+    return float(given)
+
+
 def arrests_at(run: Run, height_m: float) -> list[Measured]:
     """Rise of the inlet pressure, Pa, over each arrest at an interface at a height (m).
 
@@ -153,9 +161,11 @@ def start_Pa(run: Run, _: Run | None, __: Parameters) -> Measured:
     return Measured(run.summary.inlet_Pa, math.inf, f"{run.name} does not start to grow")
 
 
-def final_height_m(run: Run, _: Run | None, __: Parameters) -> Measured:
-    """Height of the tip at the end of the run."""
-    return exactly(float(np.max(run.history["tip_y_m"])))
+def final_height_m(run: Run, _: Run | None, parameters: Parameters) -> Measured:
+    """Height of the tip at the end of the run, above an interface (above_interface) where one is named."""
+    number = int(parameters.get("above_interface", 0))
+    foot = interface_height(run, number) if number else 0.0
+    return exactly(float(np.max(run.history["tip_y_m"])) - foot)
 
 
 def plateau_Pa(run: Run, _: Run | None, parameters: Parameters) -> Measured:
@@ -166,14 +176,14 @@ def plateau_Pa(run: Run, _: Run | None, parameters: Parameters) -> Measured:
     found = arrests_at(run, height)
     if not found:
         return exactly(0.0)
-    flags = ("J at interface",) if run.decides_by_J else ()
+    flags = (BY_J,) if run.decides_by_J else ()
     note = "; ".join(filter(None, (one.note for one in found)))
     return Measured(sum(one.low for one in found), sum(one.high for one in found), note, flags)
 
 
 def arrests(run: Run, _: Run | None, parameters: Parameters) -> Measured:
     """Number of arrests with the tip at or above a height (from_m) that the fracture has reached."""
-    lowest = float(parameters["from_m"])
+    lowest = height_of(run, parameters["from_m"])
     if np.max(run.history["tip_y_m"]) < lowest - SLACK_M:
         return nothing(f"{run.name} does not reach {lowest:g} m")
     return exactly(sum(event.kind == "arrest" and event.tip_y_m >= lowest - SLACK_M for event in run.summary.events))
@@ -232,7 +242,7 @@ def interface_energy(run: Run, height_m: float) -> Measured:
 def interface_energy_difference_J(run: Run, against: Run | None, parameters: Parameters) -> Measured:
     """Energy in interfaces, per metre of thickness, when the tip is at a height, less that of the other run."""
     assert against is not None
-    height = float(parameters["height_m"])
+    height = height_of(run, parameters["height_m"])
     return difference(interface_energy(run, height), interface_energy(against, height))
 
 
@@ -260,7 +270,8 @@ def pressure_shift_Pa(run: Run, against: Run | None, parameters: Parameters) -> 
     if not grew(run) and not grew(against):
         return nothing("neither run grows")
     low, high, neither = 0.0, 0.0, 0
-    for height in np.arange(float(parameters["from_m"]), float(parameters["to_m"]) + SLACK_M, run.increment_m):
+    lowest, highest = height_of(run, parameters["from_m"]), height_of(run, parameters["to_m"])
+    for height in np.arange(lowest, highest + SLACK_M, max(run.increment_m, against.increment_m)):
         a, b = pressure_at_height(run, height), pressure_at_height(against, height)
         if not (a.exact or b.exact):
             neither += 1
@@ -275,14 +286,14 @@ def pressure_shift_Pa(run: Run, against: Run | None, parameters: Parameters) -> 
 def pressure_at_height_difference_Pa(run: Run, against: Run | None, parameters: Parameters) -> Measured:
     """Pressure that brings the tip to a height less that of the other run."""
     assert against is not None
-    height = float(parameters["height_m"])
+    height = height_of(run, parameters["height_m"])
     return difference(pressure_at_height(run, height), pressure_at_height(against, height))
 
 
 def height_ratio(run: Run, against: Run | None, parameters: Parameters) -> Measured:
     """Height at the pressure which has brought the other run to a height, divided by that height."""
     assert against is not None
-    height = float(parameters["height_m"])
+    height = height_of(run, parameters["height_m"])
     pressure = pressure_at_height(against, height)
     if not pressure.exact:
         return nothing(pressure.note)

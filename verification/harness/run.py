@@ -149,11 +149,6 @@ def run(job: Job, binary: Path | None = None, force: bool = False) -> Outcome:
     return outcome
 
 
-def variants_of(scene: Path) -> list[str]:
-    """The names of a scene's variants, in its order."""
-    return list(tomllib.loads(scene.read_text(encoding="utf-8")).get("variants", {}))
-
-
 def main(arguments: list[str] | None = None) -> int:
     """Run one job from the command line; exit status that of the solver."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)

@@ -13,7 +13,8 @@ from pathlib import Path
 
 from verification.harness.load import LoadError, Run, load
 from verification.harness.observables import OBSERVABLES, measure
-from verification.harness.run import Job, Outcome, run, variants_of
+from verification.harness.run import Job, Outcome, run
+from verification.harness.scenes import variants_of
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ interfaces = {interfaces}
 path_m = [[40.0, 0.0], [40.0, 5.0]]
 increment_m = 1.0
 [numerics]
-mechanics = "explicit"
+mechanics = "{mechanics}"
 cell_m = 1.0
 """
 
@@ -91,11 +91,12 @@ def write_run(
     status: str = "completed",
     friction_J: float = 0.0,
     failed_m: Sequence[tuple[float, float]] = (),
+    mechanics: str = "explicit",
 ) -> Path:
     """Write a whole run folder from its growth steps."""
     folder.mkdir(parents=True, exist_ok=True)
     interfaces = "[" + ", ".join(['"weak"'] * (layers.count("{") - 1)) + "]"
-    scene = SCENE.format(along=along, layers=layers, interfaces=interfaces)
+    scene = SCENE.format(along=along, layers=layers, interfaces=interfaces, mechanics=mechanics)
     (folder / "scene.toml").write_text(scene, encoding="utf-8")
     write_history(folder, steps, end_Pa, friction_J)
     write_result(folder, failed_m)
@@ -103,7 +104,7 @@ def write_run(
     tip = {"x_m": x, "y_m": y, "K_I_Pa_sqrt_m": 1.4e6, "K_II_Pa_sqrt_m": None, "J_N_m": 201.0, "J_spread": 0.004, "kink_deg": 0.0}
     summary = {
         "scene": folder.parent.name, "variant": folder.name, "status": status, "reason": "" if status == "completed" else "made to fail",
-        "mechanics": "explicit", "cells": 6400, "particles": 25600, "steps": 100, "time_s": time_of(end_Pa), "inlet_Pa": end_Pa,
+        "mechanics": mechanics, "cells": 6400, "particles": 25600, "steps": 100, "time_s": time_of(end_Pa), "inlet_Pa": end_Pa,
         "wall_s": 1.0, "particle_steps_per_s": 1e7, "peak_memory_MB": 50.0, "version": "0", "mouth_opening_m": 1e-3,
         "fracture_volume_m2": 1e-3, "energy": {"kinetic": 1.0}, "tips": [tip], "events": events_of(steps, end_Pa),
     }  # fmt: skip

@@ -8,10 +8,11 @@ from typing import Any
 
 import pytest
 
-from verification.harness.claims import (
-    NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, BadClaim, Runs, as_json, case_of, claims_of, evaluate,
-    evaluate_all,
+from verification.harness.choices import Choice
+from verification.harness.claim_data import (
+    BY_J, CONFIRMED, CONTRADICTED, NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, read_claims, write_claims,
 )  # fmt: skip
+from verification.harness.claims import BadClaim, Runs, case_of, claims_of, evaluate, evaluate_all, evaluate_each
 from verification.harness.paths import EXPERIMENTS
 from verification.tests.fake_run import climb, write_run
 
@@ -101,7 +102,8 @@ def test_claims_name_variants_that_exist(scene: Path) -> None:
 
 def test_all_claims_without_runs_as_json(tmp_path: Path) -> None:
     results = evaluate_all(EXPERIMENTS, tmp_path)
-    content = json.loads(as_json(results))["claims"]
+    write_claims(results, tmp_path / "claims.json")
+    content = json.loads((tmp_path / "claims.json").read_text())["claims"]
     assert {claim["verdict"] for claim in content} == {NOT_EVALUATED}
     assert all(case["meaning"] and "value" in case for claim in content for case in claim["cases"])
 
@@ -167,3 +169,93 @@ def test_claims_of_experiment_3_fail_where_nothing_is_held_up(tmp_path: Path) ->
         write_run(tmp_path / "exp3_two_interfaces" / name, climb(), layers=TWO)
     found = verdicts(tmp_path)
     assert {found[id] for id in ("3a", "3b", "3c")} == {NOT_REPRODUCED}
+
+
+def test_claims_come_back_from_json_as_they_were(tmp_path: Path) -> None:
+    write_study(tmp_path)
+    results = evaluate_all(EXPERIMENTS, tmp_path)
+    write_claims(results, tmp_path / "claims.json")
+    assert read_claims(tmp_path / "claims.json") == results
+    (tmp_path / "claims.json").write_text('{"claims": [{"id": "1a"}]}')
+    with pytest.raises(ValueError, match="claims.json"):
+        read_claims(tmp_path / "claims.json")
+
+
+# --- readings that follow from a choice
+
+OTHER = Choice("c", "unit: another", "another", {"exp": {"weak": "other", "soft": "soft"}})
+TWICE: dict[str, Any] = {**CLAIM, "case": [*CLAIM["case"], {"variant": "soft", "interface": 1, "at_least": 0.05 * MPA}]}
+
+
+@pytest.fixture()
+def scenes(tmp_path: Path) -> Path:
+    """A folder with a scene 'exp' of four variants, one of which only quasi-static runs can do."""
+    folder = tmp_path / "scenes"
+    folder.mkdir()
+    (folder / "exp.toml").write_text(
+        "[variants.weak]\n[variants.soft]\n[variants.other]\n[variants.flow]\nfluid.law = \"reynolds\"\n", encoding="utf-8"
+    )
+    return folder
+
+
+def test_a_choice_puts_its_variants_in_place_of_those_named(tmp_path: Path, scenes: Path) -> None:
+    for variant, plateau in (("weak", 0.2), ("soft", 0.2), ("other", 0.0)):
+        write(tmp_path, variant, plateau)
+    result = evaluate(TWICE, "exp", Runs(tmp_path), [OTHER], scenes)
+    (reading,) = result.readings
+    assert [case.case.variant for case in reading.cases] == ["other", "soft"]
+    assert (reading.choice, reading.name, reading.holds, reading.complete) == ("c", "unit: another", False, True)
+    assert result.verdict == REPRODUCED and "does not hold under: unit: another" in result.flags
+    write(tmp_path, "other", 0.2)
+    assert evaluate(TWICE, "exp", Runs(tmp_path), [OTHER], scenes).readings[0].holds is True
+
+
+def test_a_choice_without_runs_for_all_cases_cannot_rescue_a_claim(tmp_path: Path, scenes: Path) -> None:
+    for variant, plateau in (("weak", 0.0), ("soft", 0.2), ("other", 0.2)):
+        write(tmp_path, variant, plateau)
+    assert evaluate(TWICE, "exp", Runs(tmp_path), [OTHER], scenes).verdict == ONLY_UNDER_A_VARIANT
+    part = Choice("c", "unit: another", "another", {"exp": {"weak": "other"}})
+    result = evaluate(TWICE, "exp", Runs(tmp_path), [part], scenes)
+    assert result.verdict == NOT_REPRODUCED
+    assert (result.readings[0].holds, result.readings[0].complete) == (True, False)
+
+
+def test_a_choice_that_changes_no_case_is_no_reading(tmp_path: Path, scenes: Path) -> None:
+    same = Choice("c", "unit: another", "another", {"exp": {"weak": "weak"}})
+    assert evaluate(CLAIM, "exp", Runs(tmp_path), [same], scenes).readings == ()
+
+
+def test_a_choice_that_a_mechanics_cannot_run_is_no_reading_there(tmp_path: Path, scenes: Path) -> None:
+    flow = Choice("c", "flow: another", "another", {"exp": {"weak": "flow"}})
+    assert evaluate(CLAIM, "exp", Runs(tmp_path, "explicit"), [flow], scenes).readings == ()
+    assert len(evaluate(CLAIM, "exp", Runs(tmp_path, "quasistatic"), [flow], scenes).readings) == 1
+
+
+def test_a_reading_written_for_a_choice_stands_for_it(tmp_path: Path, scenes: Path) -> None:
+    write(tmp_path, "weak", 0.0)
+    write(tmp_path, "other", 0.2)
+    own = {"choice": "c", "case": [{"variant": "other", "interface": 1, "at_least": 0.3 * MPA}]}
+    (reading,) = evaluate({**CLAIM, "reading": [own]}, "exp", Runs(tmp_path), [OTHER], scenes).readings
+    assert reading.holds is False and reading.name == "unit: another"
+    with pytest.raises(BadClaim, match="no choice d"):
+        evaluate({**CLAIM, "reading": [{**own, "choice": "d"}]}, "exp", Runs(tmp_path), [OTHER], scenes)
+
+
+# --- two mechanics
+
+
+@pytest.mark.parametrize("by_energy, word", [(0.2, CONFIRMED), (0.0, CONTRADICTED)])
+def test_J_at_an_interface_is_confirmed_or_contradicted_by_energy(tmp_path: Path, by_energy: float, word: str) -> None:
+    folder = tmp_path / "scenes"
+    folder.mkdir()
+    case = "{variant = 'weak', interface = 1, at_least = 5e4}"
+    (folder / "exp.toml").write_text(
+        f"[variants.weak]\n[[claim]]\nid = 'x'\ntext = 't'\nwhy = 'w'\nobservable = 'plateau_Pa'\ncase = [{case}]\n"
+    )
+    write(tmp_path / "runs" / "explicit", "weak", 0.2)
+    alone = evaluate_each(folder, tmp_path / "runs")
+    assert [result.flags for result in alone] == [(BY_J,)]
+    write(tmp_path / "runs" / "quasistatic", "weak", by_energy, mechanics="quasistatic")
+    explicit, quasistatic = evaluate_each(folder, tmp_path / "runs")
+    assert (explicit.mechanics, quasistatic.mechanics) == ("explicit", "quasistatic")
+    assert explicit.flags == (word,) and quasistatic.flags == ()

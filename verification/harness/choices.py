@@ -1,0 +1,71 @@
+"""What the study leaves open, and which variants show another choice: experiments/choices/points.toml as plain data."""
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from verification.harness.scenes import scenes_of, variants_of
+
+FILE = Path("choices") / "points.toml"  # below the folder of the scenes
+
+
+class BadChoice(Exception):
+    """A choice that names something which does not exist."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Another choice at an open point: for each experiment, which variant stands for which."""
+
+    id: str
+    title: str  # the open point and the choice
+    name: str
+    runs: dict[str, dict[str, str]] = field(default_factory=dict)
+
+    def standing_for(self, experiment: str, variant: str) -> str | None:
+        """The variant that stands for another under this choice, or None where none was made."""
+        return self.runs.get(experiment, {}).get(variant)
+
+
+@dataclass(frozen=True)
+class Point:
+    """Something that the study leaves open, what the scenes take, and the other choices."""
+
+    id: str
+    open: str
+    default: str
+    choices: tuple[Choice, ...]
+
+
+def read_points(experiments: Path) -> list[Point]:
+    """The open points of a folder of scenes, none where it has no such file; raises BadChoice for names that are not there."""
+    path = experiments / FILE
+    if not path.is_file():
+        return []
+    points = [
+        Point(
+            str(item["id"]),
+            str(item["open"]),
+            str(item["default"]),
+            tuple(Choice(str(one["id"]), f"{item['open']}: {one['name']}", str(one["name"]), one["runs"]) for one in item["choice"]),
+        )
+        for item in tomllib.loads(path.read_text(encoding="utf-8"))["point"]
+    ]
+    _check(points, experiments)
+    return points
+
+
+def _check(points: list[Point], experiments: Path) -> None:
+    """Every variant that a choice names exists, and no id is used twice."""
+    known = {scene.stem: set(variants_of(scene)) for scene in scenes_of(experiments)}
+    choices = [choice for point in points for choice in point.choices]
+    if len({choice.id for choice in choices}) < len(choices):
+        raise BadChoice("two choices have the same id")
+    for choice in choices:
+        for experiment, pairs in choice.runs.items():
+            if experiment not in known:
+                raise BadChoice(f"choice {choice.id}: there is no experiment {experiment}")
+            strangers = ({*pairs, *pairs.values()}) - known[experiment]
+            if strangers:
+                raise BadChoice(f"choice {choice.id}: {experiment} has no variant {', '.join(sorted(strangers))}")
