@@ -33,7 +33,7 @@ int report(const std::vector<std::string>& errors) {
 
 int run(Arguments arguments) {
   const std::filesystem::path file = arguments.file;
-  const strata::ReadResult read = strata::read_scene(file, arguments.variant, arguments.set);
+  const strata::ReadResult read = strata::read_scene_that_fits(file, arguments.variant, arguments.set);
   if (!read.scene) return report(read.errors);
   const std::string folder = arguments.variant.empty() ? "default" : arguments.variant;
   if (arguments.options.out.empty()) arguments.options.out = std::filesystem::path("runs") / file.stem() / folder;

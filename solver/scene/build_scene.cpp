@@ -105,6 +105,44 @@ void build_laws(const Entries& entries, Scene& scene, Faults& faults) {
   }
 }
 
+// Rank of what was given for a key, -1 where nothing was.
+int rank_of(const Positions& positions, std::string_view path) {
+  const auto given = positions.at.find(path);
+  return given == positions.at.end() ? -1 : given->second.rank;
+}
+
+// The inlet's pressure or its rate: where both are given, the one that a variant or --set lays above the other.
+void choose_inlet(const Positions& positions, Scene& scene, Faults& faults) {
+  const int rate = rank_of(positions, "fluid.inlet.rate_m2_s");
+  const int start = rank_of(positions, "fluid.inlet.start_Pa"), rise = rank_of(positions, "fluid.inlet.rate_Pa_s");
+  const int pressure = std::max(start, rise);
+  if (rate < 0 || pressure < 0) return;
+  if (rate > pressure) {
+    scene.fluid.start_Pa = scene.fluid.rate_Pa_s = 0.0;
+  } else if (rate < pressure) {
+    scene.fluid.rate_m2_s.reset();
+  } else {
+    faults.add(where_is(positions, "fluid.inlet.rate_m2_s"),
+               fmt::format("fluid.inlet has both rate_m2_s and {}. Prescribe the rate, inlet = {{rate_m2_s}}, or the "
+                           "pressure, inlet = {{start_Pa, rate_Pa_s}}: a fracture fed at a rate starts at its closing "
+                           "stress.",
+                           start == pressure ? "start_Pa" : "rate_Pa_s"));
+  }
+}
+
+// The criterion of crossing left out of a quasi-static scene is energy. What only such a scene can use falls back on
+// its default where a variant or --set above it has chosen mechanics = "explicit".
+void follow_mechanics(const Positions& positions, Scene& scene) {
+  if (scene.numerics.mechanics == Numerics::Mechanics::quasistatic) {
+    if (scene.fracture && !positions.given("fracture.crossing")) scene.fracture->crossing = Fracture::Crossing::energy;
+    return;
+  }
+  const int chosen = rank_of(positions, "numerics.mechanics");
+  if (chosen > rank_of(positions, "numerics.far_cell_m")) scene.numerics.far_cell_m.reset();
+  if (scene.fracture && chosen > rank_of(positions, "fracture.crossing"))
+    scene.fracture->crossing = Fracture::Crossing::J;
+}
+
 // Keys that must be there: those of every scene, of every rock and interface named, and of a fracture if there is one.
 void check_required(const Entries& entries, const Positions& positions, Faults& faults) {
   const auto require = [&](const std::string& path) {
@@ -291,9 +329,8 @@ Scene build_scene(const Entries& entries, const Positions& positions, Faults& fa
   Scene scene;
   if (has_table(entries, "fracture")) scene.fracture.emplace();
   apply_plain_keys(entries, scene);
-  const bool quasistatic = scene.numerics.mechanics == Numerics::Mechanics::quasistatic;
-  if (scene.fracture && quasistatic && !positions.given("fracture.crossing"))
-    scene.fracture->crossing = Fracture::Crossing::energy;
+  choose_inlet(positions, scene, faults);
+  follow_mechanics(positions, scene);
   build_rocks(entries, scene);
   build_laws(entries, scene, faults);
   check_required(entries, positions, faults);

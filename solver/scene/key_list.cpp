@@ -49,7 +49,7 @@ Key word(std::string path, std::vector<Word> words, Member, std::string help) {
 
 template <class Enumerator>
 Word as(std::string text, Enumerator value) {
-  return {std::move(text), static_cast<int>(value), ""};
+  return {std::move(text), static_cast<int>(value)};
 }
 
 Key required(Key key) {

@@ -57,9 +57,7 @@ std::string allowed_text(const Key& key) {
       return fmt::format("{}", fmt::join(key.allowed, ", "));
     case KeyType::word: {
       std::vector<std::string> words;
-      for (const Word& word : key.words) {
-        if (word.withheld.empty()) words.push_back(word.text);
-      }
+      for (const Word& word : key.words) words.push_back(word.text);
       return joined(words);
     }
     case KeyType::text:
@@ -71,7 +69,7 @@ std::string allowed_text(const Key& key) {
     case KeyType::anything:
       break;
   }
-  return "not offered";
+  return "";
 }
 
 // A scene in which every member that a key leads to exists.
@@ -107,7 +105,7 @@ std::vector<std::string> names_in_table(std::string_view path) {
   std::vector<std::string> names;
   for (const Key& key : scene_keys()) {
     const auto segments = split(key.path);
-    if (segments.size() <= given.size() || !key.withheld.empty() || !agrees(segments, given, given.size())) continue;
+    if (segments.size() <= given.size() || !agrees(segments, given, given.size())) continue;
     std::string name(segments[given.size()]);
     if (path.empty() && name.ends_with("[]")) name.resize(name.size() - 2);
     const bool listed = std::ranges::find(names, name) != names.end();
@@ -139,7 +137,7 @@ std::string number_text(double value) {
 }
 
 std::string default_text(const Key& key) {
-  if (key.required || !key.withheld.empty()) return {};
+  if (key.required) return {};
   Scene scene = scene_of_defaults();
   struct Text {
     const Key& key;
@@ -163,9 +161,8 @@ std::string keys_as_markdown() {
   for (const Key& key : scene_keys()) {
     const std::string fallback = key.required ? "required" : default_text(key);
     const std::string law = key.law.empty() ? "" : fmt::format(" (law \"{}\")", key.law);
-    const std::string withheld = key.withheld.empty() ? "" : " Not offered by this version. " + key.withheld;
-    text += fmt::format("| `{}` | {} | {} | {} | {}{}{} |\n", key.path, key.unit, fallback, allowed_text(key), key.help,
-                        law, withheld);
+    text +=
+        fmt::format("| `{}` | {} | {} | {} | {}{} |\n", key.path, key.unit, fallback, allowed_text(key), key.help, law);
   }
   return text;
 }

@@ -25,12 +25,10 @@ struct Bounds {
   bool high_open = false;
 };
 
-// A word that a key may take; `withheld` is not empty where this version does not offer it, and says what to use
-// instead.
+// A word that a key may take.
 struct Word {
   std::string text;
   int value = 0;
-  std::string withheld;
 };
 
 // The way from a key to its member of a scene; the second argument is the index of the rock or law, else 0.
@@ -53,9 +51,8 @@ struct Key {
   std::vector<Word> words;
   Place place;
   bool required = false;
-  std::string law;       // the interface law that the key belongs to; empty: any
-  std::string withheld;  // not empty: known, but not offered by this version, and what to use instead
-  std::string advice;    // what to do where the value is out of bounds
+  std::string law;     // the interface law that the key belongs to; empty: any
+  std::string advice;  // what to do where the value is out of bounds
   std::string help;
 };
 
@@ -68,7 +65,7 @@ const Key* find_key(std::string_view path);
 /// Whether `path` is a table that holds keys ("rock", "rock.stiff", "fluid.inlet"). Throws nothing but std::bad_alloc.
 bool is_key_table(std::string_view path);
 
-/// The names that may stand in the table `path` ("" for the top level); NAME and keys not offered are not among them.
+/// The names that may stand in the table `path` ("" for the top level); NAME is not among them.
 /// Throws nothing but std::bad_alloc.
 std::vector<std::string> names_in_table(std::string_view path);
 

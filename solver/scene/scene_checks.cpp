@@ -197,7 +197,7 @@ void check_stop_values(const Scene& scene, const Positions& positions, Faults& f
                       number_text(*scene.stop.tip_y_m), number_text(tip_m)));
     }
   }
-  if (usable(positions, "stop.inlet_Pa") && positions.sound("fluid.inlet.start_Pa") &&
+  if (usable(positions, "stop.inlet_Pa") && !scene.fluid.rate_m2_s && positions.sound("fluid.inlet.start_Pa") &&
       scene.fluid.start_Pa >= *scene.stop.inlet_Pa) {
     faults.add(
         where_is(positions, "stop.inlet_Pa"),
@@ -206,17 +206,22 @@ void check_stop_values(const Scene& scene, const Positions& positions, Faults& f
   }
 }
 
-// Whether one of the stops given is sure to be reached; a fracture under a pressure that does not rise may stay.
+// Whether one of the stops given is sure to be reached: a fracture under a pressure that does not rise may stay; one
+// that is fed at a rate grows, or takes ever more pressure where it may not.
 void check_end(const Scene& scene, const Positions& positions, Faults& faults) {
-  if (!positions.sound("fluid.inlet.rate_Pa_s") || !positions.sound("fracture.growth")) return;
-  if (!positions.given("fluid.inlet.start_Pa") && !positions.given("fluid.inlet.rate_Pa_s")) return;
+  for (const char* path : {"fluid.inlet.rate_Pa_s", "fluid.inlet.rate_m2_s", "fracture.growth"}) {
+    if (!positions.sound(path)) return;
+  }
+  const bool fed = scene.fluid.rate_m2_s.has_value();
+  if (!fed && !positions.given("fluid.inlet.start_Pa") && !positions.given("fluid.inlet.rate_Pa_s")) return;
   const bool by_inlet = positions.given("stop.inlet_Pa");
   const bool by_tip = positions.given("stop.tip_y_m");
   if (positions.given("stop.time_s") || (!by_inlet && !by_tip)) return;
-  const bool rises = scene.fluid.rate_Pa_s > 0.0;
   const bool grows = scene.fracture->growth != Fracture::Growth::none;
-  if (rises && (by_inlet || grows)) return;
+  const bool rises = fed ? !grows : scene.fluid.rate_Pa_s > 0.0;
+  if ((by_inlet && rises) || (by_tip && grows && (fed || rises))) return;
   const std::string reason = rises ? "the fracture does not grow (fracture.growth = \"none\")"
+                             : fed ? "the pressure of a fracture fed at a rate falls as it grows"
                                    : fmt::format("the inlet pressure does not rise (fluid.inlet.rate_Pa_s = {})",
                                                  number_text(scene.fluid.rate_Pa_s));
   faults.add(where_is(positions, by_inlet ? "stop.inlet_Pa" : "stop.tip_y_m"),
@@ -249,6 +254,7 @@ void check_scene(const Scene& scene, const Positions& positions, Faults& faults)
   if (cells_sound && layers_sound) check_interfaces(scene, positions, faults);
   if (scene.fracture) check_fracture(scene, positions, cells_sound, faults);
   check_stop(scene, positions, faults);
+  check_combinations(scene, positions, faults);
 }
 
 }  // namespace strata

@@ -11,4 +11,8 @@ namespace strata {
 /// value that is itself missing or of no use is left out. Throws nothing but std::bad_alloc.
 void check_scene(const Scene& scene, const Positions& positions, Faults& faults);
 
+/// The part of it that concerns keys which do not go together: the ways to solve, the fluid's laws and inlets, and what
+/// a run may hold at most.
+void check_combinations(const Scene& scene, const Positions& positions, Faults& faults);
+
 }  // namespace strata

@@ -10,16 +10,14 @@
 namespace strata {
 namespace {
 
-std::vector<std::string> offered(const Key& key) {
+std::vector<std::string> words_of(const Key& key) {
   std::vector<std::string> words;
-  for (const Word& word : key.words) {
-    if (word.withheld.empty()) words.push_back(word.text);
-  }
+  for (const Word& word : key.words) words.push_back(word.text);
   return words;
 }
 
 std::string list_of_words(const Key& key) {
-  return fmt::format("\"{}\"", fmt::join(offered(key), "\", \""));
+  return fmt::format("\"{}\"", fmt::join(words_of(key), "\", \""));
 }
 
 bool fault(Faults& faults, const Where& where, std::string text) {
@@ -60,11 +58,9 @@ bool check_word(const std::string& path, const Key& key, const toml::node& value
   if (text == nullptr) return fault(faults, where, typed + " is not a word. Use one of " + list_of_words(key) + ".");
   const auto word = std::ranges::find(key.words, text->get(), &Word::text);
   if (word == key.words.end()) {
-    const std::string meant = did_you_mean(text->get(), offered(key));
+    const std::string meant = did_you_mean(text->get(), words_of(key));
     return fault(faults, where, typed + " is not allowed. Use one of " + list_of_words(key) + "." + meant);
   }
-  if (!word->withheld.empty())
-    return fault(faults, where, typed + " is not offered by this version. " + word->withheld);
   return true;
 }
 
@@ -167,8 +163,6 @@ bool check_points(const std::string& path, const Given& given, Faults& faults) {
 
 bool check_value(const std::string& path, const Given& given, Faults& faults) {
   const Key& key = *given.key;
-  if (!key.withheld.empty())
-    return fault(faults, given.where, path + " is not offered by this version. " + key.withheld);
   switch (key.type) {
     case KeyType::number:
       return check_number(path, key, *given.value, given.where, faults);

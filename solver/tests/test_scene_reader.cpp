@@ -101,14 +101,16 @@ TEST_CASE("Bounds are open or closed as declared") {
 TEST_CASE("All mistakes are reported at once, in the order of the file") {
   std::string text = with(layered, "width_m = 80", "widht_m = 80");
   text = with(text, "law = \"friction\"", "law = \"frction\"");
-  text = with(text, "cell_m = 1", "cell_m = -1\nmechanics = \"quasistatic\"");
+  text = with(text, "cell_m = 1", "cell_m = -1\nmechanics = \"static\"");
   const ReadResult result = read(text);
   REQUIRE(result.errors.size() == 5);
   CHECK_THAT(result.errors[0], Catch::StartsWith("scene.toml:2:2: domain.width_m is missing"));
   CHECK_THAT(result.errors[1], Catch::StartsWith("scene.toml:3:1: unknown key domain.widht_m. Did you mean width_m?"));
   CHECK_THAT(result.errors[2], Catch::Contains("Did you mean friction?"));
   CHECK_THAT(result.errors[3], Catch::Contains("numerics.cell_m = -1 is outside (0, inf)"));
-  CHECK_THAT(result.errors[4], Catch::Contains("numerics.mechanics = \"quasistatic\" is not offered by this version."));
+  CHECK_THAT(
+      result.errors[4],
+      Catch::Contains("numerics.mechanics = \"static\" is not allowed. Use one of \"explicit\", \"quasistatic\"."));
 }
 
 TEST_CASE("Half-cell interfaces are allowed, others name the nearest place") {
@@ -134,4 +136,69 @@ TEST_CASE("A run that could not end is refused, one that ends by time is not") {
   const std::string still = with(layered, "[fracture]\n", "[fracture]\ngrowth = \"none\"\n");
   CHECK(good(still).fracture->growth == Fracture::Growth::none);
   CHECK_THAT(errors(with(still, "inlet_Pa = 4e6", "tip_y_m = 70")), Catch::Contains("the fracture does not grow"));
+}
+
+namespace {
+
+// The layered scene without inertia, fed at a rate.
+std::string fed_at_a_rate() {
+  std::string text = with(layered, "{start_Pa = 2e6, rate_Pa_s = 0.35e6}", "{rate_m2_s = 1e-4}\nlaw = \"reynolds\"");
+  text = with(text, "inlet_Pa = 4e6", "tip_y_m = 70");
+  return with(text, "cell_m = 1", "cell_m = 1\nmechanics = \"quasistatic\"");
+}
+
+}  // namespace
+
+TEST_CASE("Crossing left out is energy without inertia and J with it") {
+  const std::string quasistatic = with(layered, "cell_m = 1", "cell_m = 1\nmechanics = \"quasistatic\"");
+  CHECK(good(layered).fracture->crossing == Fracture::Crossing::J);
+  CHECK(good(quasistatic).fracture->crossing == Fracture::Crossing::energy);
+  CHECK(good(quasistatic, "", {"fracture.crossing=J"}).fracture->crossing == Fracture::Crossing::J);
+}
+
+TEST_CASE("What explicit runs cannot do is refused where it is typed, and left behind where they are chosen above it") {
+  std::string text = with(layered, "cell_m = 1", "cell_m = 1\nfar_cell_m = 5\nmechanics = \"quasistatic\"");
+  text = with(text, "[fracture]\n", "[fracture]\ncrossing = \"energy\"\n");
+  CHECK(good(text).numerics.far_cell_m == 5.0);
+  const Scene scene = good(text, "", {"numerics.mechanics=explicit"});
+  CHECK_FALSE(scene.numerics.far_cell_m.has_value());
+  CHECK(scene.fracture->crossing == Fracture::Crossing::J);
+  CHECK(read(with(text, "quasistatic", "explicit")).errors.size() == 2);
+  CHECK_THAT(
+      errors(with(text, "quasistatic", "explicit"), "", {"numerics.mechanics=explicit", "numerics.far_cell_m=4"}),
+      Catch::Contains("--set numerics.far_cell_m=4: numerics.far_cell_m = 4.0 grades the grid"));
+}
+
+TEST_CASE("What only explicit runs use stays allowed without inertia") {
+  const Scene scene = good(with(layered, "cell_m = 1",
+                                "cell_m = 1\nmechanics = \"quasistatic\"\ntransfer = \"pic\"\nkinematics = "
+                                "\"total\"\ncourant = 0.3\ndamping_1_s = 2"));
+  CHECK(scene.numerics.mechanics == Numerics::Mechanics::quasistatic);
+  CHECK(good(layered + "time_s = 0\n", "", {"numerics.mechanics=quasistatic"}).stop.time_s == 0.0);
+}
+
+TEST_CASE("The inlet's pressure or its rate is given, and the upper of the two counts") {
+  const Scene fed = good(fed_at_a_rate());
+  CHECK(fed.fluid.rate_m2_s == 1e-4);
+  CHECK_THAT(fed.resolved_toml, !Catch::Contains("start_Pa"));
+  const Scene pressed = good(fed_at_a_rate(), "", {"fluid.inlet.start_Pa=2e6", "fluid.inlet.rate_Pa_s=1e6"});
+  CHECK_FALSE(pressed.fluid.rate_m2_s.has_value());
+  CHECK(pressed.fluid.start_Pa == 2e6);
+  const Scene again = good(with(fed_at_a_rate(), "rate_m2_s = 1e-4", "start_Pa = 2e6, rate_Pa_s = 1e6"), "",
+                           {"fluid.inlet.rate_m2_s=1e-3"});
+  CHECK(again.fluid.rate_m2_s == 1e-3);
+  CHECK(again.fluid.start_Pa == 0.0);
+  CHECK(again.fluid.rate_Pa_s == 0.0);
+}
+
+TEST_CASE("A fracture fed at a rate ends at a tip if it grows, at a pressure if it does not") {
+  const auto stop_at = [](const char* stop) { return with(fed_at_a_rate(), "tip_y_m = 70", stop); };
+  const auto still = [](const std::string& text) {
+    return with(text, "[fracture]\n", "[fracture]\ngrowth = \"none\"\n");
+  };
+  CHECK(good(fed_at_a_rate()).stop.tip_y_m == 70.0);
+  CHECK(good(stop_at("tip_y_m = 70\ninlet_Pa = 9e6")).stop.inlet_Pa == 9e6);
+  CHECK(good(still(stop_at("inlet_Pa = 9e6"))).stop.inlet_Pa == 9e6);
+  CHECK_THAT(errors(stop_at("inlet_Pa = 9e6")), Catch::Contains("falls as it grows"));
+  CHECK_THAT(errors(still(fed_at_a_rate())), Catch::Contains("the fracture does not grow"));
 }

@@ -1,0 +1,124 @@
+// Keys that are sound each by itself but do not go together.
+#include <fmt/format.h>
+
+#include "scene/keys.hpp"
+#include "scene/scene_checks.hpp"
+
+namespace strata {
+namespace {
+
+bool usable(const Positions& positions, std::string_view path) {
+  return positions.given(path) && positions.sound(path);
+}
+
+// What mechanics = "explicit" cannot do.
+void check_explicit(const Scene& scene, const Positions& positions, Faults& faults) {
+  const auto refuse = [&](std::string_view path, const std::string& typed, std::string_view advice) {
+    if (positions.sound(path)) faults.add(where_is(positions, path), fmt::format("{} {}", typed, advice));
+  };
+  if (scene.fracture && scene.fracture->crossing == Fracture::Crossing::energy) {
+    refuse("fracture.crossing",
+           "fracture.crossing = \"energy\" compares equilibria and needs mechanics = "
+           "\"quasistatic\", but mechanics = \"explicit\".",
+           "Use crossing = \"J\", or leave it out.");
+  }
+  if (scene.fracture && scene.fracture->growth == Fracture::Growth::energy) {
+    refuse("fracture.growth",
+           "fracture.growth = \"energy\" compares equilibria and needs mechanics = \"quasistatic\", "
+           "but mechanics = \"explicit\".",
+           "Use growth = \"J\" or \"none\".");
+  }
+  if (scene.fluid.law == Fluid::Law::reynolds) {
+    refuse("fluid.law",
+           "fluid.law = \"reynolds\" is solved together with the rock's equilibrium and needs mechanics = "
+           "\"quasistatic\", but mechanics = \"explicit\".",
+           "Use law = \"paper\" or \"uniform\".");
+  }
+  if (scene.numerics.far_cell_m) {
+    refuse("numerics.far_cell_m",
+           fmt::format("numerics.far_cell_m = {} grades the grid, and only mechanics = "
+                       "\"quasistatic\" takes a graded one.",
+                       number_text(*scene.numerics.far_cell_m)),
+           "Leave it out: with mechanics = \"explicit\" all cells are of cell_m.");
+  }
+  if (scene.stop.time_s && *scene.stop.time_s == 0.0) {
+    refuse("stop.time_s",
+           "stop.time_s = 0 asks for one equilibrium and needs mechanics = \"quasistatic\", but "
+           "mechanics = \"explicit\".",
+           "Give a time above 0, or use quasistatic.");
+  }
+}
+
+// uGIMP weights follow particles that move.
+void check_shape_functions(const Scene& scene, const Positions& positions, Faults& faults) {
+  if (scene.numerics.shape != Numerics::Shape::gimp) return;
+  const bool quasistatic = scene.numerics.mechanics == Numerics::Mechanics::quasistatic;
+  if (!quasistatic && scene.numerics.kinematics != Numerics::Kinematics::total) return;
+  faults.add(where_is(positions, "numerics.shape"),
+             fmt::format("numerics.shape = \"gimp\" is for moving points only, but {} leaves them in their reference "
+                         "place, where it is linear. Use shape = \"bspline2\" or \"linear\".",
+                         quasistatic ? "mechanics = \"quasistatic\"" : "kinematics = \"total\""));
+}
+
+void check_far_cell(const Scene& scene, const Positions& positions, Faults& faults) {
+  const Numerics& numerics = scene.numerics;
+  if (!numerics.far_cell_m || !usable(positions, "numerics.far_cell_m") || !usable(positions, "numerics.cell_m"))
+    return;
+  if (*numerics.far_cell_m >= numerics.cell_m) return;
+  faults.add(where_is(positions, "numerics.far_cell_m"),
+             fmt::format("numerics.far_cell_m = {} is below numerics.cell_m = {}: cells grow away from the fracture. "
+                         "Give at least cell_m, or leave it out.",
+                         number_text(*numerics.far_cell_m), number_text(numerics.cell_m)));
+}
+
+void check_fluid(const Scene& scene, const Positions& positions, Faults& faults) {
+  const Fluid& fluid = scene.fluid;
+  if (!positions.sound("fluid.law")) return;
+  if (fluid.rate_m2_s && fluid.law != Fluid::Law::reynolds) {
+    faults.add(where_is(positions, "fluid.inlet.rate_m2_s"),
+               fmt::format("fluid.inlet.rate_m2_s = {} needs a law that conserves the fluid's mass, but fluid.law = "
+                           "\"{}\". Use law = \"reynolds\", or inlet = {{start_Pa, rate_Pa_s}}.",
+                           number_text(*fluid.rate_m2_s), fluid.law == Fluid::Law::paper ? "paper" : "uniform"));
+  }
+  const bool sound = positions.sound("fluid.cavitation_Pa") && usable(positions, "fluid.inlet.start_Pa");
+  if (sound && !fluid.rate_m2_s && fluid.cavitation_Pa > fluid.start_Pa) {
+    faults.add(where_is(positions, "fluid.cavitation_Pa"),
+               fmt::format("fluid.cavitation_Pa = {} is above fluid.inlet.start_Pa = {}, but no pressure may be below "
+                           "it. Lower it, or start higher.",
+                           number_text(fluid.cavitation_Pa), number_text(fluid.start_Pa)));
+  }
+}
+
+// What a state holds at most: a bit for each surface, a byte for a particle's rock.
+void check_numbers(const Scene& scene, const Positions& positions, Faults& faults) {
+  constexpr std::size_t most_surfaces = 31, most_rocks = 255;
+  std::size_t surfaces = scene.fracture ? 1 : 0;
+  for (const InterfacePlace& place : scene.strata.interfaces) {
+    if (scene.laws[place.law].kind != InterfaceLaw::Kind::perfect) ++surfaces;
+  }
+  if (surfaces > most_surfaces) {
+    faults.add(
+        where_is(positions, "strata.interfaces"),
+        fmt::format("strata.interfaces: {} surfaces{} are more than {}. Make some interfaces perfect.", surfaces,
+                    scene.fracture ? ", the fracture and all interfaces that are not perfect," : "", most_surfaces));
+  }
+  if (scene.rocks.size() > most_rocks) {
+    faults.add(where_is(positions, "rock"),
+               fmt::format("there are {} rocks, more than {}. Remove those that no layer uses, or let layers share.",
+                           scene.rocks.size(), most_rocks));
+  }
+}
+
+}  // namespace
+
+void check_combinations(const Scene& scene, const Positions& positions, Faults& faults) {
+  if (positions.sound("numerics.mechanics")) {
+    if (scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics) check_explicit(scene, positions, faults);
+    check_shape_functions(scene, positions, faults);
+  }
+  check_far_cell(scene, positions, faults);
+  if (scene.fracture) check_fluid(scene, positions, faults);
+  check_numbers(scene, positions, faults);
+}
+
+}  // namespace strata
