@@ -1,0 +1,358 @@
+#include "flow/reynolds_flow.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unsupported/Eigen/AutoDiff>
+
+namespace strata {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+// A value with its derivatives by P and w of the cell on the left, P and w of the one on the right.
+using Dual = Eigen::AutoDiffScalar<Eigen::Vector4d>;
+
+// The roughness that keeps faces apart (m): contact lets w go to about -1e-8 m, and a cell that holds nothing at any
+// pressure would leave its balance without an unknown. 1e-4 of the study's openings.
+constexpr double thinnest = 1e-8;
+
+double storage_opening(double w) {
+  return std::max(w, thinnest);
+}
+
+template <class T>
+T density(const Fluid& fluid, const T& P) {
+  return T(1.0) + (P - T(fluid.cavitation_Pa)) / fluid.bulk_modulus_Pa;
+}
+
+struct Place {
+  Dual P, w;
+  double A = 0.0;
+};
+
+// The opening that conducts: never below the scene's floor.
+Dual conducting(const Fluid& fluid, const Place& at) {
+  const double floor = std::max(fluid.minimum_opening_m, thinnest);
+  return at.w.value() > floor ? at.w : Dual(floor);
+}
+
+// Conductance between the middles of two cells (m^2/(Pa s)), 1/int 12 mu/w^3 ds with w linear from one to the other:
+// mean of the cube 2 a^2 b^2/(a + b). In front of a tip, between half a cell and one and a half behind it, that is 7 %
+// below the exact one for w ~ x^(1/2) and x^(2/3) both, where the cube of the mean is 8 and 21 % above; a closed cell
+// shuts it down to the floor.
+Dual between(const Fluid& fluid, const Place& l, const Place& r) {
+  const Dual a = conducting(fluid, l), b = conducting(fluid, r);
+  return Dual(2.0 * a * a * b * b / (a + b)) / (6.0 * fluid.viscosity_Pa_s * (l.A + r.A));
+}
+
+// Conductance between a cell's middle and the inlet vertex, half a cell of its opening.
+Dual from_vertex(const Fluid& fluid, const Place& at) {
+  const Dual a = conducting(fluid, at);
+  return Dual(a * a * a) / (6.0 * fluid.viscosity_Pa_s * at.A);
+}
+
+// Where the iteration stands: cells with P free are full, the others have P = P_c and phi free.
+struct Trial {
+  VectorXd P, phi;
+  std::vector<char> full;
+};
+
+struct Balance {
+  RockResponse rock;
+  VectorXd held, inflow;  // theta w A (m^2), net flow into the cell (m^2/s), both at the cavitation pressure
+  VectorXd residual;      // held - held before - dt inflow
+  VectorXd conductance;   // of all sides of the cell, for round-off
+  MatrixXd by_P, by_w;    // d inflow/d P, d inflow/d w, bands of three
+  double inlet_Pa = 0.0;
+  double flux = 0.0;       // into the fracture, at the inlet's pressure (m^2/s)
+  double mass_flux = 0.0;  // the same at the cavitation pressure
+
+  bool finite() const { return residual.allFinite() && rock.w.allFinite() && rock.dw_dP.allFinite(); }
+  double merit() const { return residual.lpNorm<1>(); }
+};
+
+struct Step {
+  const Fluid& fluid;
+  const Inlet& inlet;
+  double dt;
+  const RockModel& rock;
+  const ReynoldsLine& line;
+  const ReynoldsOptions& options;
+};
+
+Place place(const Step& step, const Trial& trial, const Balance& b, Index k, bool left) {
+  const int first = left ? 0 : 2;
+  return {Dual(trial.P(k), 4, first), Dual(b.rock.w(k), 4, first + 1), step.line.length[static_cast<std::size_t>(k)]};
+}
+
+// Adds a flow (m^2/s) into cell `to`, with derivatives by the cells l and r, of which one may be missing (-1).
+void add_flow(Balance& b, Index to, const Dual& flow, Index l, Index r) {
+  b.inflow(to) += flow.value();
+  if (l >= 0) {
+    b.by_P(to, l) += flow.derivatives()(0);
+    b.by_w(to, l) += flow.derivatives()(1);
+  }
+  if (r >= 0) {
+    b.by_P(to, r) += flow.derivatives()(2);
+    b.by_w(to, r) += flow.derivatives()(3);
+  }
+}
+
+// Flow between neighbours. What flows is the fluid of the cell with the higher pressure, which is full: an empty cell
+// is at the lowest pressure there is and gives nothing.
+void add_faces(const Step& step, const Trial& trial, Balance& b) {
+  for (Index k = 0; k + 1 < trial.P.size(); ++k) {
+    const Place l = place(step, trial, b, k, true), r = place(step, trial, b, k + 1, false);
+    const Dual c = between(step.fluid, l, r);
+    const Dual flow = density(step.fluid, trial.P(k) > trial.P(k + 1) ? l.P : r.P) * c * (l.P - r.P);
+    add_flow(b, k, -flow, k, k + 1);
+    add_flow(b, k + 1, flow, k, k + 1);
+    b.conductance(k) += c.value();
+    b.conductance(k + 1) += c.value();
+  }
+}
+
+// Flow from the inlet vertex into the cells beside it, at a pressure given or such that the rate is met.
+void add_inlet(const Step& step, const Trial& trial, Balance& b) {
+  const Index vertex = static_cast<Index>(step.line.inlet);
+  const Index l = vertex - 1, r = vertex < trial.P.size() ? vertex : -1;
+  const Index cells[2] = {l, r};
+  Place at[2];
+  Dual c[2] = {Dual(0.0), Dual(0.0)};
+  for (int s = 0; s < 2; ++s) {
+    if (cells[s] < 0) continue;
+    at[s] = place(step, trial, b, cells[s], s == 0);
+    c[s] = from_vertex(step.fluid, at[s]);
+  }
+  const bool by_rate = step.inlet.drive == Inlet::Drive::rate;
+  Dual P(step.inlet.value);
+  if (by_rate) P = (Dual(step.inlet.value) + c[0] * at[0].P + c[1] * at[1].P) / (c[0] + c[1]);
+  b.inlet_Pa = P.value();
+  for (int s = 0; s < 2; ++s) {
+    if (cells[s] < 0) continue;
+    // By rate in this form and not as c (P - P_s), which loses digits where c is large.
+    Dual q = c[s] * (P - at[s].P);
+    if (by_rate) q = (Dual(step.inlet.value) + c[1 - s] * (at[1 - s].P - at[s].P)) * c[s] / (c[0] + c[1]);
+    const Dual flow = density(step.fluid, q.value() >= 0.0 ? P : at[s].P) * q;
+    add_flow(b, cells[s], flow, l, r);
+    b.conductance(cells[s]) += c[s].value();
+    b.flux += q.value();
+    b.mass_flux += flow.value();
+  }
+}
+
+Balance evaluate(const Step& step, const Trial& trial) {
+  const Index n = trial.P.size();
+  Balance b;
+  b.rock = step.rock(trial.P);
+  b.held = b.inflow = b.conductance = VectorXd::Zero(n);
+  b.by_P = b.by_w = MatrixXd::Zero(n, n);
+  add_faces(step, trial, b);
+  add_inlet(step, trial, b);
+  for (Index k = 0; k < n; ++k)
+    b.held(k) = trial.phi(k) * density(step.fluid, trial.P(k)) * storage_opening(b.rock.w(k)) *
+                step.line.length[static_cast<std::size_t>(k)];
+  b.residual = b.held - Eigen::Map<const VectorXd>(step.line.content.data(), n) - step.dt * b.inflow;
+  return b;
+}
+
+// d residual/d(unknown): the unknown of a column is P where the cell is full, phi elsewhere.
+MatrixXd jacobian(const Step& step, const Trial& trial, const Balance& b) {
+  const Index n = trial.P.size();
+  MatrixXd by_w = -step.dt * b.by_w;
+  for (Index k = 0; k < n; ++k)
+    if (b.rock.w(k) > thinnest) by_w(k, k) += b.held(k) / b.rock.w(k);
+  MatrixXd J = -step.dt * b.by_P;
+  for (Index k = 0; k < n; ++k) {
+    J(k, k) += b.held(k) / (density(step.fluid, trial.P(k)) * step.fluid.bulk_modulus_Pa);
+    for (Index j = std::max<Index>(k - 1, 0); j <= std::min(k + 1, n - 1); ++j)
+      J.row(k) += by_w(k, j) * b.rock.dw_dP.row(j);
+  }
+  for (Index k = 0; k < n; ++k) {
+    if (trial.full[static_cast<std::size_t>(k)]) continue;
+    J.col(k).setZero();
+    J(k, k) = storage_opening(b.rock.w(k)) * step.line.length[static_cast<std::size_t>(k)];
+  }
+  return J;
+}
+
+// The trial a fraction of the way along dx; a cell whose bound is passed stops there and frees its other unknown.
+Trial moved(const Fluid& fluid, const Trial& from, const VectorXd& dx, double fraction) {
+  Trial to = from;
+  for (Index k = 0; k < dx.size(); ++k) {
+    char& full = to.full[static_cast<std::size_t>(k)];
+    if (full) {
+      to.P(k) += fraction * dx(k);
+      if (to.P(k) >= fluid.cavitation_Pa) continue;
+      to.P(k) = fluid.cavitation_Pa;
+      full = 0;
+    } else {
+      to.phi(k) = std::max(0.0, to.phi(k) + fraction * dx(k));
+      if (to.phi(k) <= 1.0) continue;
+      to.phi(k) = 1.0;
+      full = 1;
+    }
+  }
+  return to;
+}
+
+// Part of a Newton step that changes no pressure by more than half of what is there: a closed fracture seems rigid and
+// would be blown up by the pressure that compresses the fluid instead.
+double trusted_fraction(const Step& step, const Trial& trial, const VectorXd& dx) {
+  double scale = 1e5, change = 0.0;  // an atmosphere, where there is no pressure yet
+  scale = std::max(scale, trial.P.maxCoeff() - step.fluid.cavitation_Pa);
+  if (step.inlet.drive == Inlet::Drive::pressure) scale = std::max(scale, step.inlet.value - step.fluid.cavitation_Pa);
+  for (Index k = 0; k < dx.size(); ++k)
+    if (trial.full[static_cast<std::size_t>(k)]) change = std::max(change, std::abs(dx(k)));
+  return change > 0.5 * scale ? 0.5 * scale / change : 1.0;
+}
+
+// True where every cell's balance holds as well as the tolerance and the round-off of its fluxes allow.
+bool balanced(const Step& step, const Trial& trial, const Balance& b) {
+  const double total = std::max(b.held.sum(), step.dt * std::abs(b.mass_flux));
+  const double digits = 8.0 * std::numeric_limits<double>::epsilon() * step.dt;
+  for (Index k = 0; k < b.residual.size(); ++k)
+    if (std::abs(b.residual(k)) > step.options.tolerance * total + digits * b.conductance(k) * trial.P.maxCoeff())
+      return false;
+  return true;
+}
+
+// Newton's method from `trial`, which becomes the solution; says why not otherwise.
+StepReport iterate(const Step& step, Trial& trial, Balance& b) {
+  StepReport report;
+  b = evaluate(step, trial);
+  ++report.rock_calls;
+  for (; b.finite(); ++report.iterations) {
+    report.residual = b.residual.lpNorm<Eigen::Infinity>();
+    if (balanced(step, trial, b)) {
+      report.converged = true;
+      return report;
+    }
+    if (report.iterations == step.options.max_iterations) {
+      report.reason = "the balance of flow and rock did not converge in " + std::to_string(report.iterations) +
+                      " iterations. Try a smaller step";
+      return report;
+    }
+    const VectorXd dx = jacobian(step, trial, b).partialPivLu().solve(-b.residual);
+    if (!dx.allFinite()) break;
+    double fraction = trusted_fraction(step, trial, dx);
+    Trial best;
+    Balance at_best;
+    for (int halving = 0; halving < 6; ++halving, fraction *= 0.5) {
+      Trial next = moved(step.fluid, trial, dx, fraction);
+      Balance at_next = evaluate(step, next);
+      ++report.rock_calls;
+      if (!at_next.finite()) continue;
+      const bool enough = at_next.merit() < (1.0 - 1e-4 * fraction) * b.merit();
+      if (best.P.size() == 0 || at_next.merit() < at_best.merit()) best = std::move(next), at_best = std::move(at_next);
+      if (enough) break;
+    }
+    if (best.P.size() == 0) break;
+    // Where a cell changes from filling to full the best may be no better: going on finds the other unknown's step.
+    trial = std::move(best);
+    b = std::move(at_best);
+  }
+  report.reason = "flow and rock gave values that are not finite. Try a smaller step";
+  return report;
+}
+
+std::vector<double> as_vector(const VectorXd& x) {
+  return {x.data(), x.data() + x.size()};
+}
+
+// Half the change of the rates over a step is backward Euler's local error over dt, dt^2 x''/2.
+void estimate_error(const Step& step, const Trial& trial, const Balance& b, StepReport& report) {
+  report.estimated = step.line.rates_known;
+  if (!report.estimated) return;
+  for (Index k = 0; k < trial.P.size(); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const double w = step.line.w[at] + step.dt * step.line.w_rate[at];
+    const double P = step.line.P[at] + step.dt * step.line.P_rate[at];
+    report.error_w = std::max(report.error_w, 0.5 * std::abs(b.rock.w(k) - w));
+    report.error_P = std::max(report.error_P, 0.5 * std::abs(trial.P(k) - P));
+  }
+  report.error_w /= std::max(b.rock.w.maxCoeff(), thinnest);
+}
+
+void take(const Step& step, const Trial& trial, const Balance& b, ReynoldsLine& line) {
+  const Index n = trial.P.size();
+  const VectorXd w = Eigen::Map<const VectorXd>(line.w.data(), n), P = Eigen::Map<const VectorXd>(line.P.data(), n);
+  line.w_rate = as_vector((b.rock.w - w) / step.dt);
+  line.P_rate = as_vector((trial.P - P) / step.dt);
+  // By flows and not by what is held: what the iteration leaves over then does not add up from step to step.
+  line.content = as_vector(Eigen::Map<const VectorXd>(line.content.data(), n) + step.dt * b.inflow);
+  line.w = as_vector(b.rock.w);
+  line.P = as_vector(trial.P);
+  line.phi = as_vector(trial.phi);
+  line.inlet_Pa = b.inlet_Pa;
+  line.rates_known = true;
+}
+
+}  // namespace
+
+ReynoldsLine full_line(const Fluid& fluid, const std::vector<double>& length, std::size_t inlet, double P,
+                       const Eigen::VectorXd& w, FluidBalance& balance) {
+  ReynoldsLine line;
+  const std::size_t n = length.size();
+  line.length = length;
+  line.P.assign(n, std::max(P, fluid.cavitation_Pa));
+  line.phi.assign(n, 1.0);
+  line.w = as_vector(w);
+  line.w_rate.assign(n, 0.0);
+  line.P_rate.assign(n, 0.0);
+  line.inlet = inlet;
+  line.inlet_Pa = line.P[0];
+  balance = {};
+  for (std::size_t k = 0; k < n; ++k) {
+    line.content.push_back(density(fluid, line.P[k]) * storage_opening(line.w[k]) * length[k]);
+    balance.stored_at_start += line.content[k];
+  }
+  balance.stored = balance.stored_at_start;
+  return line;
+}
+
+void grow(ReynoldsLine& line, const Fluid& fluid, bool at_back, double length) {
+  const auto add = [at_back](std::vector<double>& values, double value) {
+    values.insert(at_back ? values.end() : values.begin(), value);
+  };
+  add(line.length, length);
+  add(line.P, fluid.cavitation_Pa);
+  for (std::vector<double>* values : {&line.phi, &line.content, &line.w, &line.w_rate, &line.P_rate}) add(*values, 0.0);
+  line.rates_known = false;
+  if (!at_back) ++line.inlet;
+}
+
+StepReport step_reynolds(const Fluid& fluid, const Inlet& inlet, double dt, const RockModel& rock, ReynoldsLine& line,
+                         FluidBalance& balance, const ReynoldsOptions& options) {
+  const Step step{fluid, inlet, dt, rock, line, options};
+  const Index n = static_cast<Index>(line.size());
+  Trial trial{Eigen::Map<const VectorXd>(line.P.data(), n), Eigen::Map<const VectorXd>(line.phi.data(), n), {}};
+  for (const double phi : line.phi) trial.full.push_back(phi >= 1.0);
+  Balance b;
+  StepReport report = iterate(step, trial, b);
+  if (!report.converged) return report;
+  report.inlet_Pa = b.inlet_Pa;
+  report.flux_m2_s = b.flux;
+  estimate_error(step, trial, b, report);
+  take(step, trial, b, line);
+  balance.injected += dt * b.mass_flux;
+  balance.largest = std::max(balance.largest, std::abs(balance.injected));
+  balance.stored = b.held.sum();
+  return report;
+}
+
+std::vector<double> vertex_pressures(const ReynoldsLine& line) {
+  std::vector<double> P(line.size() + 1);
+  P.front() = line.P.front();
+  P.back() = line.P.back();
+  for (std::size_t k = 1; k < line.size(); ++k)
+    P[k] = (line.length[k] * line.P[k - 1] + line.length[k - 1] * line.P[k]) / (line.length[k - 1] + line.length[k]);
+  P[line.inlet] = line.inlet_Pa;
+  return P;
+}
+
+}  // namespace strata

@@ -1,0 +1,104 @@
+// Lubrication flow along the fracture that conserves mass, solved in one system with the rock that the fluid opens.
+//
+//   d(theta w)/dt + d(theta q)/ds = inlet,  q = -(w^3/(12 mu)) dP/ds,  theta = phi (1 + (P - P_c)/M)
+//   P >= P_c,  0 <= phi <= 1,  (P - P_c)(1 - phi) = 0
+// which is (w/M) dP/dt + dw/dt = d/ds(w^3/(12 mu) dP/ds) + inlet where the fracture is full (Batchelor 1967,
+// section 4.8) and a fluid front where it is not (mass-conserving cavitation: Jakobsson & Floberg 1957; Elrod 1981).
+// theta is the fluid's density over that at the cavitation pressure P_c, phi the part of the opening that fluid fills.
+//
+// Finite volumes: a cell is a segment of the fracture, with P, phi and the opening w at its middle, where the rock
+// feels P and where the fluid is stored. Backward Euler. What a cell holds, theta w A, is part of the state: it stays
+// what it was when growth changes the openings, so nothing is lost or made between steps.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "scene/scene.hpp"
+
+namespace strata {
+
+// The rock under a pressure: the opening at the fracture's points (m; about 0 where faces touch), and its change per
+// pressure at the points (m/Pa), row: opening, column: pressure.
+struct RockResponse {
+  Eigen::VectorXd w;
+  Eigen::MatrixXd dw_dP;
+};
+using RockModel = std::function<RockResponse(const Eigen::VectorXd& P)>;  // P absolute, one a point (Pa)
+
+// The fluid in the fracture, a value a cell from the first vertex to the last.
+struct ReynoldsLine {
+  std::vector<double> length;   // A (m)
+  std::vector<double> P;        // absolute pressure (Pa)
+  std::vector<double> phi;      // filled part of the opening
+  std::vector<double> content;  // theta w A: volume of the fluid at the cavitation pressure (m^2)
+  std::vector<double> w;        // opening at the end of the last step (m)
+  std::vector<double> w_rate;   // (m/s) and
+  std::vector<double> P_rate;   // (Pa/s) over the last step, for the estimate of its error
+  bool rates_known = false;     // false before the first step and after growth
+  std::size_t inlet = 0;        // vertex at which the fluid enters
+  double inlet_Pa = 0.0;        // pressure there
+
+  std::size_t size() const { return length.size(); }
+};
+
+// What drives the flow at the inlet vertex, at the end of the step.
+struct Inlet {
+  enum class Drive { pressure, rate };
+  Drive drive = Drive::pressure;
+  double value = 0.0;  // pressure (Pa), or what enters the modelled domain (m^2/s, at the inlet's pressure)
+};
+
+// Fluid counted in and found there, as volume at the cavitation pressure (m^2).
+struct FluidBalance {
+  double stored_at_start = 0.0;
+  double injected = 0.0;  // integral of theta q dt through the inlet
+  double stored = 0.0;    // sum of theta w A over the cells, from P, phi and the rock's w
+  double largest = 0.0;   // of |injected| so far
+
+  // What is missing, relative to what was injected (or stored, where that is more).
+  double closure() const {
+    const double scale = largest > stored_at_start ? largest : stored_at_start;
+    return scale > 0.0 ? (stored - stored_at_start - injected) / scale : 0.0;
+  }
+};
+
+struct StepReport {
+  bool converged = false;  // where false nothing was changed, and reason says why
+  std::string reason;
+  int iterations = 0;
+  int rock_calls = 0;
+  double residual = 0.0;   // largest imbalance of a cell (m^2)
+  double inlet_Pa = 0.0;   // pressure at the inlet vertex
+  double flux_m2_s = 0.0;  // what enters there, at the inlet's pressure
+  bool estimated = false;  // whether the two below are known
+  double error_w = 0.0;    // error of this step's opening, relative to the largest opening
+  double error_P = 0.0;    // error of this step's pressure (Pa)
+};
+
+struct ReynoldsOptions {
+  int max_iterations = 80;
+  double tolerance = 1e-12;  // of a cell's imbalance, relative to the fluid in the fracture; not below round-off
+};
+
+/// A fracture full of fluid at P (Pa) throughout, with openings w (m) in cells of the given lengths (m) and the inlet
+/// at a vertex; sets `balance` to nothing injected.
+ReynoldsLine full_line(const Fluid& fluid, const std::vector<double>& length, std::size_t inlet, double P,
+                       const Eigen::VectorXd& w, FluidBalance& balance);
+
+/// Adds an empty cell (phi = 0, P = P_c) of the given length (m) after the last one (at_back) or before the first,
+/// where the inlet's vertex moves up by one.
+void grow(ReynoldsLine& line, const Fluid& fluid, bool at_back, double length);
+
+/// One step dt (s) of flow and rock together: Newton's method on the balance of each cell, with P free in full cells
+/// and phi in others. Changes line and balance only where it converges; throws what the rock throws.
+StepReport step_reynolds(const Fluid& fluid, const Inlet& inlet, double dt, const RockModel& rock, ReynoldsLine& line,
+                         FluidBalance& balance, const ReynoldsOptions& options = {});
+
+/// Pressure at the vertices (Pa, one more than cells): linear between the cells' middles, the inlet's own at the inlet,
+/// the last cell's at a closed end, through which nothing flows.
+std::vector<double> vertex_pressures(const ReynoldsLine& line);
+
+}  // namespace strata
