@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <unsupported/Eigen/AutoDiff>
 
 namespace strata {
@@ -40,15 +41,15 @@ Dual conducting(const Fluid& fluid, const Place& at) {
   return at.w.value() > floor ? at.w : Dual(floor);
 }
 
-// Conductance between the middles of two cells (m^2/(Pa s)), from the mean of the roots of their openings to the sixth
-// power. The exact one is 1/int 12 mu/w^3 ds; between half a cell and one and a half behind a tip this one is 2 % above
-// it for w ~ x^(1/2), 10 % for x^(2/3), where the cube of the mean is 8 and 21 % above. A wedge's own, with w linear
-// between the two, is 7 % below both, but a cell that growth has just added is still closed and would be filled no
-// faster than the floor lets through: the speed of a fracture would then be the floor's doing. Here it gets 1/64 of its
-// neighbour's cube.
+// Conductance between the middles of two cells (m^2/(Pa s)), w^3/(12 mu) over their distance with w the mean of the
+// arithmetic and the harmonic mean of their openings. The exact one is 1/int 12 mu/w^3 ds: between half a cell and one
+// and a half behind a tip this one is 3.5 % below it for w ~ x^(1/2) and 0.7 % above for x^(2/3), where the cube of the
+// arithmetic mean is 8 and 22 % above, and a wedge's (w linear between the two) 7 % below both. But a wedge's vanishes
+// with either opening: a cell that growth has just added is still closed and would be filled no faster than the floor
+// lets through, and the speed of a fracture would be the floor's doing. Here it gets 1/64 of its neighbour's cube.
 Dual between(const Fluid& fluid, const Place& l, const Place& r) {
-  const Dual root = 0.5 * (sqrt(conducting(fluid, l)) + sqrt(conducting(fluid, r)));
-  const Dual w = root * root;
+  const Dual a = conducting(fluid, l), b = conducting(fluid, r);
+  const Dual w = 0.25 * (a + b) + a * b / (a + b);
   return Dual(w * w * w) / (6.0 * fluid.viscosity_Pa_s * (l.A + r.A));
 }
 
@@ -68,7 +69,6 @@ struct Balance {
   RockResponse rock;
   VectorXd held, inflow;  // theta w A (m^2), net flow into the cell (m^2/s), both at the cavitation pressure
   VectorXd residual;      // held - held before - dt inflow
-  VectorXd conductance;   // of all sides of the cell, for round-off
   MatrixXd by_P, by_w;    // d inflow/d P, d inflow/d w, bands of three
   double inlet_Pa = 0.0;
   double flux = 0.0;       // into the fracture, at the inlet's pressure (m^2/s)
@@ -114,8 +114,6 @@ void add_faces(const Step& step, const Trial& trial, Balance& b) {
     const Dual flow = density(step.fluid, trial.P(k) > trial.P(k + 1) ? l.P : r.P) * c * (l.P - r.P);
     add_flow(b, k, -flow, k, k + 1);
     add_flow(b, k + 1, flow, k, k + 1);
-    b.conductance(k) += c.value();
-    b.conductance(k + 1) += c.value();
   }
 }
 
@@ -140,9 +138,11 @@ void add_inlet(const Step& step, const Trial& trial, Balance& b) {
     // By rate in this form and not as c (P - P_s), which loses digits where c is large.
     Dual q = c[s] * (P - at[s].P);
     if (by_rate) q = (Dual(step.inlet.value) + c[1 - s] * (at[1 - s].P - at[s].P)) * c[s] / (c[0] + c[1]);
-    const Dual flow = density(step.fluid, q.value() >= 0.0 ? P : at[s].P) * q;
+    // A rate counts at the pressure of the cell before the step: at the one sought, more inflow would raise the
+    // pressure and that the inflow again, without a solution where a step brings more than a closed cell holds.
+    const Dual entering = by_rate ? Dual(step.line.P[static_cast<std::size_t>(cells[s])]) : P;
+    const Dual flow = density(step.fluid, q.value() >= 0.0 ? entering : at[s].P) * q;
     add_flow(b, cells[s], flow, l, r);
-    b.conductance(cells[s]) += c[s].value();
     b.flux += q.value();
     b.mass_flux += flow.value();
   }
@@ -152,7 +152,7 @@ Balance evaluate(const Step& step, const Trial& trial) {
   const Index n = trial.P.size();
   Balance b;
   b.rock = step.rock(trial.P);
-  b.held = b.inflow = b.conductance = VectorXd::Zero(n);
+  b.held = b.inflow = VectorXd::Zero(n);
   b.by_P = b.by_w = MatrixXd::Zero(n, n);
   add_faces(step, trial, b);
   add_inlet(step, trial, b);
@@ -163,10 +163,11 @@ Balance evaluate(const Step& step, const Trial& trial) {
   return b;
 }
 
-// d residual/d(unknown): the unknown of a column is P where the cell is full, phi elsewhere.
-MatrixXd jacobian(const Step& step, const Trial& trial, const Balance& b) {
+// d residual/d(unknown): the unknown of a column is P where the cell is full, phi elsewhere. `frozen`: as if the
+// conductances did not change with the opening.
+MatrixXd jacobian(const Step& step, const Trial& trial, const Balance& b, bool frozen = false) {
   const Index n = trial.P.size();
-  MatrixXd by_w = -step.dt * b.by_w;
+  MatrixXd by_w = (frozen ? 0.0 : -step.dt) * b.by_w;
   for (Index k = 0; k < n; ++k)
     if (b.rock.w(k) > thinnest) by_w(k, k) += b.held(k) / b.rock.w(k);
   MatrixXd J = -step.dt * b.by_P;
@@ -227,44 +228,73 @@ bool balanced(const Step& step, const Trial& trial, const Balance& b, const Matr
   return true;
 }
 
-// Newton's method from `trial`, which becomes the solution; says why not otherwise.
-StepReport iterate(const Step& step, Trial& trial, Balance& b) {
+struct Iterate {
+  Trial trial;
+  Balance b;
+};
+
+// Halves the step along dx until the imbalance falls; `best` is the best of all that were tried, from other directions
+// too. True where it fell.
+bool search(const Step& step, const Iterate& from, const VectorXd& dx, std::optional<Iterate>& best, int& rock_calls) {
+  double fraction = trusted_fraction(step, from.trial, dx);
+  for (int halving = 0; halving < 6; ++halving, fraction *= 0.5) {
+    Iterate next{moved(step.fluid, from.trial, dx, fraction), {}};
+    next.b = evaluate(step, next.trial);
+    ++rock_calls;
+    if (!next.b.finite()) continue;
+    const double merit = next.b.merit();
+    if (!best || merit < best->b.merit()) best = std::move(next);
+    if (merit < (1.0 - 1e-4 * fraction) * from.b.merit()) return true;
+  }
+  return false;
+}
+
+// Newton's method from `at`, which becomes the solution; the report says why not otherwise. Where faces are about to
+// part, the cube of the opening makes Newton's own direction useless, and the one with conductances frozen is tried.
+// Where a cell fills up, neither may lower the imbalance: its other unknown does so next.
+StepReport iterate(const Step& step, Iterate& at) {
   StepReport report;
-  b = evaluate(step, trial);
+  at.b = evaluate(step, at.trial);
   ++report.rock_calls;
-  for (; b.finite(); ++report.iterations) {
-    report.residual = b.residual.lpNorm<Eigen::Infinity>();
-    const MatrixXd J = jacobian(step, trial, b);
-    if (balanced(step, trial, b, J)) {
-      report.converged = true;
-      return report;
-    }
+  for (; at.b.finite(); ++report.iterations) {
+    report.residual = at.b.residual.lpNorm<Eigen::Infinity>();
+    const MatrixXd J = jacobian(step, at.trial, at.b);
+    report.converged = balanced(step, at.trial, at.b, J);
+    if (report.converged) return report;
     if (report.iterations == step.options.max_iterations) {
       report.reason = "the balance of flow and rock did not converge in " + std::to_string(report.iterations) +
                       " iterations. Try a smaller step";
       return report;
     }
-    const VectorXd dx = J.partialPivLu().solve(-b.residual);
-    if (!dx.allFinite()) break;
-    double fraction = trusted_fraction(step, trial, dx);
-    Trial best;
-    Balance at_best;
-    for (int halving = 0; halving < 6; ++halving, fraction *= 0.5) {
-      Trial next = moved(step.fluid, trial, dx, fraction);
-      Balance at_next = evaluate(step, next);
-      ++report.rock_calls;
-      if (!at_next.finite()) continue;
-      const bool enough = at_next.merit() < (1.0 - 1e-4 * fraction) * b.merit();
-      if (best.P.size() == 0 || at_next.merit() < at_best.merit()) best = std::move(next), at_best = std::move(at_next);
-      if (enough) break;
+    std::optional<Iterate> best;
+    VectorXd dx = J.partialPivLu().solve(-at.b.residual);
+    if (!dx.allFinite() || !search(step, at, dx, best, report.rock_calls)) {
+      dx = jacobian(step, at.trial, at.b, true).partialPivLu().solve(-at.b.residual);
+      if (dx.allFinite()) search(step, at, dx, best, report.rock_calls);
     }
-    if (best.P.size() == 0) break;
-    // Where a cell changes from filling to full the best may be no better: going on finds the other unknown's step.
-    trial = std::move(best);
-    b = std::move(at_best);
+    if (!best) break;
+    at = std::move(*best);
   }
   report.reason = "flow and rock gave values that are not finite. Try a smaller step";
   return report;
+}
+
+// Where the iteration starts: what was before the step,
+Trial before(const ReynoldsLine& line) {
+  const Index n = static_cast<Index>(line.size());
+  Trial trial{Eigen::Map<const VectorXd>(line.P.data(), n), Eigen::Map<const VectorXd>(line.phi.data(), n), {}};
+  for (const double phi : line.phi) trial.full.push_back(phi >= 1.0);
+  return trial;
+}
+
+// or every cell full at the highest pressure. A thin fluid enters a cell in which the faces touch the faster the more
+// it opens them, and least when it has filled it: between the two the flow has a hump over which no descent leads.
+Trial filled(const ReynoldsLine& line) {
+  Trial trial = before(line);
+  trial.P.setConstant(trial.P.maxCoeff());
+  trial.phi.setOnes();
+  trial.full.assign(line.size(), 1);
+  return trial;
 }
 
 std::vector<double> as_vector(const VectorXd& x) {
@@ -336,16 +366,21 @@ void grow(ReynoldsLine& line, const Fluid& fluid, bool at_back, double length) {
 StepReport step_reynolds(const Fluid& fluid, const Inlet& inlet, double dt, const RockModel& rock, ReynoldsLine& line,
                          FluidBalance& balance, const ReynoldsOptions& options) {
   const Step step{fluid, inlet, dt, rock, line, options};
-  const Index n = static_cast<Index>(line.size());
-  Trial trial{Eigen::Map<const VectorXd>(line.P.data(), n), Eigen::Map<const VectorXd>(line.phi.data(), n), {}};
-  for (const double phi : line.phi) trial.full.push_back(phi >= 1.0);
-  Balance b;
-  StepReport report = iterate(step, trial, b);
+  Iterate at{before(line), {}};
+  StepReport report = iterate(step, at);
+  if (!report.converged) {
+    const int iterations = report.iterations, rock_calls = report.rock_calls;
+    at.trial = filled(line);
+    report = iterate(step, at);
+    report.iterations += iterations;
+    report.rock_calls += rock_calls;
+  }
   if (!report.converged) return report;
+  const Balance& b = at.b;
   report.inlet_Pa = b.inlet_Pa;
   report.flux_m2_s = b.flux;
-  estimate_error(step, trial, b, report);
-  take(step, trial, b, line);
+  estimate_error(step, at.trial, b, report);
+  take(step, at.trial, b, line);
   balance.injected += dt * b.mass_flux;
   balance.largest = std::max(balance.largest, std::abs(balance.injected));
   balance.stored = b.held.sum();

@@ -48,7 +48,7 @@ struct ReynoldsLine {
 struct Inlet {
   enum class Drive { pressure, rate };
   Drive drive = Drive::pressure;
-  double value = 0.0;  // pressure (Pa), or what enters the modelled domain (m^2/s, at the inlet's pressure)
+  double value = 0.0;  // pressure (Pa), or what enters the modelled domain (m^2/s, at the pressure of its first cell)
 };
 
 // Fluid counted in and found there, as volume at the cavitation pressure (m^2).
@@ -79,7 +79,7 @@ struct StepReport {
 };
 
 struct ReynoldsOptions {
-  int max_iterations = 80;
+  int max_iterations = 25;   // from each of two starting points
   double tolerance = 1e-12;  // of a cell's imbalance, relative to the fluid in the fracture; not below round-off
 };
 
