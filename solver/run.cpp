@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "advance.hpp"
+#include "advance_quasistatic.hpp"
 #include "initialise.hpp"
 #include "output/progress.hpp"
 #include "output/recorder.hpp"
@@ -21,6 +22,8 @@ namespace strata {
 namespace {
 
 constexpr int done = 0, bad_input = 2, numerics_failed = 3, interrupted = 130;
+
+constexpr std::int64_t steps_between_copies = 20;  // without inertia every step is a state to go on from
 
 constexpr double seconds_between_checkpoints = 60.0;  // what a crash costs at most, and rare enough to cost nothing
 
@@ -46,6 +49,10 @@ double expected_duration(const Scene& scene) {
   return std::isfinite(duration) ? duration : 1.0;
 }
 
+bool is_quasistatic(const Scene& scene) {
+  return scene.numerics.mechanics == Numerics::Mechanics::quasistatic;
+}
+
 double output_interval(const Scene& scene) {
   return scene.output.fields_every_s.value_or(expected_duration(scene) / 50.0);
 }
@@ -53,9 +60,9 @@ double output_interval(const Scene& scene) {
 // Why the run is over, or nothing.
 std::optional<std::string> reason_to_stop(const Scene& scene, const State& state) {
   const Stop& stop = scene.stop;
-  const double slack = 0.5 * state.dt;
+  const double slack = is_quasistatic(scene) ? 1e-9 * expected_duration(scene) : 0.5 * state.dt;
   if (stop.time_s && state.time >= *stop.time_s - slack) return fmt::format("time reached {} s", *stop.time_s);
-  if (stop.inlet_Pa && state.has_fracture && state.fluid.inlet_Pa >= *stop.inlet_Pa)
+  if (stop.inlet_Pa && state.has_fracture && state.fluid.inlet_Pa >= *stop.inlet_Pa * (1.0 - 1e-12))
     return fmt::format("inlet pressure reached {} Pa", *stop.inlet_Pa);
   const Tip* tip = leading_tip(state);
   if (stop.tip_y_m && tip != nullptr && tip_position(state, *tip).y() >= *stop.tip_y_m - 1e-3 * state.grid.h) {
@@ -80,14 +87,15 @@ struct Run {
   State state;
   State good;  // the last state that was known to be sound
   double particle_steps = 0.0;
-  double last_output = -1.0;  // time of the last output (s)
+  double last_output = -1.0;           // time of the last output (s)
+  std::optional<Quasistatic> statics;  // of a run without inertia
 };
 
 void add_stop_event(State& state) {
   const Tip* tip = leading_tip(state);
   const Vec2 at = tip != nullptr ? tip_position(state, *tip) : Vec2{Vec2::Zero()};
   state.events.push_back(
-      {"stop", state.time, state.fluid.inlet_Pa, at.x(), at.y(), tip != nullptr && tip->at_interface});
+      {"stop", state.time, state.fluid.inlet_Pa, at.x(), at.y(), tip != nullptr && tip->at_interface, ""});
 }
 
 std::size_t fracture_points(const State& state) {
@@ -101,12 +109,28 @@ void output(Run& run) {
   run.last_output = run.state.time;
 }
 
+// How far a step without inertia may go (s): to the next output, or to the end.
+double next_stop(const Run& run, double interval) {
+  const double next_output = static_cast<double>(run.recorder.outputs()) * interval;
+  const double end = run.scene.stop.time_s.value_or(HUGE_VAL);
+  const Fluid& fluid = run.scene.fluid;
+  const double full = run.scene.stop.inlet_Pa && fluid.rate_Pa_s > 0.0
+                          ? (*run.scene.stop.inlet_Pa - fluid.start_Pa) / fluid.rate_Pa_s
+                          : HUGE_VAL;
+  return std::min({next_output, end, full});
+}
+
 // One step and what it leaves to write: fields at output times, a row of the history after growth.
 void step_and_record(Run& run, double interval) {
   const std::size_t points = fracture_points(run.state);
-  advance(run.scene, run.rocks, run.state);
+  if (run.statics) {
+    advance_quasistatic(run.scene, run.rocks, next_stop(run, interval), run.state, *run.statics);
+  } else {
+    advance(run.scene, run.rocks, run.state);
+  }
   run.particle_steps += static_cast<double>(run.state.particles.size());
-  if (run.state.time >= static_cast<double>(run.recorder.outputs()) * interval - 0.5 * run.state.dt) {
+  const double slack = run.statics ? 1e-9 * interval : 0.5 * run.state.dt;
+  if (run.state.time >= static_cast<double>(run.recorder.outputs()) * interval - slack) {
     output(run);
   } else if (fracture_points(run.state) != points) {
     run.state.ledger.strain = strain_energy(run.rocks, run.state.particles);
@@ -125,7 +149,8 @@ Outcome march(Run& run, Progress& progress) {
       output(run);
       return {done, *reason};
     }
-    if (run.state.step % steps_between_rebuilds == 0 && run.state.step > run.good.step) {
+    const std::int64_t sound_steps = run.statics ? steps_between_copies : steps_between_rebuilds;
+    if (run.state.step % sound_steps == 0 && run.state.step > run.good.step) {
       run.good = run.state;
       const bool stop = asked_to_stop != 0;
       if (stop || seconds_since(last_checkpoint) > seconds_between_checkpoints) {
@@ -147,6 +172,8 @@ int run_from(Run run, const RunFolder& folder, const RunOptions& options, Clock:
   Outcome outcome;
   Progress progress(run.scene, run.state, options.quiet);
   try {
+    if (is_quasistatic(run.scene)) start_quasistatic(run.scene, run.rocks, run.state, run.statics.emplace());
+    run.good = run.state;
     outcome = march(run, progress);
   } catch (const NumericalFailure& failure) {
     outcome = {numerics_failed,
@@ -188,7 +215,7 @@ int run_scene(const Scene& scene, const RunOptions& options) {
   Recorder recorder(*folder);
   try {
     const State state = initialise(scene, rocks);
-    return run_from({scene, rocks, recorder, state, state}, *folder, options, start);
+    return run_from({scene, rocks, recorder, state, state, 0.0, -1.0, std::nullopt}, *folder, options, start);
   } catch (const NumericalFailure& failure) {
     fmt::print(stderr, "{}\n", failure.what());
     return numerics_failed;
@@ -221,7 +248,7 @@ int resume_run(const std::filesystem::path& dir, const RunOptions& options) {
   State& state = checkpoint->state;
   restore(scene, rocks, state);
   const double last_output = recorder->outputs() > 0 ? state.time : -1.0;
-  return run_from({scene, rocks, *recorder, state, state, 0.0, last_output}, folder, options, start);
+  return run_from({scene, rocks, *recorder, state, state, 0.0, last_output, std::nullopt}, folder, options, start);
 }
 
 }  // namespace strata

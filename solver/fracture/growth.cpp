@@ -31,8 +31,7 @@ bool two_way_spring(const Scene& scene, const Surface& surface) {
 
 // Length of the next increment from `tip` along `direction`: ends on the first interface it would cross or nearly
 // reach.
-double increment_to_interface(const Scene& scene, const Vec2& tip, const Vec2& direction) {
-  const double da = scene.fracture->increment_m;
+double increment_to_interface(const Scene& scene, const Vec2& tip, const Vec2& direction, double da) {
   double length = (1.0 + sliver) * da;
   bool meets = false;
   for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
@@ -68,9 +67,10 @@ double rayleigh_wait(const Scene& scene, const Elasticity& rock) {
   return scene.fracture->increment_m / rock.c_R;
 }
 
-void record(State& state, const char* kind, const Tip& tip, double time, double pressure) {
+void record(State& state, const char* kind, const Tip& tip, double time, double pressure, bool doubtful,
+            const char* by) {
   const Vec2 at = tip_position(state, tip);
-  state.events.push_back({kind, time, pressure, at.x(), at.y(), tip.at_interface});
+  state.events.push_back({kind, time, pressure, at.x(), at.y(), doubtful, by});
 }
 
 // The new vertices' pressure: nothing, or what the tip had. The front end is counted from the inlet's side.
@@ -97,25 +97,6 @@ void update_particle_sides(State& state, const Tip& tip, double old_length) {
     if (!ahead) continue;
     p.sides[q] = on.distance >= 0.0 ? p.sides[q] | fracture.mask() : p.sides[q] & ~fracture.mask();
   }
-}
-
-void move_tip(const Scene& scene, State& state, Tip& tip) {
-  Surface& fracture = state.fracture();
-  const Vec2 from = tip_position(state, tip);
-  Vec2 direction = tip_direction(fracture, tip.at_back);
-  if (scene.fracture->direction == Fracture::Direction::max_hoop) {
-    direction = Vec2{std::cos(tip.turn) * direction.x() - std::sin(tip.turn) * direction.y(),
-                     std::sin(tip.turn) * direction.x() + std::cos(tip.turn) * direction.y()};
-  }
-  const double old_length = fracture.length();
-  const std::size_t old_points = fracture.points.size();
-  extend(fracture, tip.at_back, from + increment_to_interface(scene, from, direction) * direction,
-         surface_spacing(state.grid));
-  const std::size_t pieces = fracture.points.size() - old_points;
-  lengthen_fluid(scene, state, tip.at_back, pieces);
-  update_particle_sides(state, tip, old_length);
-  refine_particles(state, tip.at_back ? old_points : 0, tip.at_back ? fracture.points.size() : pieces);
-  for (Surface& surface : state.surfaces) place_points(scene, state, surface);
 }
 
 bool on_grid_line_or_mid_cell(double x, double h) {
@@ -204,30 +185,71 @@ void place_points(const Scene& scene, State& state, Surface& surface) {
   for (SurfacePoint& vertex : surface.vertices) vertex.sides = sides_at(state, vertex.x, surface.bit);
 }
 
+double extend_tip(const Scene& scene, State& state, Tip& tip, double increment) {
+  Surface& fracture = state.fracture();
+  const Vec2 from = tip_position(state, tip);
+  Vec2 direction = tip_direction(fracture, tip.at_back);
+  if (scene.fracture->direction == Fracture::Direction::max_hoop) {
+    direction = Vec2{std::cos(tip.turn) * direction.x() - std::sin(tip.turn) * direction.y(),
+                     std::sin(tip.turn) * direction.x() + std::cos(tip.turn) * direction.y()};
+  }
+  const double old_length = fracture.length();
+  const std::size_t old_points = fracture.points.size();
+  const double length = increment_to_interface(scene, from, direction, increment);
+  extend(fracture, tip.at_back, from + length * direction, surface_spacing(state.grid));
+  const std::size_t pieces = fracture.points.size() - old_points;
+  lengthen_fluid(scene, state, tip.at_back, pieces);
+  update_particle_sides(state, tip, old_length);
+  refine_particles(state, tip.at_back ? old_points : 0, tip.at_back ? fracture.points.size() : pieces);
+  for (Surface& surface : state.surfaces) place_points(scene, state, surface);
+  return length;
+}
+
+std::size_t rock_ahead(const Scene& scene, const State& state, const Tip& tip) {
+  const Vec2 ahead = ahead_cells * state.grid.h * tip_direction(state.fracture(), tip.at_back);
+  return rock_at(scene, tip_position(state, tip) + ahead);
+}
+
+bool stopped_by_edge(const Scene& scene, const State& state, const Tip& tip) {
+  return tip.has_grown &&
+         near_edge(scene, tip_position(state, tip), tip_direction(state.fracture(), tip.at_back), state.grid.h);
+}
+
+bool interface_within(const Scene& scene, const State& state, const Tip& tip, double reach) {
+  const double at = stacking_coordinate(scene, tip_position(state, tip));
+  for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
+    if (real_interface(scene, k) && std::abs(scene.strata.interfaces[k].at_m - at) <= reach) return true;
+  }
+  return false;
+}
+
+void note_growth(State& state, Tip& tip, const char* by, bool trusted) {
+  if (!tip.has_grown) record(state, "start", tip, state.time, state.fluid.inlet_Pa, !trusted, by);
+  if (tip.arrested) record(state, "restart", tip, state.time, state.fluid.inlet_Pa, !trusted, by);
+  tip.has_grown = true;
+  tip.arrested = false;
+  tip.criterion = by;
+  tip.last_growth_s = state.time;
+  tip.last_growth_Pa = state.fluid.inlet_Pa;
+  tip.J_at_growth = tip.J;
+  tip.J_spread_at_growth = tip.J_spread;
+}
+
 bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
   if (!state.has_fracture || scene.fracture->growth == Fracture::Growth::none) return false;
   bool moved = false;
   for (Tip& tip : state.tips) {
-    const Vec2 at = tip_position(state, tip);
-    const Elasticity& ahead =
-        rocks[rock_at(scene, at + ahead_cells * state.grid.h * tip_direction(state.fracture(), tip.at_back))];
+    const Elasticity& ahead = rocks[rock_ahead(scene, state, tip)];
     if (!tip.growing || tip.K_I <= 0.0 || tip.J <= 0.0 || tip.J < ahead.J_c) continue;
     if (!tip.at_interface && !confirmed_by_K(tip, ahead)) continue;
     if (tip.last_growth_s >= 0.0 && state.time - tip.last_growth_s < rayleigh_wait(scene, ahead)) continue;
-    if (near_edge(scene, at, tip_direction(state.fracture(), tip.at_back), state.grid.h) && tip.has_grown) {
+    if (stopped_by_edge(scene, state, tip)) {
       tip.growing = false;
       tip.stopped_by = "within 3 cells of an edge of the block";
       continue;
     }
-    if (!tip.has_grown) record(state, "start", tip, state.time, state.fluid.inlet_Pa);
-    if (tip.arrested) record(state, "restart", tip, state.time, state.fluid.inlet_Pa);
-    tip.has_grown = true;
-    tip.arrested = false;
-    tip.last_growth_s = state.time;
-    tip.last_growth_Pa = state.fluid.inlet_Pa;
-    tip.J_at_growth = tip.J;
-    tip.J_spread_at_growth = tip.J_spread;
-    move_tip(scene, state, tip);
+    note_growth(state, tip, "J", !tip.at_interface);
+    extend_tip(scene, state, tip, scene.fracture->increment_m);
     moved = true;
   }
   return moved;
@@ -242,11 +264,13 @@ void watch_tips(const Scene& scene, State& state) {
       if (distance > 0.5 * state.grid.h || std::find(tip.reached.begin(), tip.reached.end(), id) != tip.reached.end())
         continue;
       tip.reached.push_back(id);
-      record(state, "reach_interface", tip, state.time, state.fluid.inlet_Pa);
+      record(state, "reach_interface", tip, state.time, state.fluid.inlet_Pa, tip.at_interface, "");
     }
     if (tip.has_grown && !tip.arrested && tip.growing && state.fluid.inlet_Pa - tip.last_growth_Pa >= arrest_rise_Pa) {
       tip.arrested = true;
-      record(state, "arrest", tip, tip.last_growth_s, tip.last_growth_Pa);
+      const bool doubtful = tip.criterion == "energy" ? false : tip.at_interface;
+      const std::string by = tip.criterion;
+      record(state, "arrest", tip, tip.last_growth_s, tip.last_growth_Pa, doubtful, by.c_str());
     }
   }
 }

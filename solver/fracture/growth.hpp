@@ -16,6 +16,23 @@ namespace strata {
 /// not grow. Returns true if any tip moved: the copies must then be rebuilt. Throws nothing.
 bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
 
+/// Index of the rock that a tip is about to enter. Throws nothing.
+std::size_t rock_ahead(const Scene& scene, const State& state, const Tip& tip);
+
+/// Whether a tip that has grown stands within 3 cells of an edge that it heads for: it has no room to grow or to
+/// measure J in. Throws nothing.
+bool stopped_by_edge(const Scene& scene, const State& state, const Tip& tip);
+
+/// Whether an interface that does something (a law, or another rock beyond it) lies within `reach` (m) of a tip.
+bool interface_within(const Scene& scene, const State& state, const Tip& tip, double reach);
+
+/// Lengthens the fracture at a tip by `increment` (m), less where an interface stops it (see grow()); returns by how
+/// much (m). The copies must then be rebuilt. Throws nothing.
+double extend_tip(const Scene& scene, State& state, Tip& tip, double increment);
+
+/// Notes that a tip grows now: events start and restart, time and pressure of its last growth. by: what decided it.
+void note_growth(State& state, Tip& tip, const char* by, bool trusted);
+
 /// Appends the events reach_interface and arrest as they become true; start and restart come with grow().
 void watch_tips(const Scene& scene, State& state);
 

@@ -12,29 +12,53 @@ double contact_stiffness(const InterfaceLaw& law, const std::vector<Elasticity>&
   return law.kind == InterfaceLaw::Kind::soft ? std::max(k, 10.0 * law.normal_stiffness_Pa_m) : k;
 }
 
-LawAnswer law_at(const InterfaceLaw& law, double k, const LawInput& in) {
+namespace {
+
+using Piece = LawAnswer::Piece;
+
+LawAnswer soft_law(const InterfaceLaw& law, double k, const LawInput& in) {
   LawAnswer r;
-  const double pushed = in.n_rest - k * in.w_n;
-  if (law.kind == InterfaceLaw::Kind::soft) {
-    const double pulled = -law.normal_stiffness_Pa_m * in.w_n;
-    const bool closed = law.compression == InterfaceLaw::Compression::contact && pushed > pulled;
-    r.n = closed ? pushed : pulled;
-    r.dn_dn = closed ? -k : -law.normal_stiffness_Pa_m;
-    r.t = -law.shear_stiffness_Pa_m * in.w_t;
-    r.dt_dt = -law.shear_stiffness_Pa_m;
-    return r;
-  }
+  const double D_n = law.normal_stiffness_Pa_m, D_t = law.shear_stiffness_Pa_m;
+  const double pushed = in.n_rest - k * in.w_n, pulled = -D_n * in.w_n;
+  const bool contact = law.compression == InterfaceLaw::Compression::contact;
+  const auto energy = [&](double w_n) {
+    if (!contact || in.n_rest - k * w_n <= -D_n * w_n) return 0.5 * D_n * w_n * w_n;
+    const double w = in.n_rest / (k - D_n);  // where contact hands over to the spring
+    return 0.5 * D_n * w * w + (in.n_rest * (w_n - w) - 0.5 * k * (w_n * w_n - w * w)) * -1.0;
+  };
+  const bool closed = contact && pushed > pulled;
+  r.piece = closed ? Piece::closed : Piece::open;
+  r.n = closed ? pushed : pulled;
+  r.n_0 = closed ? in.n_rest : 0.0;
+  r.dn_dn = closed ? -k : -D_n;
+  r.t = -D_t * in.w_t;
+  r.dt_dt = -D_t;
+  r.energy = energy(in.w_n) - energy(0.0) + 0.5 * D_t * in.w_t * in.w_t;
+  return r;
+}
+
+}  // namespace
+
+LawAnswer law_at(const InterfaceLaw& law, double k, const LawInput& in) {
+  if (law.kind == InterfaceLaw::Kind::soft) return soft_law(law, k, in);
+  LawAnswer r;
+  const double pushed = in.n_rest - k * in.w_n, at_rest = std::max(0.0, in.n_rest);
+  r.energy = (std::max(0.0, pushed) * std::max(0.0, pushed) - at_rest * at_rest) / (2.0 * k);
   if (pushed <= 0.0) return r;
-  r.n = pushed;
-  r.dn_dn = -k;
+  r.piece = Piece::closed;
+  r.n = pushed, r.n_0 = in.n_rest, r.dn_dn = -k;
   const double mu = law.kind == InterfaceLaw::Kind::weak ? law.residual_friction : law.coefficient;
   if (mu == 0.0) return r;
   const double held = in.r_t_start - k * (in.w_t - in.w_t_start);
-  r.t = std::clamp(held, -mu * r.n, mu * r.n);
-  if (r.t == held) {
-    r.dt_dt = -k;
+  if (std::abs(held) <= mu * r.n) {
+    r.piece = Piece::stick;
+    r.t = held, r.t_0 = in.r_t_start + k * in.w_t_start, r.dt_dt = -k;
+    r.energy += (held * held - in.r_t_start * in.r_t_start) / (2.0 * k);
   } else {
-    r.dt_dn = std::copysign(mu, held) * r.dn_dn;
+    const double sign = std::copysign(1.0, held);
+    r.piece = sign > 0.0 ? Piece::slip_plus : Piece::slip_minus;
+    r.t = sign * mu * r.n, r.t_0 = sign * mu * in.n_rest, r.dt_dn = sign * mu * r.dn_dn;
+    r.energy += (r.t * r.t - in.r_t_start * in.r_t_start) / (2.0 * k);
   }
   return r;
 }

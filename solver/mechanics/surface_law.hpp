@@ -17,11 +17,15 @@ struct LawInput {
   double n_rest = 0.0;     // normal reaction of closed contact at zero jump (Pa): in-situ less fluid
 };
 
-// The reaction on the + face (Pa, its normal component positive in compression) and how it changes with the jump
-// (Pa/m).
+// The reaction on the + face (Pa, its normal component positive in compression). Laws are linear in pieces: on this one
+// n = n_0 + dn_dn w_n and t = t_0 + dt_dn w_n + dt_dt w_t.
 struct LawAnswer {
+  enum class Piece : char { open, closed, stick, slip_plus, slip_minus };
+  Piece piece = Piece::open;
   double n = 0.0, t = 0.0;
-  double dn_dn = 0.0, dt_dt = 0.0, dt_dn = 0.0;
+  double n_0 = 0.0, t_0 = 0.0;
+  double dn_dn = 0.0, dt_dt = 0.0, dt_dn = 0.0;  // Pa/m
+  double energy = 0.0;  // stored on the way from no jump, that of friction's own dissipation aside (J/m^2)
 };
 
 /// Stiffness of closed contact (Pa/m), the same on all places of a surface: 1e4 of what a cell of the scene's stiffest

@@ -49,8 +49,8 @@ void fields(Archive& ar, Is<Particles> auto& particles) {
 
 template <class Archive>
 void fields(Archive& ar, Is<SurfacePoint> auto& point) {
-  auto& [x, n, A, arc, w, reaction, in_situ, P, slip, column, sides, split] = point;
-  ar(x, n, A, arc, w, reaction, in_situ, P, slip, column, sides, split);
+  auto& [x, n, A, arc, w, reaction, in_situ, bonded, P, slip, column, sides, split] = point;
+  ar(x, n, A, arc, w, reaction, in_situ, bonded, P, slip, column, sides, split);
 }
 
 template <class Archive>
@@ -74,15 +74,15 @@ void fields(Archive& ar, Is<TipTie> auto& tie) {
 template <class Archive>
 void fields(Archive& ar, Is<Tip> auto& tip) {
   auto& [at_back, growing, stopped_by, K_I, K_II, J, J_spread, ring_m, kink, turn, at_interface, last_growth_s,
-         last_growth_Pa, J_at_growth, J_spread_at_growth, has_grown, arrested, reached] = tip;
+         last_growth_Pa, J_at_growth, J_spread_at_growth, G, G_by_J, criterion, has_grown, arrested, reached] = tip;
   ar(at_back, growing, stopped_by, K_I, K_II, J, J_spread, ring_m, kink, turn, at_interface, last_growth_s,
-     last_growth_Pa, J_at_growth, J_spread_at_growth, has_grown, arrested, reached);
+     last_growth_Pa, J_at_growth, J_spread_at_growth, G, G_by_J, criterion, has_grown, arrested, reached);
 }
 
 template <class Archive>
 void fields(Archive& ar, Is<Event> auto& event) {
-  auto& [kind, time_s, inlet_Pa, tip_x_m, tip_y_m, at_interface] = event;
-  ar(kind, time_s, inlet_Pa, tip_x_m, tip_y_m, at_interface);
+  auto& [kind, time_s, inlet_Pa, tip_x_m, tip_y_m, at_interface, by] = event;
+  ar(kind, time_s, inlet_Pa, tip_x_m, tip_y_m, at_interface, by);
 }
 
 template <class Archive>

@@ -44,6 +44,7 @@ Json tips_json(const State& state) {
                     {"K_II_Pa_sqrt_m", tip.K_II},
                     {"J_N_m", tip.J},
                     {"J_spread", tip.J_spread},
+                    {"G_N_m", tip.G},
                     {"kink_deg", tip.kink * (180.0 / std::numbers::pi)},
                     {"at_interface", tip.at_interface},
                     {"growing", tip.growing},
@@ -61,7 +62,8 @@ Json events_json(const std::vector<Event>& events) {
                     {"inlet_Pa", event.inlet_Pa},
                     {"tip_x_m", event.tip_x_m},
                     {"tip_y_m", event.tip_y_m},
-                    {"at_interface", event.at_interface}});
+                    {"at_interface", event.at_interface},
+                    {"by", event.by}});
   }
   return list;
 }

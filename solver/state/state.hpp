@@ -43,6 +43,9 @@ struct Tip {
   double last_growth_Pa = 0.0;   // inlet pressure then
   double J_at_growth = 0.0;
   double J_spread_at_growth = 0.0;
+  double G = 0.0;               // energy released over the last increment that was tried, by its length (N/m)
+  double G_by_J = 0.0;          // the same from J at its two ends (N/m); 0 where it was not tried
+  std::string criterion = "J";  // what decides its growth where it stands: "J" or "energy"
   bool has_grown = false;
   bool arrested = false;
   std::vector<int> reached;  // interfaces (index into Scene::strata) already reported as reached
@@ -54,6 +57,7 @@ struct Event {
   double inlet_Pa = 0.0;
   double tip_x_m = 0.0, tip_y_m = 0.0;
   bool at_interface = false;  // decided by a J too near to an interface to be trusted
+  std::string by;             // what decided it: "J" or "energy"
 };
 
 // Energy per metre of thickness (J/m) since the start. Work done on the rock is positive, and so is dissipation.

@@ -17,6 +17,7 @@ struct SurfacePoint {
   Vec2 w = Vec2::Zero();         // jump u(+) - u(-) since the in-situ state (m)
   Vec2 reaction = Vec2::Zero();  // what the law exerts on the + face (Pa)
   Vec2 in_situ = Vec2::Zero();   // what the - side exerted on the + face in the in-situ state, -sigma_0 n (Pa)
+  Vec2 bonded = Vec2::Zero();    // jump that its neighbours' splitting had opened here when it split: no part of w (m)
   double P = 0.0;                // fluid pressure (Pa)
   double slip = 0.0;             // sliding distance, summed (m)
   int column = 0;                // the grid column (or row) an interface's point belongs to

@@ -1,0 +1,352 @@
+#include "advance_quasistatic.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "flow/paper_flow.hpp"
+#include "fracture/growth.hpp"
+#include "fracture/j_integral.hpp"
+#include "mechanics/failure.hpp"
+
+namespace strata {
+
+namespace {
+
+constexpr double event_tolerance = 1e-4;  // of an event's margin: 0.01 % in K
+constexpr double largest_change = 0.15;   // of the margin in a step of the flow, whose permeability lags behind
+constexpr double first_flow_step = 1e-3;  // s, after each event; steps then grow as the margin's change allows
+
+// What a trial step changes and a rejected one takes back. Particles only hold what follows from it.
+struct LoadPoint {
+  double time = 0.0;
+  FluidLine fluid;
+  std::vector<Surface> surfaces;
+  std::vector<Tip> tips;
+};
+
+LoadPoint load_point(const State& state) {
+  return {state.time, state.fluid, state.surfaces, state.tips};
+}
+
+void return_to(const LoadPoint& from, State& state) {
+  state.time = from.time;
+  state.fluid = from.fluid;
+  state.surfaces = from.surfaces;
+  state.tips = from.tips;
+}
+
+bool by_energy(const Scene& scene, const State& state, const Tip& tip) {
+  if (scene.fracture->growth == Fracture::Growth::energy) return true;
+  return scene.fracture->crossing == Fracture::Crossing::energy &&
+         interface_within(scene, state, tip, scene.fracture->crossing_increment() + 0.01 * state.grid.h);
+}
+
+double increment_of(const Scene& scene, const Tip& tip) {
+  return tip.criterion == "energy" ? scene.fracture->crossing_increment() : scene.fracture->increment_m;
+}
+
+bool may_grow(const Scene& scene, const State& state, const Tip& tip) {
+  return scene.fracture->growth != Fracture::Growth::none && tip.growing && !stopped_by_edge(scene, state, tip);
+}
+
+// Pressure of the fracture's points from that of its vertices.
+void pass_to_points(State& state) {
+  auto& points = state.fracture().points;
+  for (std::size_t k = 0; k < points.size(); ++k) points[k].P = 0.5 * (state.fluid.P[k] + state.fluid.P[k + 1]);
+}
+
+// The fluid over dt (s): under the study's law in steps that its own diffusion resolves, with the opening at the start.
+void advance_fluid(const Scene& scene, double dt, State& state) {
+  if (!state.has_fracture) return;
+  int steps = 1;
+  if (scene.fluid.law == Fluid::Law::paper && dt > 0.0) {
+    double shortest = dt;
+    for (const SurfacePoint& s : state.fracture().points) {
+      const double w = std::max(s.opening(), scene.fluid.minimum_opening_m);
+      const double kappa = scene.fluid.bulk_modulus_Pa * w * w / (12.0 * scene.fluid.viscosity_Pa_s);
+      if (kappa > 0.0) shortest = std::min(shortest, 2.0 * s.A * s.A / kappa);
+    }
+    steps = static_cast<int>(std::clamp(std::ceil(dt / shortest), 1.0, 1000.0));
+  }
+  if (dt > 0.0) {
+    state.dt = dt / steps;
+    const double start = state.time;
+    for (int k = 0; k < steps; ++k) {
+      state.time = start + k * state.dt;
+      advance_pressure(scene, state);
+    }
+    state.time = start + dt;
+    state.dt = dt;
+  } else if (scene.fluid.law == Fluid::Law::uniform) {
+    std::fill(state.fluid.P.begin(), state.fluid.P.end(), state.fluid.inlet_Pa);
+  }
+  pass_to_points(state);
+}
+
+// The trial's load: the state's own and, on the new segment, the pressure of the tip (it is wetted).
+void load_trial(const State& state, GrowthTrial& trial) {
+  const Tip& tip = state.tips[trial.tip];
+  Surface& longer = trial.state.fracture();
+  const auto& points = state.fracture().points;
+  const std::size_t added = longer.points.size() - points.size(), first = tip.at_back ? 0 : added;
+  const double tip_P = tip.at_back ? state.fluid.P.back() : state.fluid.P.front();
+  for (SurfacePoint& s : longer.points) s.P = tip_P;
+  for (std::size_t q = 0; q < points.size(); ++q) longer.points[first + q].P = points[q].P;
+}
+
+// Friction's memory of the trial: that of the state it starts from.
+void share_memory(const State& state, const std::vector<ContactPlace>& places, GrowthTrial& trial) {
+  const std::size_t added = trial.state.fracture().points.size() - state.fracture().points.size();
+  const std::size_t shift = state.tips[trial.tip].at_back ? 0 : added;
+  for (ContactPlace& place : trial.model.places) {
+    if (place.tie >= 0) continue;
+    const auto same = std::find_if(places.begin(), places.end(), [&](const ContactPlace& other) {
+      return other.tie < 0 && other.surface == place.surface &&
+             other.point + (other.surface == 0 ? shift : 0) == place.point;
+    });
+    if (same == places.end()) continue;
+    place.w_t_start = same->w_t_start, place.r_t_start = same->r_t_start;
+  }
+}
+
+// Energy released per length (N/m) if a tip grew at the present load.
+double energy_released(const State& state, const Quasistatic& run, GrowthTrial& trial) {
+  load_trial(state, trial);
+  share_memory(state, run.model.places, trial);
+  const Equilibrium longer = find_equilibrium(trial.state, trial.model);
+  const double before = run.equilibrium.energy + dissipated_by_friction(run.model, run.equilibrium);
+  return (before - longer.energy - dissipated_by_friction(trial.model, longer)) / trial.increment;
+}
+
+// How near a tip is to growth: sqrt(J/J_c), or the same of the energy released. A rock without toughness lets it grow
+// as soon as it is open.
+double tip_margin(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, Quasistatic& run,
+                  std::size_t k, Tip& tip) {
+  const double J_c = rocks[rock_ahead(scene, state, tip)].J_c;
+  if (tip.criterion == "energy") {
+    const auto trial =
+        std::find_if(run.trials.begin(), run.trials.end(), [k](const GrowthTrial& t) { return t.tip == k; });
+    tip.G = energy_released(state, run, *trial);
+    return J_c > 0.0 ? std::sqrt(std::max(0.0, tip.G) / J_c) : (tip.G > 0.0 ? 2.0 : 0.0);
+  }
+  if (tip.K_I <= 0.0 || tip.J <= 0.0) return 0.0;
+  constexpr double small_K = 1e4;  // Pa sqrt(m), where J_c is 0: what a millimetre of water opens a metre with
+  return J_c > 0.0 ? std::sqrt(tip.J / J_c) : 1.0 + tip.K_I / small_K;
+}
+
+double margin_of(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+  double margin = 0.0;
+  for (std::size_t k = 0; k < state.tips.size(); ++k) {
+    if (may_grow(scene, state, state.tips[k]))
+      margin = std::max(margin, tip_margin(scene, rocks, state, run, k, state.tips[k]));
+  }
+  for (const BondedPlace& place : bonded_places(scene, rocks, state)) margin = std::max(margin, place.index);
+  return margin;
+}
+
+// Equilibrium at the state's pressures, its fields, and how near the next event is.
+void equilibrate(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+  run.equilibrium = find_equilibrium(state, run.model);
+  set_fields(scene, state, run.model, run.equilibrium);
+  if (state.dt <= 0.0) state.dt = 1.0;  // J's inertia divides by it; there is none
+  measure_tips(scene, rocks, state);
+  run.margin = margin_of(scene, rocks, state, run);
+}
+
+// Energy bookkeeping of an accepted change of load or geometry.
+enum class Change { load, growth, failure };
+
+double work_of_loads(const State& state, const LoadPoint& before, double& in_situ) {
+  double fluid = 0.0;
+  in_situ = 0.0;
+  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
+    const auto &now = state.surfaces[k].points, &then = before.surfaces[k].points;
+    // The fracture may have become longer at its front.
+    const std::size_t added = now.size() - then.size();
+    const bool at_front = added > 0 && (now.front().x - then.front().x).norm() > 0.0;
+    for (std::size_t q = 0; q < now.size(); ++q) {
+      const SurfacePoint& s = now[q];
+      if (!s.split) continue;
+      const std::size_t shift = at_front ? added : 0;
+      const bool is_new = q < shift || q - shift >= then.size();
+      const Vec2 dw = is_new || !then[q - shift].split ? s.w : Vec2{s.w - then[q - shift].w};
+      const double P = is_new ? s.P : 0.5 * (s.P + then[q - shift].P);
+      fluid += s.A * P * s.n.dot(dw);
+      in_situ -= s.A * s.in_situ.dot(dw);
+    }
+  }
+  return fluid;
+}
+
+void close_ledger(const Quasistatic& run, const LoadPoint& before, Change change, State& state) {
+  Ledger& ledger = state.ledger;
+  double in_situ = 0.0;
+  const double fluid = work_of_loads(state, before, in_situ), stored = ledger.strain + ledger.interface_strain;
+  ledger.fluid_work += fluid;
+  ledger.in_situ_work += in_situ;
+  ledger.strain = run.equilibrium.strain;
+  ledger.interface_strain = stored_in_surfaces(run.model, run.equilibrium);
+  const double released = fluid + in_situ - (ledger.strain + ledger.interface_strain - stored);
+  const double friction = dissipated_by_friction(run.model, run.equilibrium);
+  ledger.friction += change == Change::failure ? released : friction;
+  if (change == Change::growth) ledger.fracture += released - friction;
+  ledger.largest = std::max({ledger.largest, std::abs(ledger.fluid_work), std::abs(ledger.in_situ_work)});
+}
+
+void accept(const Scene& scene, const LoadPoint& before, Change change, State& state, Quasistatic& run) {
+  close_ledger(run, before, change, state);
+  remember(state, run.model, run.equilibrium);
+  state.monitors.contact_sweeps += run.equilibrium.iterations;
+  watch_tips(scene, state);
+  ++state.step;
+}
+
+// Which criterion decides about each tip where it now stands, and the trials that need it.
+void make_trials(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+  run.trials.clear();
+  for (std::size_t k = 0; k < state.tips.size(); ++k) {
+    Tip& tip = state.tips[k];
+    if (!may_grow(scene, state, tip)) continue;
+    tip.criterion = by_energy(scene, state, tip) ? "energy" : "J";
+    if (tip.criterion != "energy") continue;
+    GrowthTrial& trial = run.trials.emplace_back();
+    trial.tip = k;
+    trial.state = state;
+    trial.increment = extend_tip(scene, trial.state, trial.state.tips[k], increment_of(scene, tip));
+    trial.model.body = run.model.body;
+    trial.model.condensed = run.model.condensed;
+    update_model(scene, rocks, trial.state, trial.model);
+  }
+}
+
+void rebuild_all(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+  update_model(scene, rocks, state, run.model);
+  make_trials(scene, rocks, state, run);
+}
+
+// Splits the columns of the worst bonded places (and of their mirror images, which are as bad but for round-off).
+// Places under friction give nothing up by splitting, so all that slide split at once.
+void fail_worst(const Scene& scene, const std::vector<BondedPlace>& places, double worst, const Quasistatic& run,
+                State& state) {
+  constexpr double as_bad = 1e-6;
+  for (const BondedPlace& bad : places) {
+    Surface& surface = state.surfaces[bad.surface];
+    const bool friction = scene.laws[surface.law].kind == InterfaceLaw::Kind::friction;
+    if (bad.index < (friction ? 1.0 : (1.0 - as_bad) * worst)) continue;
+    const int column = surface.points[bad.point].column;
+    for (const BondedPlace& other : places) {
+      if (other.surface != bad.surface || surface.points[other.point].column != column) continue;
+      SurfacePoint& s = surface.points[other.point];
+      s.split = true;
+      s.bonded = jump_at(run.model.condensed, state.point_stencils[bad.surface][other.point], run.equilibrium.j);
+      s.w = Vec2::Zero();
+      s.reaction = other.carried;  // friction starts from the shear it carried
+    }
+  }
+}
+
+// What is due at the present load.
+void let_happen(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+  const LoadPoint before = load_point(state);
+  const std::vector<BondedPlace> places = bonded_places(scene, rocks, state);
+  double worst = 0.0;
+  for (const BondedPlace& place : places) worst = std::max(worst, place.index);
+  const bool fails = worst >= 1.0;
+  if (fails) {
+    fail_worst(scene, places, worst, run, state);
+  } else {
+    for (std::size_t k = 0; k < state.tips.size(); ++k) {
+      Tip& tip = state.tips[k];
+      if (!may_grow(scene, state, tip) || tip_margin(scene, rocks, state, run, k, tip) < 1.0) continue;
+      const double increment = increment_of(scene, tip);
+      note_growth(state, tip, tip.criterion.c_str(), tip.criterion == "energy" || !tip.at_interface);
+      extend_tip(scene, state, tip, increment);
+    }
+    advance_fluid(scene, 0.0, state);
+  }
+  rebuild_all(scene, rocks, state, run);
+  equilibrate(scene, rocks, state, run);
+  accept(scene, before, fails ? Change::failure : Change::growth, state, run);
+  state.dt = first_flow_step;
+}
+
+void stop_at_edges(const Scene& scene, State& state) {
+  for (Tip& tip : state.tips) {
+    if (!tip.growing || !stopped_by_edge(scene, state, tip)) continue;
+    tip.growing = false;
+    tip.stopped_by = "within 3 cells of an edge of the block";
+  }
+}
+
+// From `from` to the load a time dt later; returns the margin there.
+double try_step(const Scene& scene, const std::vector<Elasticity>& rocks, const LoadPoint& from, double dt,
+                State& state, Quasistatic& run) {
+  return_to(from, state);
+  advance_fluid(scene, dt, state);
+  equilibrate(scene, rocks, state, run);
+  return run.margin;
+}
+
+// The step at whose end the margin is 1 or hardly more, no longer than `high`, at which it is larger: regula falsi,
+// which weighs the end that stays half as much each time (Illinois), and bisection where the margin has no size.
+void locate_event(const Scene& scene, const std::vector<Elasticity>& rocks, const LoadPoint& from, double margin_low,
+                  double high, State& state, Quasistatic& run) {
+  const double aim = 1.0 + 0.5 * event_tolerance;
+  double low = 0.0, f_low = margin_low - aim, f_high = run.margin - aim;
+  int side = 0;
+  for (int iteration = 0; iteration < 100 && high - low > 1e-12 * high; ++iteration) {
+    const double share = std::isfinite(f_high) && iteration < 50 ? -f_low / (f_high - f_low) : 0.5;
+    const double middle = low + (high - low) * std::clamp(share, 1e-3, 1.0 - 1e-3);
+    const double margin = try_step(scene, rocks, from, middle, state, run);
+    if (margin >= 1.0 && margin <= 1.0 + event_tolerance) return;
+    const bool beyond = margin > aim;
+    (beyond ? high : low) = middle;
+    (beyond ? f_high : f_low) = margin - aim;
+    if (side == (beyond ? 1 : -1)) (beyond ? f_low : f_high) *= 0.5;
+    side = beyond ? 1 : -1;
+  }
+  try_step(scene, rocks, from, high, state, run);
+}
+
+}  // namespace
+
+void start_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+  rebuild_all(scene, rocks, state, run);
+  equilibrate(scene, rocks, state, run);
+  if (state.step > 0) return;
+  remember(state, run.model, run.equilibrium);
+  state.dt = first_flow_step;
+  state.ledger = Ledger{};
+  const LoadPoint unloaded = [&] {
+    LoadPoint point = load_point(state);
+    for (Surface& surface : point.surfaces) {
+      for (SurfacePoint& s : surface.points) s.w = Vec2::Zero(), s.P = s.closing_stress();
+    }
+    return point;
+  }();
+  close_ledger(run, unloaded, Change::load, state);
+}
+
+void advance_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, double until, State& state,
+                         Quasistatic& run) {
+  if (run.margin >= 1.0) {
+    let_happen(scene, rocks, state, run);
+    stop_at_edges(scene, state);
+    return;
+  }
+  const LoadPoint from = load_point(state);
+  const double margin = run.margin, left = until - from.time;
+  const bool flows = scene.fluid.law != Fluid::Law::uniform && state.has_fracture;
+  double dt = flows ? std::min(state.dt, left) : left;
+  double change = try_step(scene, rocks, from, dt, state, run) - margin;
+  while (flows && std::abs(change) > 2.0 * largest_change && run.margin < 1.0 && dt > 1e-9) {
+    dt *= 0.5;
+    change = try_step(scene, rocks, from, dt, state, run) - margin;
+  }
+  if (run.margin > 1.0 + event_tolerance) locate_event(scene, rocks, from, margin, dt, state, run);
+  accept(scene, from, Change::load, state, run);
+  const double growth = std::abs(change) > 0.0 ? largest_change / std::abs(change) : 2.0;
+  state.dt = dt * std::clamp(growth, 0.3, 2.0);
+}
+
+}  // namespace strata

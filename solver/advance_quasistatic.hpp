@@ -1,0 +1,40 @@
+// Steps of a run without inertia: from event to event.
+#pragma once
+
+#include <optional>
+
+#include "mechanics/quasistatic.hpp"
+#include "state/elasticity.hpp"
+#include "state/state.hpp"
+
+namespace strata {
+
+// The fracture one increment longer at a tip: what would be released if it grew, at any load.
+struct GrowthTrial {
+  std::size_t tip = 0;
+  double increment = 0.0;  // m
+  State state;
+  QuasistaticModel model;
+};
+
+// What a quasi-static run holds beside its state. All of it follows from the state, so a run can be resumed from that.
+struct Quasistatic {
+  QuasistaticModel model;
+  Equilibrium equilibrium;
+  std::vector<GrowthTrial> trials;  // of the tips that energy decides about
+  double margin = 0.0;              // the nearest event: it happens at 1
+};
+
+/// Equilibrium of a state that was initialised or read back; builds what `run` holds. Throws NumericalFailure where
+/// there is none.
+void start_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run);
+
+/// One step. Where something is due at the present load (the worst bonded column fails, a tip grows) it happens, and
+/// the load stays. Else time goes on, at most to `until` (s), and no further than to the load at which the next thing
+/// happens: growth where J or the energy released over a finite increment reaches J_c of the rock ahead, failure where
+/// an interface's strength is reached. Throws NumericalFailure where there is no equilibrium: parts of the block move
+/// freely.
+void advance_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, double until, State& state,
+                         Quasistatic& run);
+
+}  // namespace strata

@@ -1,0 +1,288 @@
+#include "mechanics/condensed.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <tuple>
+
+#include "mechanics/stiffness.hpp"
+
+namespace strata {
+
+namespace {
+
+// Mixes the bits of a particle's id and area (splitmix64), so that a sum over a set tells sets apart.
+std::uint64_t fingerprint(const Particles& p, std::size_t q) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &p.V[q], sizeof bits);
+  bits += 0x9e3779b97f4a7c15U * (static_cast<std::uint64_t>(p.id[q]) + 1);
+  bits = (bits ^ (bits >> 30U)) * 0xbf58476d1ce4e5b9U;
+  bits = (bits ^ (bits >> 27U)) * 0x94d049bb133111ebU;
+  return bits ^ (bits >> 31U);
+}
+
+bool is_cut(const State& state, int record) {
+  const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
+  return state.copies.cut_of_node[static_cast<std::size_t>(node)] >= 0;
+}
+
+std::vector<std::uint64_t> fingerprints(const State& state) {
+  std::vector<std::uint64_t> prints(static_cast<std::size_t>(state.copies.records()), 0);
+  for (const Bin& bin : state.bins) {
+    if (std::none_of(bin.record.begin(), bin.record.end(), [&](int r) { return is_cut(state, r); })) continue;
+    std::uint64_t sum = 0;
+    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q)
+      sum += fingerprint(state.particles, q);
+    for (const int record : bin.record) prints[static_cast<std::size_t>(record)] += sum;
+  }
+  return prints;
+}
+
+// The jump unknowns: at each split node and for each component, all independent copies but one, which carries u; where
+// an edge or the mirror holds u, all of them.
+void number_jumps(const State& state, const IntactBody& body, Condensed& out) {
+  const std::vector<std::uint64_t> prints = fingerprints(state);
+  out.jump_of_record.assign(static_cast<std::size_t>(state.copies.records()), {-1, -1});
+  for (const CutNode& cut : state.copies.cut) {
+    if (cut.records.size() < 2) continue;
+    const int node = state.copies.node_of_record[static_cast<std::size_t>(cut.records.front())];
+    const Master& intact = body.masters()[static_cast<std::size_t>(node)];
+    for (int component = 0; component < 2; ++component) {
+      bool carries_u = intact.record == node && (component == 0 ? intact.x : intact.y) != 0.0;
+      for (const int record : cut.records) {
+        const auto r = static_cast<std::size_t>(record);
+        const Master& master = out.masters[r];
+        if (master.record != record || (component == 0 ? master.x : master.y) == 0.0) continue;
+        if (state.sums[r].m == 0.0) continue;
+        if (carries_u) {
+          carries_u = false;
+          continue;
+        }
+        out.jump_of_record[r][static_cast<std::size_t>(component)] = static_cast<int>(out.columns.size());
+        auto column = std::make_shared<JumpColumn>();
+        column->node = node, column->component = component, column->particles = prints[r];
+        out.columns.push_back(std::move(column));
+      }
+    }
+  }
+}
+
+// Takes columns and entries over from `before`; returns which unknowns are new.
+std::vector<char> take_over(const Condensed* before, Condensed& out) {
+  const Eigen::Index n = static_cast<Eigen::Index>(out.columns.size());
+  out.K_jj = Eigen::MatrixXd::Zero(n, n);
+  out.S = Eigen::MatrixXd::Zero(n, n);
+  std::vector<char> is_new(out.columns.size(), 1);
+  if (before == nullptr) return is_new;
+  const auto key = [](const JumpColumn& c) { return std::make_tuple(c.node, c.component, c.particles); };
+  std::map<std::tuple<int, int, std::uint64_t>, Eigen::Index> known;
+  for (Eigen::Index k = 0; k < before->size(); ++k)
+    known.emplace(key(*before->columns[static_cast<std::size_t>(k)]), k);
+  std::vector<Eigen::Index> from(out.columns.size(), -1);
+  for (std::size_t k = 0; k < from.size(); ++k) {
+    const auto found = known.find(key(*out.columns[k]));
+    if (found == known.end()) continue;
+    from[k] = found->second;
+    out.columns[k] = before->columns[static_cast<std::size_t>(found->second)];
+    is_new[k] = 0;
+  }
+  for (Eigen::Index b = 0; b < n; ++b) {
+    const Eigen::Index c = from[static_cast<std::size_t>(b)];
+    if (c < 0) continue;
+    for (Eigen::Index a = 0; a < n; ++a) {
+      const Eigen::Index r = from[static_cast<std::size_t>(a)];
+      if (r >= 0) out.K_jj(a, b) = before->K_jj(r, c), out.S(a, b) = before->S(r, c);
+    }
+  }
+  return is_new;
+}
+
+using Entries = std::vector<std::pair<int, double>>;
+
+// Adds what one particle contributes to the new columns and their entries of K_jj.
+void add_particle(const LocalStiffness& K, const Bin& bin, const IntactBody& body, const Condensed& condensed,
+                  const State& state, const std::vector<char>& is_new, Eigen::MatrixXd& K_jj, std::vector<Entries>& G) {
+  std::array<Unknown, 18> base, jump;
+  for (int k = 0; k < 18; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const int record = bin.record[at / 2];
+    base[at] = unknown_of(body.masters(), state.copies.node_of_record[static_cast<std::size_t>(record)], k % 2);
+    jump[at] = jump_unknown(condensed, record, k % 2);
+  }
+  for (int b = 0; b < 18; ++b) {
+    const Unknown& column = jump[static_cast<std::size_t>(b)];
+    if (column.index < 0) continue;
+    const bool fresh = is_new[static_cast<std::size_t>(column.index)] != 0;
+    for (int a = 0; a < 18; ++a) {
+      const Unknown &row = base[static_cast<std::size_t>(a)], &other = jump[static_cast<std::size_t>(a)];
+      if (fresh && row.index >= 0 && K(a, b) != 0.0)
+        G[static_cast<std::size_t>(column.index)].emplace_back(row.index, row.factor * column.factor * K(a, b));
+      if (other.index >= 0 && (fresh || is_new[static_cast<std::size_t>(other.index)] != 0))
+        K_jj(other.index, column.index) += other.factor * column.factor * K(a, b);
+    }
+  }
+}
+
+// Assembles G and K_jj of the new unknowns. Particles come cell by cell in the order of their ids, so that sums do not
+// depend on how copies group them into bins.
+std::vector<Entries> assemble_jumps(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
+                                    const IntactBody& body, const std::vector<char>& is_new, Condensed& out) {
+  std::vector<Entries> G(out.columns.size());
+  const Particles& p = state.particles;
+  const auto touches_new = [&](const Bin& bin) {
+    for (const int record : bin.record) {
+      for (int component = 0; component < 2; ++component) {
+        const int index = jump_unknown(out, record, component).index;
+        if (index >= 0 && is_new[static_cast<std::size_t>(index)] != 0) return true;
+      }
+    }
+    return false;
+  };
+  struct Member {
+    std::int32_t id;
+    std::size_t q;
+    const Bin* bin;
+  };
+  std::vector<Member> members;
+  for (std::size_t b = 0; b < state.bins.size();) {
+    members.clear();
+    bool any = false;
+    const Bin& first = state.bins[b];
+    for (; b < state.bins.size() && state.bins[b].i == first.i && state.bins[b].j == first.j; ++b) {
+      const Bin& bin = state.bins[b];
+      any = any || touches_new(bin);
+      for (int q = bin.first; q < bin.last; ++q)
+        members.push_back({p.id[static_cast<std::size_t>(q)], static_cast<std::size_t>(q), &bin});
+    }
+    if (!any) continue;
+    std::sort(members.begin(), members.end(), [](const Member& a, const Member& c) { return a.id < c.id; });
+    for (const Member& m : members) {
+      if (body.halved() && p.x[m.q] > 0.5 * scene.domain.width_m) continue;
+      LocalStiffness K = LocalStiffness::Zero();
+      const Gradients g = gradients_at(scene, state.grid, m.bin->i, m.bin->j, {p.x[m.q], p.y[m.q]}, p.half[m.q]);
+      add_stiffness(rocks[p.rock[m.q]], g, body.halved() ? 2.0 * p.V[m.q] : p.V[m.q], K);
+      add_particle(K, *m.bin, body, out, state, is_new, out.K_jj, G);
+    }
+  }
+  return G;
+}
+
+SparseVector summed(Entries entries) {
+  std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  SparseVector out;
+  for (const auto& [index, value] : entries) {
+    if (out.index.empty() || out.index.back() != index) {
+      out.index.push_back(index);
+      out.value.push_back(0.0);
+    }
+    out.value.back() += value;
+  }
+  return out;
+}
+
+// S = K_jj - Y^T Y for the new unknowns: each product runs over the rows of the other column in their order.
+void condense_new(const std::vector<char>& is_new, int unknowns, Condensed& out) {
+  std::vector<double> dense(static_cast<std::size_t>(unknowns), 0.0);
+  for (std::size_t a = 0; a < is_new.size(); ++a) {
+    if (is_new[a] == 0) continue;
+    const SparseVector& Y = out.columns[a]->Y;
+    for (std::size_t k = 0; k < Y.index.size(); ++k) dense[static_cast<std::size_t>(Y.index[k])] = Y.value[k];
+    for (std::size_t b = 0; b < is_new.size(); ++b) {
+      if (is_new[b] != 0 && b < a) continue;
+      const SparseVector& other = out.columns[b]->Y;
+      double product = 0.0;
+      for (std::size_t k = 0; k < other.index.size(); ++k)
+        product += other.value[k] * dense[static_cast<std::size_t>(other.index[k])];
+      const auto i = static_cast<Eigen::Index>(a), j = static_cast<Eigen::Index>(b);
+      out.S(i, j) = out.S(j, i) = out.K_jj(i, j) - product;
+    }
+    for (const int k : Y.index) dense[static_cast<std::size_t>(k)] = 0.0;
+  }
+}
+
+// Takes out the mean displacement and rotation that no edge holds.
+void remove_rigid_motion(const Scene& scene, const State& state, bool halved, std::vector<Vec2>& u) {
+  const bool x_held = halved || scene.domain.sides == Edge::fixed;
+  const bool y_held = scene.domain.bottom == Edge::symmetry || scene.domain.top == Edge::fixed;
+  if (x_held && y_held) return;
+  // Mean over the block's area: with 0.5 (u_y,x - u_x,y) as rotation, from the particles' own fields.
+  const Particles& p = state.particles;
+  const Vec2 centre{0.5 * scene.domain.width_m, 0.5 * scene.domain.height_m};
+  Vec2 mean = Vec2::Zero();
+  double turn = 0.0, polar = 0.0, area = 0.0;
+  for (const Bin& bin : state.bins) {
+    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
+      const Vec2 x{p.x[q], p.y[q]};
+      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, x, p.half[q]);
+      Vec2 u_p = Vec2::Zero();
+      for (std::size_t n = 0; n < 9; ++n) u_p += g.N[n] * u[static_cast<std::size_t>(bin.record[n])];
+      mean += p.V[q] * u_p;
+      turn += p.V[q] * cross(x - centre, u_p);
+      polar += p.V[q] * (x - centre).squaredNorm();
+      area += p.V[q];
+    }
+  }
+  mean /= area;
+  turn = !x_held && !y_held ? turn / polar : 0.0;
+  if (x_held) mean.x() = 0.0;
+  if (y_held) mean.y() = 0.0;
+  const Grid& grid = state.grid;
+  for (std::size_t r = 0; r < u.size(); ++r) {
+    const int node = state.copies.node_of_record[r];
+    const Vec2 arm = Vec2{grid.column(node) * grid.h, grid.row(node) * grid.h} - centre;
+    u[r] -= mean + turn * Vec2{-arm.y(), arm.x()};
+  }
+}
+
+}  // namespace
+
+Unknown jump_unknown(const Condensed& condensed, int record, int component) {
+  const Master& master = condensed.masters[static_cast<std::size_t>(record)];
+  const double factor = component == 0 ? master.x : master.y;
+  const int index =
+      condensed.jump_of_record[static_cast<std::size_t>(master.record)][static_cast<std::size_t>(component)];
+  return factor == 0.0 ? Unknown{} : Unknown{index, factor};
+}
+
+Condensed condense(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const IntactBody& body,
+                   const Condensed* before) {
+  Condensed out;
+  out.masters = body.halved() ? mirrored(state, state.masters) : state.masters;
+  number_jumps(state, body, out);
+  const std::vector<char> is_new = take_over(before, out);
+  std::vector<Entries> G = assemble_jumps(scene, rocks, state, body, is_new, out);
+  for (std::size_t k = 0; k < is_new.size(); ++k) {
+    if (is_new[k] == 0) continue;
+    auto column = std::make_shared<JumpColumn>(*out.columns[k]);
+    column->G = summed(std::move(G[k]));
+    column->Y = body.forward(column->G);
+    out.columns[k] = std::move(column);
+  }
+  condense_new(is_new, body.unknowns(), out);
+  return out;
+}
+
+std::vector<Vec2> displacements(const Scene& scene, const State& state, const IntactBody& body,
+                                const Condensed& condensed, const Eigen::VectorXd& j) {
+  Eigen::VectorXd load = Eigen::VectorXd::Zero(body.unknowns());
+  for (std::size_t k = 0; k < condensed.columns.size(); ++k) {
+    const SparseVector& G = condensed.columns[k]->G;
+    for (std::size_t e = 0; e < G.index.size(); ++e) load[G.index[e]] -= G.value[e] * j[static_cast<Eigen::Index>(k)];
+  }
+  const Eigen::VectorXd base = body.solve(load);
+  std::vector<Vec2> u(static_cast<std::size_t>(state.copies.records()), Vec2::Zero());
+  for (int record = 0; record < state.copies.records(); ++record) {
+    const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
+    for (int component = 0; component < 2; ++component) {
+      const Unknown from = unknown_of(body.masters(), node, component),
+                    jump = jump_unknown(condensed, record, component);
+      double& value = u[static_cast<std::size_t>(record)][component];
+      if (from.index >= 0) value += from.factor * base[from.index];
+      if (jump.index >= 0) value += jump.factor * j[jump.index];
+    }
+  }
+  remove_rigid_motion(scene, state, body.halved(), u);
+  return u;
+}
+
+}  // namespace strata

@@ -1,0 +1,280 @@
+#include "mechanics/contact_equilibrium.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace strata {
+
+namespace {
+
+using Row = std::vector<std::pair<int, double>>;
+
+void add_to_row(Row& row, const Unknown& unknown, double weight) {
+  if (unknown.index < 0) return;
+  for (auto& [index, value] : row) {
+    if (index != unknown.index) continue;
+    value += weight * unknown.factor;
+    return;
+  }
+  row.emplace_back(unknown.index, weight * unknown.factor);
+}
+
+std::array<Row, 2> jump_rows(const Condensed& condensed, const SurfaceStencil& stencil) {
+  std::array<Row, 2> rows;
+  for (std::size_t n = 0; n < 9; ++n) {
+    if (stencil.plus[n] == stencil.minus[n]) continue;
+    for (int component = 0; component < 2; ++component) {
+      Row& row = rows[static_cast<std::size_t>(component)];
+      add_to_row(row, jump_unknown(condensed, stencil.plus[n], component), stencil.N[n]);
+      add_to_row(row, jump_unknown(condensed, stencil.minus[n], component), -stencil.N[n]);
+    }
+  }
+  return rows;
+}
+
+double times(const Row& row, const Eigen::VectorXd& j) {
+  double sum = 0.0;
+  for (const auto& [index, value] : row) sum += value * j[index];
+  return sum;
+}
+
+Vec2 tangent_of(const Vec2& n) {
+  return {n.y(), -n.x()};
+}
+
+double pressure(const State& state, const ContactPlace& place) {
+  return place.tie >= 0 ? 0.0 : state.surfaces[place.surface].points[place.point].P;
+}
+
+LawAnswer answer_at(const State& state, const ContactPlace& place, const Vec2& w) {
+  const Vec2 t = tangent_of(place.n);
+  return law_at(place.law, place.k,
+                {w.dot(place.n), w.dot(t), place.w_t_start, place.r_t_start,
+                 place.in_situ.dot(place.n) - pressure(state, place)});
+}
+
+// dr/dw of a place's piece in x and y (Pa/m).
+Eigen::Matrix2d tangent_matrix(const ContactPlace& place, const LawAnswer& r) {
+  const Vec2 t = tangent_of(place.n);
+  return r.dn_dn * place.n * place.n.transpose() + r.dt_dn * t * place.n.transpose() + r.dt_dt * t * t.transpose();
+}
+
+void add_force(const ContactPlace& place, const Vec2& traction, Eigen::VectorXd& f) {
+  for (std::size_t c = 0; c < 2; ++c) {
+    for (const auto& [index, value] : place.D[c]) f[index] += place.A * value * traction[static_cast<Eigen::Index>(c)];
+  }
+}
+
+Vec2 net_load(const State& state, const ContactPlace& place) {
+  return pressure(state, place) * place.n - place.in_situ;
+}
+
+void evaluate(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
+              Equilibrium& at) {
+  at.answers.resize(places.size());
+  at.w.resize(places.size());
+  at.pieces.resize(places.size());
+  Eigen::VectorXd load = Eigen::VectorXd::Zero(condensed.size()), reaction = load;
+  at.energy = 0.0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const ContactPlace& place = places[k];
+    at.w[k] = Vec2{times(place.D[0], at.j), times(place.D[1], at.j)} - place.bonded;
+    const LawAnswer& r = at.answers[k] = answer_at(state, place, at.w[k]);
+    at.pieces[k] = r.piece;
+    at.energy += place.A * (r.energy - net_load(state, place).dot(at.w[k]));
+    add_force(place, net_load(state, place), load);
+    add_force(place, r.n * place.n + r.t * tangent_of(place.n), reaction);
+  }
+  const Eigen::VectorXd inner = condensed.S * at.j;
+  at.strain = 0.5 * at.j.dot(inner);
+  at.energy += at.strain;
+  const double scale = std::max(load.lpNorm<Eigen::Infinity>(), inner.lpNorm<Eigen::Infinity>());
+  at.residual = scale > 0.0 ? (inner - load - reaction).lpNorm<Eigen::Infinity>() / scale : 0.0;
+}
+
+Eigen::MatrixXd tangent(const Condensed& condensed, const std::vector<ContactPlace>& places,
+                        const std::vector<LawAnswer>& answers) {
+  Eigen::MatrixXd T = condensed.S;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const ContactPlace& place = places[k];
+    const Eigen::Matrix2d R = place.A * tangent_matrix(place, answers[k]);
+    for (Eigen::Index a = 0; a < 2; ++a) {
+      for (Eigen::Index b = 0; b < 2; ++b) {
+        if (R(a, b) == 0.0) continue;
+        for (const auto& [row, w_row] : place.D[static_cast<std::size_t>(a)]) {
+          for (const auto& [column, w_column] : place.D[static_cast<std::size_t>(b)])
+            T(row, column) -= R(a, b) * w_row * w_column;
+        }
+      }
+    }
+  }
+  return T;
+}
+
+// What stands still: the tangent scaled to a unit diagonal has a smallest pivot above this where nothing moves freely.
+// Round-off leaves some 1e-15 of a free motion; a soft interface of 1e3 Pa/m, the softest offered for, some 1e-8.
+constexpr double smallest_pivot = 1e-12;
+
+// Factors the tangent; false where it is singular.
+bool factorise(const Eigen::MatrixXd& T, bool symmetric, TangentFactor& factor) {
+  factor.symmetric = symmetric;
+  factor.scale = T.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = factor.scale.asDiagonal() * T * factor.scale.asDiagonal();
+  if (symmetric) {
+    factor.llt.compute(scaled);
+    if (factor.llt.info() != Eigen::Success) return false;
+    return factor.llt.matrixLLT().diagonal().cwiseAbs2().minCoeff() > smallest_pivot;
+  }
+  factor.lu.compute(scaled);
+  return factor.lu.matrixLU().diagonal().cwiseAbs().minCoeff() > smallest_pivot;
+}
+
+// The solution as if all places stayed on the pieces that `answers` describe.
+Eigen::VectorXd solve_on_pieces(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
+                                const std::vector<LawAnswer>& answers, const TangentFactor& factor) {
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(condensed.size());
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const ContactPlace& place = places[k];
+    const LawAnswer& r = answers[k];
+    add_force(place,
+              net_load(state, place) + r.n_0 * place.n + r.t_0 * tangent_of(place.n) -
+                  tangent_matrix(place, r) * place.bonded,
+              f);
+  }
+  return factor.solve(f);
+}
+
+bool slips(const std::vector<LawAnswer>& answers) {
+  return std::any_of(answers.begin(), answers.end(), [](const LawAnswer& r) { return r.dt_dn != 0.0; });
+}
+
+[[noreturn]] void report_mechanism(const State& state, const std::vector<ContactPlace>& places) {
+  int interfaces = 0;
+  for (const Surface& surface : state.surfaces) interfaces += surface.kind == Surface::Kind::interface ? 1 : 0;
+  throw NumericalFailure(
+      "the block has become a mechanism: parts that its surfaces cut off move freely, since nothing on " +
+      std::to_string(places.size()) + " split places (of a fracture and " + std::to_string(interfaces) +
+      " interfaces) and on the edges holds them. Use domain.sides = \"fixed\", friction, or a stiffer interface");
+}
+
+// Newton's step shortened to the minimum of the energy's slope along it: halving from the full step.
+double step_length(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
+                   const Equilibrium& from, const Eigen::VectorXd& to) {
+  double length = 1.0;
+  Equilibrium trial;
+  for (int halving = 0; halving < 20; ++halving, length *= 0.5) {
+    trial.j = from.j + length * (to - from.j);
+    evaluate(state, condensed, places, trial);
+    if (trial.energy < from.energy) break;
+  }
+  return length;
+}
+
+}  // namespace
+
+Eigen::VectorXd TangentFactor::solve(const Eigen::VectorXd& b) const {
+  const Eigen::VectorXd scaled = scale.cwiseProduct(b);
+  Eigen::VectorXd x;
+  if (symmetric)
+    x = llt.solve(scaled);
+  else
+    x = lu.solve(scaled);
+  return scale.cwiseProduct(x);
+}
+
+Vec2 jump_at(const Condensed& condensed, const SurfaceStencil& stencil, const Eigen::VectorXd& j) {
+  const std::array<Row, 2> rows = jump_rows(condensed, stencil);
+  return {times(rows[0], j), times(rows[1], j)};
+}
+
+std::vector<ContactPlace> contact_places(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
+                                         const Condensed& condensed) {
+  std::vector<ContactPlace> places;
+  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
+    const Surface& surface = state.surfaces[k];
+    const bool fracture = surface.kind == Surface::Kind::fracture;
+    const InterfaceLaw law = fracture ? face_law() : scene.laws[surface.law];
+    const double stiffness = contact_stiffness(law, rocks, state.grid);
+    for (std::size_t q = 0; q < surface.points.size(); ++q) {
+      const SurfacePoint& s = surface.points[q];
+      if (!s.split) continue;
+      const Vec2 t = tangent_of(s.n);
+      ContactPlace place{k, q, -1, law, stiffness, s.A, s.n, s.in_situ, s.bonded, s.w.dot(t), s.reaction.dot(t), {}};
+      place.D = jump_rows(condensed, state.point_stencils[k][q]);
+      places.push_back(std::move(place));
+    }
+  }
+  for (std::size_t k = 0; k < state.ties.size(); ++k) {
+    const TipTie& tie = state.ties[k];
+    InterfaceLaw spring;
+    spring.kind = InterfaceLaw::Kind::soft;
+    spring.compression = InterfaceLaw::Compression::spring;
+    spring.normal_stiffness_Pa_m = spring.shear_stiffness_Pa_m = tie.stiffness;
+    SurfaceStencil stencil;
+    stencil.plus[0] = tie.plus, stencil.minus[0] = tie.minus, stencil.N[0] = 1.0;
+    ContactPlace place{0, 0, static_cast<int>(k), spring, 0.0, 1.0, tie.s.n, Vec2::Zero(), Vec2::Zero(), 0.0, 0.0, {}};
+    place.D = jump_rows(condensed, stencil);
+    places.push_back(std::move(place));
+  }
+  return places;
+}
+
+Equilibrium solve_equilibrium(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
+                              const Eigen::VectorXd& start, TangentFactor& factor) {
+  constexpr int most_iterations = 80;
+  constexpr int plain_iterations = 15;  // Newton without line search ends within some 5 where it does
+  constexpr double balanced = 1e-9;     // places on the border of two pieces may change by round-off for ever
+  Equilibrium at;
+  at.j = start.size() == condensed.size() ? start : Eigen::VectorXd::Zero(condensed.size());
+  evaluate(state, condensed, places, at);
+  for (at.iterations = 1; at.iterations <= most_iterations; ++at.iterations) {
+    const Pieces pieces = at.pieces;
+    bool singular = false;
+    if (factor.pieces != pieces || factor.scale.size() != condensed.size()) {
+      factor.pieces = pieces;
+      Eigen::MatrixXd T = tangent(condensed, places, at.answers);
+      singular = !factorise(T, !slips(at.answers), factor);
+      if (singular) {  // on the way to the solution parts may be free for a while
+        T.diagonal() *= 1.0 + 1e-6;
+        if (!factorise(T, !slips(at.answers), factor)) report_mechanism(state, places);
+        factor.pieces.clear();
+      }
+    }
+    const Eigen::VectorXd next = solve_on_pieces(state, condensed, places, at.answers, factor);
+    const double length =
+        at.iterations > plain_iterations && !slips(at.answers) ? step_length(state, condensed, places, at, next) : 1.0;
+    at.j = length == 1.0 ? next : Eigen::VectorXd(at.j + length * (next - at.j));
+    evaluate(state, condensed, places, at);
+    if (!at.j.allFinite()) report_mechanism(state, places);
+    const bool settled = length == 1.0 && (at.pieces == pieces || (at.iterations > 4 && at.residual < balanced));
+    if (!settled) continue;
+    if (singular) report_mechanism(state, places);
+    return at;
+  }
+  throw NumericalFailure("no equilibrium of the surfaces was found in " + std::to_string(most_iterations) +
+                         " iterations; the force out of balance is " + std::to_string(at.residual) +
+                         " of the load. Use less friction or a smaller load step");
+}
+
+Eigen::MatrixXd opening_per_pressure(const State& state, const Condensed& condensed,
+                                     const std::vector<ContactPlace>& places, const Equilibrium& equilibrium,
+                                     const TangentFactor& factor) {
+  const auto n = static_cast<Eigen::Index>(state.fracture().points.size());
+  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(n, n);
+  for (std::size_t a = 0; a < places.size(); ++a) {
+    if (places[a].tie >= 0 || places[a].surface != 0) continue;
+    if (equilibrium.pieces[a] != LawAnswer::Piece::open) continue;  // the reaction gives way as much as P rises
+    Eigen::VectorXd f = Eigen::VectorXd::Zero(condensed.size());
+    add_force(places[a], places[a].n, f);
+    const Eigen::VectorXd j = factor.solve(f);
+    for (const ContactPlace& place : places) {
+      if (place.tie >= 0 || place.surface != 0) continue;
+      C(static_cast<Eigen::Index>(place.point), static_cast<Eigen::Index>(places[a].point)) =
+          Vec2{times(place.D[0], j), times(place.D[1], j)}.dot(place.n);
+    }
+  }
+  return C;
+}
+
+}  // namespace strata

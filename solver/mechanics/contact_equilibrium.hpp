@@ -1,0 +1,73 @@
+// Static equilibrium of the condensed block with the laws of its split surfaces.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "mechanics/condensed.hpp"
+#include "mechanics/surface_law.hpp"
+
+namespace strata {
+
+// A split place of a surface, or the spring behind a tip, in terms of the jump unknowns: its jump is D j - bonded.
+struct ContactPlace {
+  std::size_t surface = 0, point = 0;  // of the state; a tip's spring has `tie` >= 0 instead
+  int tie = -1;
+  InterfaceLaw law;
+  double k = 0.0;  // stiffness of closed contact (Pa/m)
+  double A = 0.0;  // length (m)
+  Vec2 n = Vec2::Zero();
+  Vec2 in_situ = Vec2::Zero();                           // Pa
+  Vec2 bonded = Vec2::Zero();                            // jump when it split (m)
+  double w_t_start = 0.0, r_t_start = 0.0;               // what friction remembers
+  std::array<std::vector<std::pair<int, double>>, 2> D;  // rows of the jump's x and y
+};
+
+using Pieces = std::vector<LawAnswer::Piece>;
+
+// The solution, and the factor of its tangent S - sum A D^T (dr/dw) D for what follows.
+struct Equilibrium {
+  Eigen::VectorXd j;               // m
+  std::vector<LawAnswer> answers;  // one a place
+  std::vector<Vec2> w;             // jump of each place (m)
+  Pieces pieces;
+  double energy = 0.0;    // potential energy: strain and laws less the work of the loads (J/m)
+  double strain = 0.0;    // strain energy of the rock (J/m)
+  double residual = 0.0;  // largest force out of balance over the largest load
+  int iterations = 0;
+};
+
+struct TangentFactor {
+  Pieces pieces;
+  bool symmetric = true;
+  Eigen::VectorXd scale;
+  Eigen::LLT<Eigen::MatrixXd> llt;
+  Eigen::PartialPivLU<Eigen::MatrixXd> lu;
+  Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
+};
+
+/// The split places of a state and the springs of its tips, with the memory of friction as the state holds it.
+/// Stencil weights must be up to date.
+std::vector<ContactPlace> contact_places(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
+                                         const Condensed& condensed);
+
+/// Solves S j = sum_s A_s D_s^T (P n - t_in_situ + r(D j)) for the pressures that the state's points hold, by Newton's
+/// method on the pieces of the laws (semismooth; a line search on the energy where it does not end by itself). What is
+/// returned depends on loads and memory only, not on `start` (the first guess, or empty). `factor` is reused where the
+/// pieces are the same, and left for what follows. Throws NumericalFailure where parts of the block move freely, or
+/// where no equilibrium is found.
+Equilibrium solve_equilibrium(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
+                              const Eigen::VectorXd& start, TangentFactor& factor);
+
+/// Change of the opening at the fracture's points with the pressure at each of them (m/Pa), at an equilibrium.
+Eigen::MatrixXd opening_per_pressure(const State& state, const Condensed& condensed,
+                                     const std::vector<ContactPlace>& places, const Equilibrium& equilibrium,
+                                     const TangentFactor& factor);
+
+/// Jump (m) at a stencil for the jump unknowns j.
+Vec2 jump_at(const Condensed& condensed, const SurfaceStencil& stencil, const Eigen::VectorXd& j);
+
+}  // namespace strata

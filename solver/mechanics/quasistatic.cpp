@@ -1,0 +1,109 @@
+#include "mechanics/quasistatic.hpp"
+
+#include <cmath>
+
+#include "mechanics/stiffness.hpp"
+#include "mechanics/surface_tractions.hpp"
+#include "mechanics/tip_ties.hpp"
+#include "mechanics/transfers.hpp"
+
+namespace strata {
+
+namespace {
+
+Vec2 tangent_of(const Vec2& n) {
+  return {n.y(), -n.x()};
+}
+
+void set_particles(const Scene& scene, const std::vector<Vec2>& u, State& state) {
+  Particles& p = state.particles;
+#pragma omp parallel for schedule(static)
+  for (std::size_t b = 0; b < state.bins.size(); ++b) {
+    const Bin& bin = state.bins[b];
+    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
+      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]);
+      Vec2 u_p = Vec2::Zero(), d_x = Vec2::Zero(), d_y = Vec2::Zero();
+      for (std::size_t n = 0; n < 9; ++n) {
+        const Vec2& u_i = u[static_cast<std::size_t>(bin.record[n])];
+        u_p += g.N[n] * u_i, d_x += g.N_x[n] * u_i, d_y += g.N_y[n] * u_i;
+      }
+      p.u_x[q] = u_p.x(), p.u_y[q] = u_p.y();
+      p.g_xx[q] = d_x.x(), p.g_xy[q] = d_y.x(), p.g_yx[q] = d_x.y(), p.g_yy[q] = d_y.y();
+    }
+  }
+}
+
+// Plastic slip of a place since friction's memory (m): the tangential jump less what the stick spring gives way.
+double plastic_slip(const ContactPlace& place, const LawAnswer& r, const Vec2& w) {
+  if (r.dt_dn == 0.0) return 0.0;
+  return w.dot(tangent_of(place.n)) - place.w_t_start + (r.t - place.r_t_start) / place.k;
+}
+
+}  // namespace
+
+void update_model(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, QuasistaticModel& model,
+                  bool halve) {
+  rebuild(scene, rocks, state);
+  particles_to_grid(scene, rocks, state);  // which copies have mass
+  update_stencil_weights(scene, state);
+  const bool halved = halve && mirror_symmetric(scene, state);
+  const bool same_body = model.body && model.body->particles() == state.particles.size();
+  if (!same_body) model.body = std::make_shared<const IntactBody>(scene, rocks, state, halved);
+  model.condensed = condense(scene, rocks, state, *model.body, same_body ? &model.condensed : nullptr);
+  model.places = contact_places(scene, rocks, state, model.condensed);
+  model.factor = TangentFactor{};
+  model.j.resize(0);
+}
+
+Equilibrium find_equilibrium(const State& state, QuasistaticModel& model) {
+  Equilibrium found = solve_equilibrium(state, model.condensed, model.places, model.j, model.factor);
+  model.j = found.j;
+  return found;
+}
+
+void set_fields(const Scene& scene, State& state, const QuasistaticModel& model, const Equilibrium& equilibrium) {
+  set_particles(scene, displacements(scene, state, *model.body, model.condensed, equilibrium.j), state);
+  for (std::size_t k = 0; k < model.places.size(); ++k) {
+    const ContactPlace& place = model.places[k];
+    const LawAnswer& r = equilibrium.answers[k];
+    SurfacePoint& s = place.tie >= 0 ? state.ties[static_cast<std::size_t>(place.tie)].s
+                                     : state.surfaces[place.surface].points[place.point];
+    s.w = equilibrium.w[k];
+    s.reaction = r.n * place.n + r.t * tangent_of(place.n);
+  }
+  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
+    auto& vertices = state.surfaces[k].vertices;
+    for (std::size_t q = 0; q < vertices.size(); ++q)
+      vertices[q].w = jump_at(model.condensed, state.vertex_stencils[k][q], equilibrium.j);
+  }
+}
+
+void remember(State& state, QuasistaticModel& model, const Equilibrium& equilibrium) {
+  for (std::size_t k = 0; k < model.places.size(); ++k) {
+    ContactPlace& place = model.places[k];
+    const LawAnswer& r = equilibrium.answers[k];
+    if (place.tie < 0) {
+      SurfacePoint& s = state.surfaces[place.surface].points[place.point];
+      s.slip += std::abs(equilibrium.w[k].dot(tangent_of(place.n)) - place.w_t_start);
+    }
+    place.w_t_start = equilibrium.w[k].dot(tangent_of(place.n));
+    place.r_t_start = r.t;
+  }
+}
+
+double stored_in_surfaces(const QuasistaticModel& model, const Equilibrium& equilibrium) {
+  double energy = 0.0;
+  for (std::size_t k = 0; k < model.places.size(); ++k) energy += model.places[k].A * equilibrium.answers[k].energy;
+  return energy;
+}
+
+double dissipated_by_friction(const QuasistaticModel& model, const Equilibrium& equilibrium) {
+  double energy = 0.0;
+  for (std::size_t k = 0; k < model.places.size(); ++k) {
+    const LawAnswer& r = equilibrium.answers[k];
+    energy -= model.places[k].A * r.t * plastic_slip(model.places[k], r, equilibrium.w[k]);
+  }
+  return energy;
+}
+
+}  // namespace strata

@@ -1,0 +1,43 @@
+// The rock without inertia: equilibrium of the particles with the pressure in the fracture and the laws of all
+// surfaces.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "mechanics/contact_equilibrium.hpp"
+
+namespace strata {
+
+// What solving a state needs beside it; all of it follows from the state.
+struct QuasistaticModel {
+  std::shared_ptr<const IntactBody> body;
+  Condensed condensed;
+  std::vector<ContactPlace> places;
+  TangentFactor factor;
+  Eigen::VectorXd j;  // the last solution, as a first guess
+};
+
+/// Rebuilds what follows from the state's particles and surfaces (copies, springs of tips, stencils) and brings the
+/// model up to date with it; what `model` holds already is reused where it still applies. halve: solve on half of a
+/// mirror-symmetric scene. Throws NumericalFailure as rebuild_copies() and IntactBody do.
+void update_model(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, QuasistaticModel& model,
+                  bool halve = true);
+
+/// Equilibrium under the pressures that the state's points hold; see solve_equilibrium().
+Equilibrium find_equilibrium(const State& state, QuasistaticModel& model);
+
+/// Writes an equilibrium to the state: displacements and their gradients to the particles, jumps (m) and reactions (Pa)
+/// to the surfaces. Friction's memory stays what it was.
+void set_fields(const Scene& scene, State& state, const QuasistaticModel& model, const Equilibrium& equilibrium);
+
+/// Makes the equilibrium that the state holds the one that friction remembers; adds up slip.
+void remember(State& state, QuasistaticModel& model, const Equilibrium& equilibrium);
+
+/// Energy stored in the laws of surfaces and the springs of tips (J/m).
+double stored_in_surfaces(const QuasistaticModel& model, const Equilibrium& equilibrium);
+
+/// What friction has dissipated since the equilibrium that it remembers (J/m).
+double dissipated_by_friction(const QuasistaticModel& model, const Equilibrium& equilibrium);
+
+}  // namespace strata
