@@ -130,7 +130,7 @@ void add_inlet(const Step& step, const Trial& trial, Balance& b) {
     c[s] = from_vertex(step.fluid, at[s]);
   }
   const bool by_rate = step.inlet.drive == Inlet::Drive::rate;
-  Dual P(step.inlet.value);
+  Dual P(std::max(step.inlet.value, step.fluid.cavitation_Pa));
   if (by_rate) P = (Dual(step.inlet.value) + c[0] * at[0].P + c[1] * at[1].P) / (c[0] + c[1]);
   b.inlet_Pa = P.value();
   for (int s = 0; s < 2; ++s) {

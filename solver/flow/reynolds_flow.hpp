@@ -79,7 +79,7 @@ struct StepReport {
 };
 
 struct ReynoldsOptions {
-  int max_iterations = 25;   // from each of two starting points
+  int max_iterations = 40;   // from each of two starting points
   double tolerance = 1e-12;  // of a cell's imbalance, relative to the fluid in the fracture; not below round-off
 };
 
