@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from reports.layout import Layout, layout_of
-from reports.outcome import decided_by_J, finding, longest, outcome_of, outcomes_of
-from reports.runs import NotAvailable, Run, fracture_at, output_times
-from reports.words import listed, metres, mpa, number, plain
+from reports.outcome import Arrest, finding, flag_of, longest, outcome_of, outcomes_of
+from reports.runs import NotAvailable, Run, fracture_at, lead_of, mechanics_in, output_times
+from reports.words import listed, mechanics_name, metres, mpa, number, plain
 
 OPENING_INSTANTS = 7  # profiles a panel of Fig 7: as many as stay distinguishable in one colour scale
 
@@ -28,9 +28,11 @@ class Mark:
 
 @dataclass(frozen=True)
 class HeightCurve:
-    """Fracture height in m against inlet pressure in MPa."""
+    """Fracture height in m against inlet pressure in MPa; beside: of the mechanics that is shown for comparison."""
 
     variant: str
+    mechanics: str
+    beside: bool
     label: str
     inlet_MPa: np.ndarray
     height_m: np.ndarray
@@ -64,9 +66,10 @@ class Profile:
 
 @dataclass(frozen=True)
 class ProfilePanel:
-    """The opening profiles of one variant."""
+    """The opening profiles of one variant in one mechanics."""
 
     variant: str
+    mechanics: str
     heading: str
     profiles: tuple[Profile, ...]
     interfaces_m: tuple[float, ...]
@@ -84,9 +87,10 @@ class ProfileFigure:
 
 @dataclass(frozen=True)
 class Path:
-    """A fracture's final path in m with its largest turn in degrees."""
+    """A fracture's final path in m with its largest turn in degrees; beside: of the mechanics shown for comparison."""
 
     variant: str
+    beside: bool
     label: str
     x_m: np.ndarray
     y_m: np.ndarray
@@ -122,15 +126,15 @@ def height_figure(runs: list[Run]) -> HeightFigure:
     drawn = [run for run in runs if run.is_main and run.drawable]
     if not drawn:
         raise NotAvailable("no run of this experiment has a history")
-    layout = layout_of(drawn[0])
-    curves = tuple(_height_curve(run) for run in drawn)
+    layout, lead = layout_of(drawn[0]), lead_of(drawn)
+    curves = tuple(_height_curve(run, runs, run.mechanics != lead) for run in drawn)
     starts = [curve.inlet_MPa[_first_growth(curve.height_m, layout.cell_m)] for curve in curves]
     last = max(float(curve.inlet_MPa[-1]) for curve in curves)
     first = min(min(float(start) for start in starts), last)
     foot = min(float(curve.height_m[0]) for curve in curves)
     top = max(layout.heights_m, default=foot) + 8.0 * layout.cell_m
     return HeightFigure(
-        title=finding(outcomes_of(drawn)),
+        title=lead_words(drawn) + finding([outcome_of(run, runs) for run in drawn if run.mechanics == lead]),
         layout=layout,
         curves=curves,
         zoom_m=(foot - layout.cell_m, top),
@@ -138,6 +142,11 @@ def height_figure(runs: list[Run]) -> HeightFigure:
         zoom_MPa=_span(first, max(float(curve.inlet_MPa[curve.height_m <= top].max()) for curve in curves)),
         flagged=any(mark.flag for curve in curves for mark in curve.marks),
     )
+
+
+def lead_words(drawn: Sequence[Run]) -> str:
+    """The beginning of a title that tells of one mechanics among two."""
+    return "" if len(mechanics_in(drawn)) < 2 else f"{mechanics_name(lead_of(drawn)).capitalize()}: "
 
 
 def _span(first_MPa: float, last_MPa: float) -> tuple[float, float]:
@@ -151,13 +160,16 @@ def _first_growth(height_m: np.ndarray, cell_m: float) -> int:
     return max(0, int(grown[0]) - 1) if grown.size else height_m.size - 1
 
 
-def _height_curve(run: Run) -> HeightCurve:
+def _height_curve(run: Run, runs: Sequence[Run], beside: bool) -> HeightCurve:
     """One run's curve with its marked events."""
+    arrests = outcome_of(run, runs).arrests
     keep = np.isfinite(run.history["inlet_Pa"]) & np.isfinite(run.history["height_m"])
-    marks = tuple(_mark(run, event) for event in run.events if event.get("kind") in MARKED)
+    marks = tuple(_mark(arrests, event) for event in run.events if event.get("kind") in MARKED)
     label = plain(run.variant) + ("" if run.status == "completed" else f" ({run.status})")
     return HeightCurve(
         variant=run.variant,
+        mechanics=mechanics_name(run.mechanics),
+        beside=beside,
         label=label,
         inlet_MPa=run.history["inlet_Pa"][keep] / 1e6,
         height_m=run.history["height_m"][keep],
@@ -169,16 +181,16 @@ def _height_curve(run: Run) -> HeightCurve:
 MARKED: tuple[str, ...] = ("start", "reach_interface", "arrest", "restart", "stop")
 
 
-def _mark(run: Run, event: dict[str, Any]) -> Mark:
-    """An event as a mark; an arrest by J at an interface carries its flag."""
-    y_m, kind = float(event["tip_y_m"]), str(event["kind"])
-    near = kind == "arrest" and decided_by_J(run, event)
-    return Mark(kind, float(event["inlet_Pa"]) / 1e6, y_m, "J at interface" if near else "")
+def _mark(arrests: tuple[Arrest, ...], event: dict[str, Any]) -> Mark:
+    """An event as a mark; an arrest by J at an interface, unless energy confirms it, carries its flag."""
+    y_m, kind, inlet = float(event["tip_y_m"]), str(event["kind"]), float(event["inlet_Pa"])
+    same = [arrest for arrest in arrests if (arrest.height_m, arrest.from_Pa) == (y_m, inlet)]
+    return Mark(kind, inlet / 1e6, y_m, flag_of(same[0]) if same and kind == "arrest" else "")
 
 
 def profile_figure(runs: list[Run], variants: tuple[str, ...] = ("perfect", "weak")) -> ProfileFigure:
-    """Opening profiles at several common times, variant against variant."""
-    chosen = {run.variant: run for run in runs if run.variant in variants and run.drawable}
+    """Opening profiles at several common times, variant against variant, in each mechanics."""
+    chosen = {(run.mechanics, run.variant): run for run in runs if run.variant in variants and run.drawable}
     if not chosen:
         raise NotAvailable(f"no run of {listed(list(variants))} has a history")
     times = {name: output_times(run) for name, run in chosen.items()}
@@ -186,27 +198,30 @@ def profile_figure(runs: list[Run], variants: tuple[str, ...] = ("perfect", "wea
     first = min(float(chosen[name].history["time_s"][row]) for name, row in rows.items())
     last = max(float(value[-1]) for value in times.values())
     wanted = np.linspace(first, last, OPENING_INSTANTS)
-    panels = tuple(_profile_panel(chosen[name], times[name], wanted) for name in variants if name in chosen)
+    present = mechanics_in(chosen.values())
+    order = [(mechanics, name) for mechanics in reversed(present) for name in variants if (mechanics, name) in chosen]
+    panels = tuple(_profile_panel(chosen[key], times[key], wanted, len(present) > 1) for key in order)
     profiles = [profile for panel in panels for profile in panel.profiles]
     return ProfileFigure(
-        title=finding(outcomes_of([chosen[panel.variant] for panel in panels])),
+        title=lead_words(list(chosen.values()))
+        + finding(outcomes_of([chosen[key] for key in order if key[0] == present[-1]])),
         panels=panels,
         opening_mm=max((float(profile.opening_mm.max()) for profile in profiles), default=1.0),
         height_m=max((float(profile.height_m.max()) for profile in profiles), default=1.0),
     )
 
 
-def _profile_panel(run: Run, times_s: np.ndarray, wanted_s: np.ndarray) -> ProfilePanel:
+def _profile_panel(run: Run, times_s: np.ndarray, wanted_s: np.ndarray, named: bool) -> ProfilePanel:
     """The profiles of one run at the output times nearest to those wanted, each once."""
     reached = wanted_s[wanted_s <= times_s[-1] * (1.0 + 1e-9)]
     indices = sorted({int(np.argmin(np.abs(times_s - time))) for time in reached} | {times_s.size - 1})
     profiles = tuple(_profile(run, index, float(times_s[index]), wanted_s) for index in indices)
     end = profiles[-1]
     heading = (
-        f"{plain(run.variant)}: at the end {metres(float(end.height_m.max()))} high,"
+        f"{plain(run.variant)}{f', {mechanics_name(run.mechanics)}' if named else ''}: at the end {metres(float(end.height_m.max()))} high,"
         f" {number(float(end.opening_mm.max()), 2)}\u00a0mm wide"
     )
-    return ProfilePanel(run.variant, heading, profiles, layout_of(run).heights_m)
+    return ProfilePanel(run.variant, run.mechanics, heading, profiles, layout_of(run).heights_m)
 
 
 def _profile(run: Run, index: int, time_s: float, wanted_s: np.ndarray) -> Profile:
@@ -228,15 +243,17 @@ def path_figure(groups: list[list[Run]]) -> PathFigure:
     panels = tuple(_path_panel(runs) for runs in groups if any(run.is_main and run.drawable for run in runs))
     if not panels:
         raise NotAvailable("no run of these experiments has a history")
-    return PathFigure("; ".join(panel.heading for panel in panels), panels)
+    drawn = [run for runs in groups for run in runs if run.is_main and run.drawable]
+    return PathFigure(lead_words(drawn) + "; ".join(panel.heading for panel in panels), panels)
 
 
 def _path_panel(runs: list[Run]) -> PathPanel:
     """The paths of one experiment's main variants."""
     drawn = [run for run in runs if run.is_main and run.drawable]
-    layout = layout_of(drawn[0])
+    layout, lead = layout_of(drawn[0]), lead_of(drawn)
     side = _soft_side(layout)
-    paths = tuple(_path(run, side) for run in drawn)
+    drawn.sort(key=lambda run: run.mechanics != lead)
+    paths = tuple(_path(run, side, run.mechanics != lead) for run in drawn)
     window = _window(paths)
     magnified = ((window[3] - window[2]) / (window[1] - window[0])) / PANEL_ASPECT
     name = f"Experiment {drawn[0].number}"
@@ -264,13 +281,14 @@ def _soft_side(layout: Layout) -> float:
     return 1.0 if layout.layers[-1].stiffness < layout.layers[0].stiffness else -1.0
 
 
-def _path(run: Run, side: float) -> Path:
+def _path(run: Run, side: float, beside: bool) -> Path:
     """The last path of a run, its largest turn and where that is."""
     fields = fracture_at(run, output_times(run).size - 1)
     x_m, y_m = fields["x_m"], fields["y_m"]
     kink, at = largest_turn(x_m, y_m)
-    label = f"{plain(run.variant)}: {metres_signed(side * float(x_m[-1] - x_m[0]))}, {number(kink, 2)}°"
-    return Path(run.variant, label, x_m, y_m, kink, at)
+    name = plain(run.variant) + (f", {mechanics_name(run.mechanics)}" if beside else "")
+    label = f"{name}: {metres_signed(side * float(x_m[-1] - x_m[0]))}, {number(kink, 2)}°"
+    return Path(run.variant, beside, label, x_m, y_m, kink, at)
 
 
 def metres_signed(length_m: float) -> str:
@@ -320,7 +338,7 @@ def _aside(layout: Layout, window: tuple[float, float, float, float]) -> str:
 
 def _drift(paths: tuple[Path, ...], side: float) -> str:
     """Which way each path ends, and how far, like paths told together."""
-    toward = {path.variant: side * float(path.x_m[-1] - path.x_m[0]) for path in paths}
+    toward = {path.variant: side * float(path.x_m[-1] - path.x_m[0]) for path in paths if not path.beside}
     soft = [name for name, shift in toward.items() if shift > 0]
     stiff = [name for name, shift in toward.items() if shift < 0]
     parts = []

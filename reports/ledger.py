@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from reports.layout import settings_between
-from reports.outcome import Outcome, outcome_of
+from reports.outcome import Outcome, flag_of, outcome_of
 from reports.runs import NotAvailable, Run
-from reports.words import listed, metres, mpa, plain, setting, share
+from reports.words import listed, metres, mpa, number, plain, setting, share
+from verification.harness.claim_data import BY_J
 
 _SUPPLIED: tuple[str, ...] = ("work", "supplied")
 _STORED: tuple[str, ...] = ("kinetic", "strain")
@@ -43,6 +45,7 @@ class LedgerFigure:
     """Energy ledgers of one experiment's main variants."""
 
     title: str
+    mechanics: str
     panels: tuple[LedgerPanel, ...]
 
 
@@ -72,6 +75,7 @@ class VariantFigure:
     """The start, arrests and restarts of every variant, experiment by experiment."""
 
     title: str
+    mechanics: str
     blocks: tuple[tuple[str, tuple[VariantRow, ...]], ...]
 
 
@@ -104,12 +108,13 @@ def closure_of(run: Run) -> float | None:
     return (sums["stored"] + sums["dissipated"] - sums["supplied"]) / scale if scale > 0 else None
 
 
-def ledger_figure(runs: list[Run]) -> LedgerFigure:
-    """Energies against inlet pressure for one experiment's main variants."""
-    panels = tuple(_ledger_panel(run) for run in runs if run.is_main and run.drawable and _has_energies(run))
+def ledger_figure(runs: list[Run], mechanics: str) -> LedgerFigure:
+    """Energies against inlet pressure for one experiment's main variants in one mechanics."""
+    own = [run for run in runs if run.is_main and run.drawable and run.mechanics == mechanics]
+    panels = tuple(_ledger_panel(run) for run in own if _has_energies(run))
     if not panels:
         raise NotAvailable("no run of this experiment has energies in its history")
-    return LedgerFigure(_ledger_title(panels), panels)
+    return LedgerFigure(_ledger_title(panels), mechanics, panels)
 
 
 def _has_energies(run: Run) -> bool:
@@ -148,16 +153,18 @@ def _ledger_title(panels: tuple[LedgerPanel, ...]) -> str:
     return f"Of the net work supplied, {listed(parts)} is dissipated" if parts else "No net work is supplied"
 
 
-def variant_figure(groups: list[list[Run]]) -> VariantFigure:
-    """Events of every variant of every experiment."""
+def variant_figure(groups: list[list[Run]], mechanics: str) -> VariantFigure:
+    """Events of every variant of every experiment in one mechanics."""
     blocks = []
     for runs in groups:
-        rows = tuple(_variant_row(run, runs) for run in runs if run.status != "missing" or run.drawable)
+        own = [run for run in runs if run.mechanics == mechanics]
+        rows = tuple(_variant_row(run, runs) for run in own if run.status != "missing" or run.drawable)
         if rows:
             blocks.append((f"Experiment {runs[0].number}", rows))
     if not blocks:
         raise NotAvailable("there is no run")
-    return VariantFigure(_variant_title(groups), tuple(blocks))
+    own_groups = [[run for run in runs if run.mechanics == mechanics] for runs in groups]
+    return VariantFigure(_variant_title(own_groups), mechanics, tuple(blocks))
 
 
 def _variant_row(run: Run, runs: list[Run]) -> VariantRow:
@@ -182,7 +189,7 @@ def _dots(outcome: Outcome) -> list[Dot]:
         if arrest.interface is None and arrest.until_Pa is not None:
             dots.append(Dot("pause", arrest.from_Pa / 1e6, until / 1e6, ""))
             continue
-        flag = "J at interface" if arrest.by_J else ""
+        flag = flag_of(arrest)
         dots.append(Dot("arrest", arrest.from_Pa / 1e6, until / 1e6, flag))
         if arrest.until_Pa is not None:
             dots.append(Dot("restart", arrest.until_Pa / 1e6, None, flag))
@@ -215,7 +222,8 @@ def base_of(run: Run, runs: list[Run]) -> Run | None:
     """For a variant that is no interface type of the study, the main variant with the fewest other settings."""
     if run.is_main or not run.scene:
         return None
-    others = [other for other in runs if other.is_main and other.scene and other.experiment == run.experiment]
+    others = [other for other in runs if other.is_main and other.scene
+              and (other.experiment, other.mechanics) == (run.experiment, run.mechanics)]
 
     def distance(other: Run) -> tuple[int, bool]:
         """How many settings differ, and whether the name differs too."""
@@ -246,16 +254,27 @@ def spread_of(run: Run) -> float | None:
     return max(known) if known else None
 
 
-def suspicions(run: Run) -> list[str]:
-    """What the run itself or its data mark as not to be trusted, in words."""
+def suspicions(run: Run, runs: Sequence[Run] = ()) -> list[str]:
+    """What the run itself or its data mark as not to be trusted, in words; J at an interface unless a run confirms it."""
     flags = [str(flag) for flag in run.summary.get("suspect") or run.summary.get("warnings") or []]
     if run.drawable:
-        outcome = outcome_of(run)
-        by_J = [arrest for arrest in outcome.arrests if arrest.by_J]
+        by_J = [arrest for arrest in outcome_of(run, runs).arrests if flag_of(arrest)]
         if by_J:
             places = list(dict.fromkeys(metres(arrest.height_m) for arrest in by_J))
-            flags.append(f"J at interface ({listed(places)})")
+            flags.append(f"{BY_J} ({listed(places)})")
     closure = closure_of(run)
     if closure is not None and abs(closure) > 0.01:
         flags.append(f"energy open by {share(abs(closure))}")
-    return flags
+    return flags + [f"{words} {number(size)}" for words, size in open_monitors(run)]
+
+
+# Monitors of a quasi-static run that are to be next to nothing, with what they are called.
+MONITORS: dict[str, str] = {"volume_balance": "fluid volume open by", "contact_residual": "contact open by"}
+CLOSED = 1e-8  # what volume and contact are to be satisfied to, relative to the run's own
+
+
+def open_monitors(run: Run) -> list[tuple[str, float]]:
+    """The run's monitors that are not closed."""
+    monitors = run.summary.get("monitors") or {}
+    found = [(words, monitors.get(key)) for key, words in MONITORS.items()]
+    return [(words, abs(float(size))) for words, size in found if isinstance(size, (int, float)) and abs(size) > CLOSED]

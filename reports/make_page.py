@@ -12,21 +12,24 @@ sys.path.insert(0, str(ROOT))
 
 from reports.figures import catalogue, make  # noqa: E402  (after the path to the project is known)
 from reports.page import write_page  # noqa: E402
-from reports.runs import add_missing, load_claims, load_runs, scene_variants  # noqa: E402
+from reports.runs import add_missing, declared_runs, load_runs  # noqa: E402
+from verification.harness.choices import read_points  # noqa: E402
+from verification.harness.claim_data import read_claims  # noqa: E402
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Read the runs, make every figure, write the page; 1 where --strict is given and a figure met a defect."""
     parser = argparse.ArgumentParser(description="Make figures and index.html from run folders.")
-    parser.add_argument("--runs", type=Path, default=ROOT / "runs", help="folder of runs/<scene>/<variant>/")
+    parser.add_argument("--runs", type=Path, default=ROOT / "runs", help="folder of runs/<mechanics>/<scene>/<variant>/")
     parser.add_argument("--out", type=Path, default=ROOT / "reports" / "out", help="folder for the page")
     parser.add_argument("--experiments", type=Path, default=ROOT / "experiments",
                         help="scenes whose variants without a run are shown as not run")
     parser.add_argument("--strict", action="store_true", help="exit 1 if a figure could not be drawn for a defect")
     options = parser.parse_args(arguments)
-    runs = add_missing(load_runs(options.runs), scene_variants(options.experiments), options.runs)
-    figures = [make(spec, options.out / "figures") for spec in catalogue(runs)]
-    page = write_page(options.out, runs, load_claims(options.runs), figures)
+    points = read_points(options.experiments)
+    runs = add_missing(load_runs(options.runs), declared_runs(options.experiments), options.runs)
+    figures = [make(spec, options.out / "figures") for spec in catalogue(runs, points)]
+    page = write_page(options.out, runs, read_claims(options.runs / "claims.json"), figures, points)
     for made in figures:
         if made.reason:
             print(f"{made.label}: {made.reason}\n{made.defect}", file=sys.stderr)

@@ -11,7 +11,7 @@ import numpy as np
 from reports.layout import INTERFACE, layout_of, settings_between
 from reports.runs import Arrays, NotAvailable, Run, interfaces_at, output_times
 from reports.words import listed, metres, mpa, number, plain
-
+from verification.harness.claim_data import BY_J
 
 ARREST_PA = 0.05e6  # the rise of inlet pressure without growth that makes an arrest
 
@@ -26,6 +26,7 @@ class Arrest:
     interface: str | None  # the interface it is at: within a cell and a half, or within reach of the J rings
     beyond_m: float  # how far past that interface, negative before it
     by_J: bool  # the criterion there was J alone, which is not to be trusted at an interface
+    confirmed: bool | None = None  # whether the quasi-static run of the variant is arrested there by energy; None: not known
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,7 @@ def outcome_of(run: Run, runs: Sequence[Run] = ()) -> Outcome:
         status=run.status,
         start_Pa=event_inlet(run, "start"),
         reached_Pa=event_inlet(run, "reach_interface"),
-        arrests=_own(arrests_of(run), run, runs),
+        arrests=_confirmed(_own(arrests_of(run), run, runs), run, runs),
         final_height_m=float(heights[-1]),
         final_inlet_Pa=float(inlet[-1]),
         grew=float(np.max(heights)) > float(heights[0]) + 0.25 * run.cell_m,
@@ -76,6 +77,28 @@ def _own(arrests: tuple[Arrest, ...], run: Run, runs: Sequence[Run]) -> tuple[Ar
         return False
 
     return tuple(replace(arrest, interface=None) if shared(arrest) else arrest for arrest in arrests)
+
+
+def _confirmed(arrests: tuple[Arrest, ...], run: Run, runs: Sequence[Run]) -> tuple[Arrest, ...]:
+    """The arrests; those by J at an interface say whether the same variant without inertia is arrested there by energy."""
+    other = next((one for one in runs if one.variant == run.variant and one.experiment == run.experiment
+                  and one.mechanics != run.mechanics and one.drawable and one.status == "completed"), None)
+    if other is None:
+        return arrests
+    theirs = [arrest for arrest in arrests_of(other) if not arrest.by_J]
+
+    def found(arrest: Arrest) -> bool:
+        """Whether the other run is arrested within a cell and a half of the same height."""
+        return any(abs(one.height_m - arrest.height_m) <= 1.5 * run.cell_m for one in theirs)
+
+    return tuple(replace(arrest, confirmed=found(arrest)) if arrest.by_J else arrest for arrest in arrests)
+
+
+def flag_of(arrest: Arrest) -> str:
+    """What is to be said of an arrest that rests on J at an interface; nothing where energy decides likewise."""
+    if not arrest.by_J or arrest.confirmed:
+        return ""
+    return BY_J
 
 
 def _is_twin(other: Run, run: Run) -> bool:
@@ -102,13 +125,15 @@ def arrests_of(run: Run) -> tuple[Arrest, ...]:
         follower = events[index + 1] if index + 1 < len(events) else None
         until = float(follower["inlet_Pa"]) if follower and follower["kind"] == "restart" else None
         by_J = decided_by_J(run, event)
-        name, beyond_m = interface_near(run, event, by_J)
+        name, beyond_m = interface_near(run, event, by_J or event.get("by") == "energy")
         arrests.append(Arrest(float(event["tip_y_m"]), float(event["inlet_Pa"]), until, name, beyond_m, by_J))
     return tuple(arrests)
 
 
 def decided_by_J(run: Run, event: dict[str, Any]) -> bool:
     """Whether an event at a tip rests on a J too near to an interface to be trusted."""
+    if event.get("by") in ("energy", "failure"):
+        return False
     if crossing_of(run) != "J":
         return False
     if "at_interface" in event:
@@ -122,13 +147,18 @@ def crossing_of(run: Run) -> str:
     return str(named or ("J" if run.scene.get("numerics", {}).get("mechanics") == "explicit" else "energy"))
 
 
-def interface_near(run: Run, event: dict[str, Any], anyway: bool = False) -> tuple[str | None, float]:
-    """The nearest imperfect interface, if within a cell and a half or asked for anyway, and the tip past it, m."""
+REACH_CELLS = 4.0  # so far the J rings of a tip reach an interface, and energy decides instead where it may
+NEAR_CELLS = 1.5
+
+
+def interface_near(run: Run, event: dict[str, Any], in_reach: bool = False) -> tuple[str | None, float]:
+    """The nearest imperfect interface, if within a cell and a half or in reach of the J rings, and the tip past it, m."""
     layout = layout_of(run)
     at = float(event["tip_y_m"] if layout.along == "y" else event["tip_x_m"])
     places = [place for place in layout.interfaces if place.law != "perfect"]
     nearest = min(places, key=lambda place: abs(at - place.at_m), default=None)
-    if nearest is None or not (anyway or abs(at - nearest.at_m) <= 1.5 * run.cell_m):
+    cells = REACH_CELLS + 0.5 if in_reach else NEAR_CELLS  # half a cell: where an increment within the reach may end
+    if nearest is None or abs(at - nearest.at_m) > cells * run.cell_m:
         return None, 0.0
     return nearest.name, at - nearest.at_m
 

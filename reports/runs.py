@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 import re
 import tomllib
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
+
+from verification.harness.scenes import MECHANICS, mechanics_of, scenes_of, variants_of
 
 Arrays = dict[str, np.ndarray]
 
@@ -29,6 +33,7 @@ class Run:
     experiment: str
     variant: str
     folder: Path
+    mechanics: str = MECHANICS[0]
     scene: dict[str, Any] = field(default_factory=dict)
     summary: dict[str, Any] = field(default_factory=dict)
     outcome: dict[str, Any] = field(default_factory=dict)
@@ -75,10 +80,20 @@ class Run:
         """Cell size, m."""
         return float(self.scene.get("numerics", {}).get("cell_m", 1.0))
 
+    @property
+    def path_m(self) -> np.ndarray:
+        """The fracture from its first vertex to its last tip, shape (n, 2), m."""
+        points = [tuple(map(float, point)) for point in self.scene.get("fracture", {}).get("path_m", [])]
+        for tip in zip(self.history.get("tip_x_m", ()), self.history.get("tip_y_m", ())):
+            if not points or math.dist(points[-1], tip) > 0.05 * self.cell_m:  # a tip moves with the rock by far less
+                points.append((float(tip[0]), float(tip[1])))
+        return np.array(points)
+
 
 def load_run(folder: Path) -> Run:
     """Read one run's folder: scene.toml, summary.json and history.csv."""
-    run = Run(experiment=folder.parent.name, variant=folder.name, folder=folder)
+    above = folder.parent.parent.name
+    run = Run(folder.parent.name, folder.name, folder, above if above in MECHANICS else MECHANICS[0])
     readers = (("scene.toml", _read_scene), ("summary.json", _read_summary), ("history.csv", _read_history),
                ("outcome.json", _read_outcome))
     for name, read in readers:
@@ -90,6 +105,7 @@ def load_run(folder: Path) -> Run:
             read(path, run)
         except (OSError, ValueError, csv.Error) as error:
             run.problems.append(f"{name} cannot be read: {error}")
+    run.mechanics = str(run.summary.get("mechanics") or run.scene.get("numerics", {}).get("mechanics") or run.mechanics)
     return run
 
 
@@ -134,48 +150,51 @@ def _float(text: str) -> float:
 
 
 def load_runs(root: Path) -> list[Run]:
-    """Read every run of a numbered experiment below runs/<scene>/<variant>/, the study's variants first."""
-    folders = [path for path in sorted(root.glob("*/*/")) if path.is_dir() and not path.name.startswith(".")]
+    """Read every run of a numbered experiment below runs/<mechanics>/<scene>/<variant>/, the study's variants first."""
+    places = [path for mechanics in MECHANICS for path in sorted((root / mechanics).glob("*/*/"))]
+    folders = [path for path in places if path.is_dir() and not path.name.startswith(".")]
     markers = ("scene.toml", "summary.json", "history.csv", "result.h5", "outcome.json")
     runs = [load_run(path) for path in folders if any((path / name).exists() for name in markers)]
     return sorted((run for run in runs if run.number > 0), key=order)
 
 
-def order(run: Run) -> tuple[int, str, int, str]:
-    """Sort key: experiment, then the study's variants in their usual order, then the others by name."""
+def order(run: Run) -> tuple[int, str, int, str, int]:
+    """Sort key: experiment, then the study's variants in their usual order, then the others by name, each by mechanics."""
     rank = MAIN_VARIANTS.index(run.variant) if run.is_main else len(MAIN_VARIANTS)
-    return (run.number, run.experiment, rank, run.variant)
+    last = MECHANICS.index(run.mechanics) if run.mechanics in MECHANICS else len(MECHANICS)
+    return (run.number, run.experiment, rank, run.variant, last)
 
 
-def load_claims(root: Path) -> list[dict[str, Any]]:
-    """Read the harness's verdicts from runs/claims.json; none where there is no such file."""
-    path = root / "claims.json"
-    if not path.exists():
-        return []
-    content = json.loads(path.read_text(encoding="utf-8"))
-    claims = content.get("claims", []) if isinstance(content, dict) else content
-    return [claim for claim in claims if isinstance(claim, dict)]
+def mechanics_in(runs: Iterable[Run]) -> tuple[str, ...]:
+    """The mechanics that some runs were made in, in their order."""
+    found = {run.mechanics for run in runs if run.status != "missing"}
+    return tuple(mechanics for mechanics in MECHANICS if mechanics in found)
 
 
-def scene_variants(experiments: Path) -> dict[str, list[str]]:
-    """The variants that each scene of a folder declares, to show those that were not run."""
-    declared: dict[str, list[str]] = {}
-    for path in sorted(experiments.glob("exp*.toml")):
+def lead_of(runs: Iterable[Run]) -> str:
+    """The mechanics that a figure tells of first: quasi-static where there is any such run to draw."""
+    return (mechanics_in(run for run in runs if run.drawable) or MECHANICS)[-1]
+
+
+def declared_runs(experiments: Path) -> list[tuple[str, str, str]]:
+    """What the scenes of a folder ask for, as (experiment, variant, mechanics), to show what was not run."""
+    declared: list[tuple[str, str, str]] = []
+    for path in scenes_of(experiments):
         try:
-            declared[path.stem] = list(tomllib.loads(path.read_text(encoding="utf-8")).get("variants", {}))
+            declared += [(path.stem, name, one) for name in variants_of(path) for one in mechanics_of(path, name)]
         except (OSError, tomllib.TOMLDecodeError):
-            declared[path.stem] = []
+            continue
     return declared
 
 
-def add_missing(runs: list[Run], declared: dict[str, list[str]], root: Path) -> list[Run]:
-    """The runs and, as 'missing', every declared variant without a folder."""
-    have = {(run.experiment, run.variant) for run in runs}
+def add_missing(runs: list[Run], declared: list[tuple[str, str, str]], root: Path) -> list[Run]:
+    """The runs and, as 'missing', every declared one without a folder, in those mechanics that anything was run in."""
+    have = {(run.experiment, run.variant, run.mechanics) for run in runs}
+    wanted = mechanics_in(runs) or MECHANICS
     absent = [
-        Run(experiment=stem, variant=name, folder=root / stem / name, problems=["not run"])
-        for stem, names in declared.items()
-        for name in names
-        if (stem, name) not in have
+        Run(stem, name, root / mechanics / stem / name, mechanics, problems=["not run"])
+        for stem, name, mechanics in declared
+        if mechanics in wanted and (stem, name, mechanics) not in have
     ]
     return sorted([*runs, *absent], key=order)
 

@@ -1,122 +1,161 @@
-"""The harness's verdicts as rows of a table: each case with what was measured and what was asked."""
+"""The harness's verdicts as rows of a table: each case with what was asked and, mechanics by mechanics, what was measured."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
-from reports.words import number, plain, quantity, split_unit
+from reports.words import mechanics_name, number, plain, quantity, split_unit
+from verification.harness.claim_data import (
+    NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, CaseResult, ClaimResult, Reading,
+)
 
-VERDICTS: dict[str, str] = {
-    "reproduced": "yes",
-    "only under a variant": "partly",
-    "not reproduced": "no",
-    "not evaluated": "open",
-}
+KINDS: dict[str, str] = {REPRODUCED: "yes", ONLY_UNDER_A_VARIANT: "partly", NOT_REPRODUCED: "no", NOT_EVALUATED: "open"}
 _UNIT_SUFFIX: dict[str, str] = {"Pa": "Pa", "m": "m", "degrees": "deg", "deg": "deg", "s": "s", "J/m": "J"}
 
 
 @dataclass(frozen=True)
-class CaseRow:
-    """One measured thing in words; holds is 'yes', 'no' or 'open'."""
+class Found:
+    """What one mechanics found of a case, in words; holds is 'yes', 'no' or 'open'."""
 
+    mechanics: str
     holds: str
-    what: str
     measured: str
-    asked: str
     note: str
 
 
 @dataclass(frozen=True)
+class CaseRow:
+    """One measured thing in words, with what each mechanics found."""
+
+    what: str
+    asked: str
+    found: tuple[Found, ...]
+
+
+@dataclass(frozen=True)
 class ReadingRow:
-    """Another reading of what is open, with its cases; holds as in a case."""
+    """Another reading of what is open, with its cases and whether it holds in each mechanics."""
 
     name: str
-    holds: str
+    partial: bool
+    holds: tuple[tuple[str, str], ...]  # mechanics in words, then as in a case
     cases: tuple[CaseRow, ...]
 
 
 @dataclass(frozen=True)
+class Verdict:
+    """The verdict of one mechanics; kind is that of its colour."""
+
+    mechanics: str
+    verdict: str
+    kind: str
+    flags: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class ClaimRow:
-    """One claim with its verdict; kind is that of the verdict's colour."""
+    """One claim with a verdict for each mechanics."""
 
     id: str
     experiment: str
     text: str
-    verdict: str
-    kind: str
+    why: str
+    verdicts: tuple[Verdict, ...]
     cases: tuple[CaseRow, ...]
     readings: tuple[ReadingRow, ...]
-    flags: tuple[str, ...]
-    why: str
 
 
-def claim_rows(claims: list[dict[str, Any]]) -> list[ClaimRow]:
-    """Every claim as a row, in the order of their ids."""
-    return sorted((_claim_row(claim) for claim in claims), key=lambda row: row.id)
+def claim_rows(claims: Sequence[ClaimResult]) -> list[ClaimRow]:
+    """Every claim as a row, in the order of their ids, with the verdict of each mechanics that anything was evaluated in."""
+    return [_claim_row([one for one in claims if one.id == id_]) for id_ in sorted({one.id for one in claims})]
 
 
-def counts(rows: list[ClaimRow]) -> list[tuple[str, str, int]]:
-    """For each verdict its name, its colour's kind and how many claims have it."""
-    return [(name, kind, sum(row.verdict == name for row in rows)) for name, kind in VERDICTS.items()]
+def mechanics_of_rows(rows: Sequence[ClaimRow]) -> list[str]:
+    """The mechanics that verdicts were given in, in words."""
+    return list(dict.fromkeys(one.mechanics for row in rows for one in row.verdicts))
 
 
-def _claim_row(claim: dict[str, Any]) -> ClaimRow:
-    """One claim's row."""
-    verdict = str(claim.get("verdict", "not evaluated"))
-    flags = [*(claim.get("flags") or []), *(claim.get("notes") or [])]
-    readings = tuple(
-        ReadingRow(str(reading.get("name", "")), _holds(reading.get("holds")), _cases(reading.get("cases")))
-        for reading in claim.get("readings") or []
+def counts(rows: Sequence[ClaimRow]) -> list[tuple[str, list[tuple[str, str, int]]]]:
+    """For each mechanics and verdict: the verdict's name, its colour's kind and how many claims have it."""
+    return [
+        (mechanics, [(name, kind, _count(rows, mechanics, name)) for name, kind in KINDS.items()])
+        for mechanics in mechanics_of_rows(rows)
+    ]
+
+
+def _count(rows: Sequence[ClaimRow], mechanics: str, verdict: str) -> int:
+    """How many claims have a verdict in one mechanics."""
+    return sum((one.mechanics, one.verdict) == (mechanics, verdict) for row in rows for one in row.verdicts)
+
+
+def _claim_row(results: Sequence[ClaimResult]) -> ClaimRow:
+    """One claim's row from its results, one a mechanics."""
+    first = results[0]
+    verdicts = tuple(
+        Verdict(mechanics_name(one.mechanics), one.verdict, KINDS.get(one.verdict, "open"), one.flags) for one in results
     )
-    return ClaimRow(
-        id=str(claim.get("id", "?")),
-        experiment=str(claim.get("experiment", "")),
-        text=str(claim.get("text", "")),
-        verdict=verdict,
-        kind=VERDICTS.get(verdict, "open"),
-        cases=_cases(claim.get("cases")) or _numbers(claim.get("numbers")),
-        readings=readings,
-        flags=tuple(str(flag) for flag in flags),
-        why=str(claim.get("why", "")),
-    )
+    cases = _case_rows([(one.mechanics, one.cases) for one in results])
+    return ClaimRow(first.id, first.experiment, first.text, first.why, verdicts, cases, _reading_rows(results))
 
 
-def _holds(value: Any) -> str:
+def _reading_rows(results: Sequence[ClaimResult]) -> tuple[ReadingRow, ...]:
+    """The readings of a claim, each with what all mechanics that have it found."""
+    names = list(dict.fromkeys(reading.name for one in results for reading in one.readings))
+    rows = []
+    for name in names:
+        own: list[tuple[str, Reading]] = [
+            (one.mechanics, reading) for one in results for reading in one.readings if reading.name == name
+        ]
+        holds = tuple((mechanics_name(mechanics), _holds(reading.holds)) for mechanics, reading in own)
+        cases = _case_rows([(mechanics, reading.cases) for mechanics, reading in own])
+        rows.append(ReadingRow(name, not own[0][1].complete, holds, cases))
+    return tuple(rows)
+
+
+def _holds(value: bool | None) -> str:
     """A verdict on a case: null is open."""
     return "open" if value is None else "yes" if value else "no"
 
 
-def _cases(cases: Any) -> tuple[CaseRow, ...]:
-    """The cases of a claim or reading."""
-    return tuple(_case_row(case) for case in cases or [])
+def _case_rows(results: Sequence[tuple[str, Sequence[CaseResult]]]) -> tuple[CaseRow, ...]:
+    """The cases of a claim or reading, the same ones in each mechanics."""
+    rows = []
+    for together in zip(*(cases for _, cases in results)):
+        found = tuple(_found(mechanics, case) for (mechanics, _), case in zip(results, together))
+        rows.append(CaseRow(_what(together[0]), _asked(together[0]), found))
+    return tuple(rows)
 
 
-def _numbers(numbers: Any) -> tuple[CaseRow, ...]:
-    """Plain named numbers as cases that ask for nothing."""
-    pairs = numbers.items() if isinstance(numbers, dict) else []
-    return tuple(CaseRow("", split_unit(key)[0] or plain(key), quantity(key, value), "", "") for key, value in pairs)
+def _found(mechanics: str, result: CaseResult) -> Found:
+    """What one mechanics found of a case, in words."""
+    return Found(mechanics_name(mechanics), _holds(result.holds), _measured(result), result.note)
 
 
-def _case_row(case: dict[str, Any]) -> CaseRow:
-    """One case in words."""
-    name = str(case.get("observable", ""))
-    suffix = _UNIT_SUFFIX.get(str(case.get("unit", "")), "")
+def _what(result: CaseResult) -> str:
+    """What a case is about."""
+    case = result.case
     against = ""
-    if case.get("against"):
-        other = str(case.get("against_scene") or "").split("_")[0]
-        against = f" against {plain(str(case['against']))}" + (f" of {plain(other)}" if other else "")
-    parameters = ", ".join(
-        f"{split_unit(key)[0]} {quantity(key, value)}" for key, value in (case.get("parameters") or {}).items()
-    )
-    what = f"{plain(str(case.get('variant', '')))}{against}: {split_unit(name)[0]}"
-    return CaseRow(
-        holds=_holds(case.get("holds")),
-        what=what + (f" ({parameters})" if parameters else ""),
-        measured=_measured(case, suffix),
-        asked=_asked(case, suffix),
-        note="; ".join([str(case["note"])] if case.get("note") else []),
-    )
+    if case.against:
+        other = (case.against_scene or "").split("_")[0]
+        against = f" against {plain(case.against)}" + (f" of {plain(other)}" if other else "")
+    parameters = ", ".join(f"{split_unit(key)[0]} {_parameter(key, value)}" for key, value in case.parameters.items())
+    what = f"{plain(case.variant)}{against}: {split_unit(case.observable)[0]}"
+    return what + (f" ({parameters})" if parameters else "")
+
+
+def _parameter(key: str, value: object) -> str:
+    """A parameter in words; a height above an interface says which."""
+    if isinstance(value, dict) and "interface" in value:
+        offset = float(value.get("plus_m", 0.0))
+        beyond = "" if offset == 0.0 else f"{quantity('m', abs(offset))} {'above' if offset > 0 else 'below'} "
+        return f"{beyond}interface {value['interface']}"
+    return quantity(key, value)
+
+
+def _suffix(result: CaseResult) -> str:
+    """The suffix of keys that stands for a result's unit."""
+    return _UNIT_SUFFIX.get(result.unit, "")
 
 
 def _written(value: float, suffix: str) -> str:
@@ -124,23 +163,19 @@ def _written(value: float, suffix: str) -> str:
     return quantity(suffix, float(value)) if suffix else number(float(value))
 
 
-def _measured(case: dict[str, Any], suffix: str) -> str:
+def _measured(result: CaseResult) -> str:
     """What was measured: a number, a bound where the run ended first, or nothing."""
-    low, high, value = case.get("low"), case.get("high"), case.get("value")
+    low, high, suffix = result.low, result.high, _suffix(result)
     if low is not None and high is not None and low != high:
         return f"{_written(low, suffix)} to {_written(high, suffix)}"
     if low is not None and high is None:
         return f"at least {_written(low, suffix)}"
     if high is not None and low is None:
         return f"at most {_written(high, suffix)}"
-    return "nothing to measure" if value is None else _written(value, suffix)
+    return "nothing to measure" if result.value is None else _written(result.value, suffix)
 
 
-def _asked(case: dict[str, Any], suffix: str) -> str:
+def _asked(result: CaseResult) -> str:
     """The bounds that the claim asks for."""
-    bounds = [
-        f"{sign} {_written(case[key], suffix)}"
-        for key, sign in (("at_least", "≥"), ("at_most", "≤"))
-        if case.get(key) is not None
-    ]
-    return " and ".join(bounds)
+    pairs = ((result.case.at_least, "≥"), (result.case.at_most, "≤"))
+    return " and ".join(f"{sign} {_written(bound, _suffix(result))}" for bound, sign in pairs if bound is not None)

@@ -78,6 +78,14 @@ def plain(name: str) -> str:
     return name.replace("_", "–" if name in ("weak_soft", "soft_weak") else " ")
 
 
+_MECHANICS_NAMES: dict[str, str] = {"explicit": "explicit", "quasistatic": "quasi-static"}
+
+
+def mechanics_name(mechanics: str) -> str:
+    """A mechanics as words."""
+    return _MECHANICS_NAMES.get(mechanics, mechanics)
+
+
 def split_unit(key: str) -> tuple[str, float, str]:
     """A key such as restart_inlet_Pa as words, the factor to its printed unit, and that unit."""
     for suffix, factor, unit in _SCALES:

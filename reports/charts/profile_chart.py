@@ -13,14 +13,20 @@ from reports.curves import PathFigure, PathPanel, ProfileFigure, ProfilePanel
 
 def draw_profiles(data: ProfileFigure) -> Figure:
     """Fig 7: one panel a variant on common axes."""
-    figure = new_figure(5.4 * len(data.panels) + 0.8, 6.2)
-    put_title(figure, data.title, 56 * len(data.panels))
-    every = figure.subplots(1, len(data.panels), sharex=True, sharey=True, squeeze=False)[0]
-    for axes, panel in zip(every, data.panels):
-        _draw_profile_panel(axes, panel)
-        axes.set_xlim(0, 1.05 * data.opening_mm)
-        axes.set_ylim(0, 1.04 * data.height_m)
-    every[0].set_ylabel("height above the symmetry line (m)")
+    rows = [[panel for panel in data.panels if panel.mechanics == name]
+            for name in dict.fromkeys(panel.mechanics for panel in data.panels)]
+    columns = max(len(row) for row in rows)
+    figure = new_figure(5.4 * columns + 0.8, 0.6 + 5.6 * len(rows))
+    put_title(figure, data.title, 56 * columns)
+    every = figure.subplots(len(rows), columns, sharex=True, sharey=True, squeeze=False)
+    for line, row in zip(every, rows):
+        for axes in line[len(row):]:
+            axes.set_axis_off()
+        for axes, panel in zip(line, row):
+            _draw_profile_panel(axes, panel)
+            axes.set_xlim(0, 1.05 * data.opening_mm)
+            axes.set_ylim(0, 1.04 * data.height_m)
+        line[0].set_ylabel("height above the symmetry line (m)")
     return figure
 
 
@@ -57,7 +63,9 @@ def _draw_path_panel(axes: Axes, panel: PathPanel) -> None:
                           rotation=90, fontsize=7.5, color=INK)
     for path in panel.paths:
         colour = COLOURS.get(path.variant, PALE)
-        axes.plot(path.x_m, path.y_m, label=path.label, **line_of(path.variant))
+        axes.plot(path.x_m, path.y_m, label=path.label, **line_of(path.variant, path.beside, any(one.beside for one in panel.paths)))
+        if path.beside:
+            continue
         axes.plot([path.kink_at_m[0]], [path.kink_at_m[1]], marker="D", markersize=4.5, color=colour,
                   markeredgecolor="white", markeredgewidth=0.6, zorder=5)
     axes.set_xlim(x0, x1)

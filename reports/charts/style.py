@@ -89,12 +89,14 @@ def put_title(figure: Figure, text: str, characters: int) -> None:
     figure.suptitle(wrapped, x=0.008, ha="left", fontsize=11, fontweight="bold")
 
 
-def line_of(variant: str) -> dict[str, object]:
-    """Colour, width and dashes of a variant's line."""
+def line_of(variant: str, beside: bool = False, solid: bool = False) -> dict[str, object]:
+    """Colour, width and dashes of a variant's line; thin and dashed where it is beside another mechanics, then solid."""
+    if beside:
+        return {"color": COLOURS.get(variant, PALE), "linewidth": 1.1, "linestyle": (0, (4.5, 2.2)), "alpha": 0.85, "zorder": 3.9}
     return {
         "color": COLOURS.get(variant, PALE),
         "linewidth": WIDTHS.get(variant, 1.4),
-        "linestyle": DASHES.get(variant, ":"),
+        "linestyle": "-" if solid else DASHES.get(variant, ":"),
         "alpha": ALPHAS.get(variant, 1.0),
         "solid_capstyle": "butt",
         "zorder": 4.0 - 0.1 * WIDTHS.get(variant, 1.4),

@@ -1,0 +1,145 @@
+"""What inertia changes: the same variant in both mechanics, number by number."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from reports.outcome import Arrest, Outcome, longest, outcome_of
+from reports.runs import Run
+from reports.words import plain, share
+from verification.harness.observables import distances_to, path_length, resample
+from verification.harness.scenes import MECHANICS
+
+LEAST_STRAIN = 0.01  # of its largest: with less strain energy than that, no ratio to it is taken
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A number of a variant without and with inertia, in the same unit; None where a run has none."""
+
+    quasistatic: float | None
+    explicit: float | None
+
+    @property
+    def difference(self) -> float | None:
+        """With less without inertia."""
+        return None if self.quasistatic is None or self.explicit is None else self.explicit - self.quasistatic
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """One variant in both mechanics: Pa, m, and the energies' ratio."""
+
+    experiment: str
+    number: int
+    variant: str
+    is_main: bool
+    start_Pa: Pair
+    arrest_Pa: Pair
+    arrest_m: Pair
+    restart_Pa: Pair
+    end_m: Pair
+    end_Pa: Pair
+    path_m: float | None
+    kinetic_ratio: Pair
+    G_over_J: float | None
+    unlike: tuple[str, ...]
+
+
+def comparisons(runs: Sequence[Run]) -> list[Comparison]:
+    """Every variant that can be drawn in both mechanics, in the order of the runs."""
+    of = {(run.experiment, run.variant, run.mechanics): run for run in runs if run.drawable}
+    names = dict.fromkeys((run.experiment, run.variant) for run in runs)
+    pairs = [tuple(of.get((*name, mechanics)) for mechanics in MECHANICS) for name in names]
+    return [_comparison(static, moving, runs) for moving, static in pairs if moving is not None and static is not None]
+
+
+def _comparison(static: Run, moving: Run, runs: Sequence[Run]) -> Comparison:
+    """One variant without (static) and with inertia."""
+    own = [run for run in runs if run.experiment == static.experiment]
+    without, with_ = outcome_of(static, own), outcome_of(moving, own)
+    first, other = at_interface(without), at_interface(with_)
+    return Comparison(
+        experiment=static.experiment,
+        number=static.number,
+        variant=static.variant,
+        is_main=static.is_main,
+        start_Pa=Pair(without.start_Pa, with_.start_Pa),
+        arrest_Pa=Pair(*(one.from_Pa if one else None for one in (first, other))),
+        arrest_m=Pair(*(one.height_m if one else None for one in (first, other))),
+        restart_Pa=Pair(*(one.until_Pa if one else None for one in (first, other))),
+        end_m=Pair(without.final_height_m, with_.final_height_m),
+        end_Pa=Pair(without.final_inlet_Pa, with_.final_inlet_Pa),
+        path_m=path_distance(static, moving),
+        kinetic_ratio=Pair(kinetic_ratio(static), kinetic_ratio(moving)),
+        G_over_J=G_over_J(static),
+        unlike=_unlike(first, other, without, with_, static.cell_m),
+    )
+
+
+def at_interface(outcome: Outcome) -> Arrest | None:
+    """The longest arrest at an interface or to the end; none where the run only pauses."""
+    arrest = longest(outcome)
+    return arrest if arrest is not None and (arrest.interface is not None or arrest.until_Pa is None) else None
+
+
+def _unlike(first: Arrest | None, other: Arrest | None, without: Outcome, with_: Outcome, cell_m: float) -> tuple[str, ...]:
+    """In what the two do not do the same thing."""
+    found = []
+    if (first is None) != (other is None):
+        found.append(f"arrested only {'without' if other is None else 'with'} inertia")
+    elif first is not None and other is not None and abs(first.height_m - other.height_m) > 1.5 * cell_m:
+        found.append("arrested elsewhere")
+    elif first is not None and other is not None and (first.until_Pa is None) != (other.until_Pa is None):
+        found.append(f"driven on only {'with' if first.until_Pa is None else 'without'} inertia")
+    if abs(without.final_height_m - with_.final_height_m) > 1.5 * cell_m:
+        found.append("ends at another height")
+    return tuple(found)
+
+
+def path_distance(run: Run, other: Run) -> float | None:
+    """Root mean square distance between two paths over the length both have, m; None where one has not grown."""
+    paths = (run.path_m, other.path_m)
+    if any(len(path) < 3 for path in paths):
+        return None
+    common = min(path_length(path) for path in paths)
+    points = resample(paths[0], 0.25)[: int(common / 0.25) + 1]
+    return float(np.sqrt(np.mean(distances_to(points, paths[1]) ** 2)))
+
+
+def kinetic_ratio(run: Run) -> float | None:
+    """Largest ratio of kinetic to strain energy, over rows with at least a hundredth of the largest strain energy."""
+    if not {"kinetic_J", "strain_J"} <= run.history.keys():
+        return None
+    kinetic, strain = run.history["kinetic_J"], run.history["strain_J"]
+    enough = np.isfinite(kinetic) & np.isfinite(strain) & (strain > LEAST_STRAIN * np.nanmax(np.abs(strain)))
+    return float(np.max(kinetic[enough] / strain[enough])) if enough.any() else None
+
+
+def G_over_J(run: Run) -> float | None:
+    """Median of the energy released over an increment by J, away from interfaces; None where the run measures no G."""
+    if not {"G_N_m", "J_N_m"} <= run.history.keys():
+        return None
+    released, J = run.history["G_N_m"], run.history["J_N_m"]
+    near = run.history.get("at_interface", np.zeros_like(J))
+    known = np.isfinite(released) & (released > 0.0) & (J > 0.0) & (near == 0)
+    return float(np.median(released[known] / J[known])) if known.any() else None
+
+
+def inertia_words(rows: Sequence[Comparison]) -> str:
+    """One sentence on whether inertia mattered, by the study's own variants and all."""
+    known = [row for row in rows if row.kinetic_ratio.explicit is not None]
+    if not known:
+        return "No variant has been run both with and without inertia."
+    ratios = [row.kinetic_ratio.explicit or 0.0 for row in known]
+    worst = known[int(np.argmax(ratios))]
+    unlike = [row for row in rows if row.unlike]
+    return (
+        f"In {len(rows) - len(unlike)} of {len(rows)} variants the fracture does the same with and without inertia"
+        " (arrest at the same place, driven on or not, same height at the end). Kinetic energy stays below"
+        f" {share(float(np.median(ratios)))} of the strain energy in half of them; at most it is {share(max(ratios))},"
+        f" in '{plain(worst.variant)}' of Experiment {worst.number}."
+    )
