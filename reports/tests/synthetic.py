@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import csv
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import h5py
 import numpy as np
+
+from verification.harness.claim_data import (
+    NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, Case, CaseResult, ClaimResult, Reading, write_claims,
+)
 
 RATE_PA_S = 0.35e6
 START_PA = 2.0e6
@@ -32,6 +36,9 @@ class Plan:
     status: str = "completed"
     reason: str = "tip at 70 m"
     extra: str = ""
+    mechanics: str = "explicit"
+    by: str = ""  # what the run says decided its events; empty: nothing
+    kinetic: float = 0.02  # kinetic energy as a share of the fluid's work
 
 
 def scene_text(number: int, plan: Plan) -> str:
@@ -77,7 +84,7 @@ path_m = [[40, 0], [40, 5]]
 growth = "J"
 increment_m = 1.0
 [numerics]
-mechanics = "explicit"
+mechanics = "{plan.mechanics}"
 cell_m = 2.0
 shape = "bspline2"
 {plan.extra}
@@ -96,7 +103,7 @@ def height_at(plan: Plan, inlet_Pa: np.ndarray) -> np.ndarray:
 
 def write_run(root: Path, number: int, plan: Plan) -> Path:
     """One run's folder with all its files."""
-    folder = root / STEMS[number] / plan.variant
+    folder = root / plan.mechanics / STEMS[number] / plan.variant
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "scene.toml").write_text(scene_text(number, plan), encoding="utf-8")
     inlet = np.linspace(START_PA, 4.0e6, 120)
@@ -106,22 +113,24 @@ def write_run(root: Path, number: int, plan: Plan) -> Path:
         end = inlet.size // 4
     inlet, height = inlet[: end + 1], height[: end + 1]
     drift = plan.drift_m * ((height - 5.0) / 65.0) ** 2
-    _write_history(folder, inlet, height, drift)
+    _write_history(folder, plan, inlet, height, drift)
     _write_summary(folder, plan, inlet, height, drift)
     _write_fields(folder, inlet, height, plan)
     return folder
 
 
-def _write_history(folder: Path, inlet: np.ndarray, height: np.ndarray, drift: np.ndarray) -> None:
-    """history.csv with the ledger's columns."""
+def _write_history(folder: Path, plan: Plan, inlet: np.ndarray, height: np.ndarray, drift: np.ndarray) -> None:
+    """history.csv with the ledger's columns, and in quasi-static the energy released and the fluid's balance."""
     work = 1e3 * (height - 5.0) ** 1.5
     columns = {
         "time_s": (inlet - START_PA) / RATE_PA_S, "inlet_Pa": inlet, "tip_x_m": 40.0 + drift, "tip_y_m": height,
         "height_m": height, "J_N_m": np.full_like(inlet, 200.0), "mouth_opening_m": 1e-4 * height,
-        "kinetic_J": 0.02 * work, "strain_J": 0.6 * work, "fluid_work_J": work, "damping_J": 0.3 * work,
+        "kinetic_J": plan.kinetic * work * (plan.mechanics == "explicit"), "strain_J": 0.6 * work, "fluid_work_J": work, "damping_J": 0.3 * work,
         "friction_J": 0.075 * work, "energy_closure": np.full_like(inlet, 0.005),
         "J_spread": np.full_like(inlet, 0.006),
     }
+    if plan.mechanics == "quasistatic":
+        columns |= {"G_N_m": np.full_like(inlet, 204.0), "fluid_volume_balance": np.full_like(inlet, 1e-11)}
     with (folder / "history.csv").open("w", encoding="utf-8", newline="") as stream:
         writer = csv.writer(stream)
         writer.writerow(columns)
@@ -148,13 +157,17 @@ def _write_summary(folder: Path, plan: Plan, inlet: np.ndarray, height: np.ndarr
         if plan.restart_Pa is not None and (height > plan.stop_at_m).any():
             events.append(_event("restart", int(np.argmax(height > plan.stop_at_m)), *here))
     events.append(_event("stop", inlet.size - 1, *here))
+    for event in events if plan.by else []:
+        event |= {"by": plan.by, "at_interface": False}
     summary = {
         "scene": folder.parent.name, "variant": plan.variant, "status": plan.status, "reason": plan.reason,
-        "mechanics": "explicit", "cells": 1600, "particles": 6400, "steps": 12345, "time_s": 1.0,
+        "mechanics": plan.mechanics, "cells": 1600, "particles": 6400, "steps": 12345, "time_s": 1.0,
         "inlet_Pa": inlet[-1], "wall_s": 12.5, "particle_steps_per_s": 2.0e7, "peak_memory_MB": 55.0,
         "version": "0.1.0", "energy": {"closure": 0.005}, "events": events,
         "tips": [{"x_m": 40.0, "y_m": height[-1], "J_spread": 0.006, "kink_deg": 1.0}],
     }
+    if plan.mechanics == "quasistatic":
+        summary["monitors"] = {"volume_balance": 3e-11, "contact_residual": 2e-12, "mirror": True}
     (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
 
 
@@ -185,43 +198,55 @@ def _write_fields(folder: Path, inlet: np.ndarray, height: np.ndarray, plan: Pla
             cloud["s_xx_Pa"] = -2.0e6 + 0.5e6 * near
 
 
+def write_both(root: Path, number: int, plan: Plan) -> None:
+    """A run in each mechanics; without inertia it starts 0.03 MPa earlier and decides by energy."""
+    write_run(root, number, plan)
+    write_run(root, number, replace(plan, mechanics="quasistatic", by="energy", start_Pa=plan.start_Pa - 0.03e6))
+
+
 def write_all(root: Path) -> Path:
-    """All six experiments with their interface types, one run failed; returns the folder of runs."""
+    """All six experiments with their interface types in both mechanics, one run failed; returns the folder of runs."""
     runs = root / "runs"
     weak = {"stop_at_m": 10.0, "restart_Pa": 3.2e6}
     for number in (1, 2):
         for plan in (Plan("perfect"), Plan("friction", ("friction",)), Plan("weak", ("weak",), **weak),
                      Plan("soft", ("soft",), stop_at_m=10.0)):
-            write_run(runs, number, plan)
-    write_run(runs, 1, Plan("uniform", start_Pa=2.36e6, extra='[fluid]\nlaw = "uniform"'))
+            write_both(runs, number, plan)
+    write_both(runs, 1, Plan("uniform", start_Pa=2.36e6, extra='[fluid]\nlaw = "uniform"'))
     for plan in (Plan("perfect", ("perfect", "perfect")), Plan("weak_soft", ("weak", "soft"), **weak),
                  Plan("soft_weak", ("soft", "weak"), stop_at_m=10.0, restart_Pa=3.0e6)):
-        write_run(runs, 3, plan)
+        write_both(runs, 3, plan)
     for plan in (Plan("perfect", ("perfect", "perfect")), Plan("weak", ("weak", "weak"), **weak),
                  Plan("soft", ("soft", "soft"), status="failed", reason="a mechanism: the upper block is free")):
-        write_run(runs, 4, plan)
+        write_both(runs, 4, plan)
     for number, sign in ((5, -1.0), (6, 1.0)):
         for plan in (Plan("perfect", drift_m=0.4 * sign), Plan("friction", ("friction",), drift_m=0.405 * sign),
                      Plan("soft", ("soft",), drift_m=1.3 * sign)):
-            write_run(runs, number, plan)
-    (runs / "claims.json").write_text(json.dumps({"claims": CLAIMS}), encoding="utf-8")
+            write_both(runs, number, plan)
+    write_claims(claims(), runs / "claims.json")
     return runs
 
 
-_CASE = {
-    "observable": "plateau_Pa", "variant": "weak", "against": None, "against_scene": None, "at_least": 5e4,
-    "at_most": None, "parameters": {"interface": 1}, "unit": "Pa", "value": 6.4e5, "low": 6.4e5, "high": 6.4e5,
-    "holds": True, "evaluated": True, "note": "", "flags": [],
-}
-_OPEN = {**_CASE, "variant": "soft", "value": 1.6e6, "low": 1.6e6, "high": None, "note": "does not grow on from 10 m"}
-CLAIMS = [
-    {"id": "1b", "experiment": STEMS[1], "text": "Weak and soft stop the fracture.", "why": "0.05 MPa is an arrest.",
-     "observable": "plateau_Pa", "verdict": "reproduced", "cases": [_CASE, _OPEN], "readings": [],
-     "flags": ["J at interface"]},
-    {"id": "5a", "experiment": STEMS[5], "text": "The path turns away from the stiff rock.", "why": "Its sign.",
-     "observable": "lateral_deflection_m", "verdict": "not reproduced", "cases": [{**_CASE, "holds": False}],
-     "readings": [{"name": "loaded", "holds": None, "cases": [_OPEN]}], "flags": []},
-    {"id": "2c", "experiment": STEMS[2], "text": "The start is later.", "why": "Its pressure.",
-     "observable": "start_Pa", "verdict": "only under a variant", "cases": [{**_CASE, "holds": False}],
-     "readings": [{"name": "loaded", "holds": True, "cases": [_CASE]}], "flags": []},
-]
+def case(variant: str = "weak", holds: bool | None = True, value: float = 6.4e5, high: float | None = 6.4e5) -> CaseResult:
+    """A case of a plateau: without an upper bound it is open from above."""
+    asked = Case("plateau_Pa", variant, at_least=5e4, parameters={"interface": 1})
+    note = "" if high is not None else "does not grow on from 10 m"
+    return CaseResult(asked, "Pa", value, value, high, holds, True, note, ())
+
+
+def claims() -> list[ClaimResult]:
+    """Three claims in both mechanics, which agree but on the last."""
+    found = []
+    for mechanics, flags in (("explicit", ("J at interface",)), ("quasistatic", ())):
+        failing, loaded = (case(holds=False),), (case("soft", None, 1.6e6, None),)
+        under = (Reading("edges: loaded", True, (case(),), "loaded", True),)
+        last = REPRODUCED if mechanics == "quasistatic" else ONLY_UNDER_A_VARIANT
+        found += [
+            ClaimResult("1b", STEMS[1], mechanics, "Weak and soft stop the fracture.", "0.05 MPa is an arrest.", "plateau_Pa",
+                        REPRODUCED, True, (case(), case("soft", True, 1.6e6, None)), (), flags),
+            ClaimResult("5a", STEMS[5], mechanics, "The path turns away from the stiff rock.", "Its sign.", "lateral_deflection_m",
+                        NOT_REPRODUCED, False, failing, (Reading("edges: loaded", None, loaded, "loaded", False),), ()),
+            ClaimResult("2c", STEMS[2], mechanics, "The start is later.", "Its pressure.", "start_Pa", last,
+                        mechanics == "quasistatic", failing if mechanics == "explicit" else (case(),), under, ()),
+        ]
+    return found

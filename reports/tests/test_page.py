@@ -13,7 +13,35 @@ from reports.make_page import main
 from reports.tests.synthetic import STEMS, Plan, write_all, write_run
 
 STUDY_FIGURES = tuple(f"fig{number}" for number in range(1, 9))
-FIGURES = (*STUDY_FIGURES, "variants", *(f"energy{number}" for number in range(1, 7)))
+MECHANICS = ("explicit", "quasistatic")
+FIGURES = (
+    *STUDY_FIGURES, "choice_flow", *(f"variants_{name}" for name in MECHANICS),
+    *(f"energy{number}_{name}" for number in range(1, 7) for name in MECHANICS),
+)
+SCENE = "[variants.perfect]\n[variants.weak]\n[variants.uniform]\nfluid.law = 'uniform'\n[variants.flow]\nfluid.law = 'reynolds'\n"
+POINTS = """
+[[point]]
+id = "flow"
+open = "flow law"
+default = "the study's"
+[[point.choice]]
+id = "uniform"
+name = "inlet pressure everywhere"
+runs.exp1_single_interface = {perfect = "uniform"}
+[[point.choice]]
+id = "loaded"
+name = "conserves volume"
+runs.exp1_single_interface = {perfect = "flow"}
+"""
+
+
+def write_scenes(root: Path) -> Path:
+    """A folder with a scene of Experiment 1 and an open point."""
+    folder = root / "scenes"
+    (folder / "choices").mkdir(parents=True)
+    (folder / f"{STEMS[1]}.toml").write_text(SCENE, encoding="utf-8")
+    (folder / "choices" / "points.toml").write_text(POINTS, encoding="utf-8")
+    return folder
 
 
 class Links(HTMLParser):
@@ -50,7 +78,7 @@ def make(runs: Path, out: Path, experiments: Path | None = None) -> int:
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A page of all six experiments, one run of which failed."""
     root = tmp_path_factory.mktemp("page")
-    assert make(write_all(root), root / "out") == 0
+    assert make(write_all(root), root / "out", write_scenes(root)) == 0
     return root / "out"
 
 
@@ -82,12 +110,49 @@ def test_a_moved_page_still_holds_together(made: Path, tmp_path: Path) -> None:
 
 
 def test_verdicts_come_first_with_their_numbers(made: Path) -> None:
-    """The table of claims precedes all figures and has what was measured and asked."""
+    """The table of claims precedes all figures and has what was measured and asked, for each mechanics."""
     page = (made / "index.html").read_text(encoding="utf-8")
     assert page.index('id="verdicts"') < page.index("<figure")
     table = page[page.index('class="claims"') : page.index("<figure")]
     for words in ("only under a variant", "not reproduced", "0.64\u00a0MPa", "at least 1.6\u00a0MPa", "J at interface"):
         assert words in table, words
+    row = table[table.index('class="id">2c') :]
+    assert re.findall(r'class="verdict (\w+)"', row)[:2] == ["partly", "yes"], "explicit and quasi-static side by side"
+
+
+def test_the_two_mechanics_are_compared(made: Path) -> None:
+    """Start, arrest and kinetic energy of a variant stand one above the other with their difference."""
+    page = (made / "index.html").read_text(encoding="utf-8")
+    table = page[page.index('id="inertia"') : page.index('id="open"')]
+    row = table[table.index("<b>1 weak</b>") :].split("</tr>")[0]
+    assert "+0.0" in row and "2.3" in row and "10\u00a0m" in row and "3.3\u00a0%" in row
+    assert "In " in table and "does the same with and without inertia" in table
+
+
+def test_claims_stand_against_choices(made: Path) -> None:
+    """A line a claim and mechanics; a choice that holds only for some of the cases, or is open, says so."""
+    page = (made / "index.html").read_text(encoding="utf-8")
+    table = page[page.index('class="sensitivity"') :].split("</table>")[0]
+    assert "conserves volume" in table and "inlet pressure everywhere" not in table, "only choices that claims were evaluated under"
+    lines = re.findall(r'class="mark (\w+)', table)
+    assert lines == ["yes", "none", "yes", "none", "no", "yes", "yes", "yes", "no", "open", "no", "open"]
+    assert "reproduced under every choice and mechanics that was run: 1b" in page.lower()
+
+
+def test_variants_of_other_choices_are_folded(made: Path) -> None:
+    """The study's own variants are open to see, the others behind a line that says how many there are."""
+    page = (made / "index.html").read_text(encoding="utf-8")
+    part = page[page.index(f'id="{STEMS[1]}"') : page.index(f'id="{STEMS[2]}"')]
+    assert "Runs of other choices (3)" in part, "uniform in both, flow missing in quasi-static, which alone can run it"
+    assert part.index("<b>weak</b>") < part.index('class="others"') < part.index("<b>uniform</b>")
+
+
+def test_one_mechanics_alone_is_a_page_without_comparison(tmp_path: Path) -> None:
+    """With explicit runs only nothing speaks of the other mechanics."""
+    write_run(tmp_path / "runs", 1, Plan("perfect"))
+    assert make(tmp_path / "runs", tmp_path / "out") == 0
+    page = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
+    assert 'id="inertia"' not in page and "uasi-static" not in page
 
 
 def test_a_failed_run_is_shown_with_its_reason(made: Path) -> None:
@@ -125,7 +190,7 @@ def test_declared_variants_without_a_run_are_shown(tmp_path: Path) -> None:
     write_run(tmp_path / "runs", 1, Plan("perfect"))
     assert make(tmp_path / "runs", tmp_path / "out", scenes) == 0
     page = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
-    assert "not run: undamped" in page and 'class="missing"' in page
+    assert "not run: undamped (explicit)" in page and 'class="missing"' in page
 
 
 @pytest.mark.parametrize("name", ["scene.toml", "summary.json", "history.csv", "result.h5"])
@@ -146,7 +211,7 @@ def test_a_damaged_folder_is_not_fatal(tmp_path: Path, name: str, how: str) -> N
 
 def test_a_run_that_never_started_is_told_from_its_outcome(tmp_path: Path) -> None:
     """A folder with only the process's outcome is a failure with that reason."""
-    folder = tmp_path / "runs" / STEMS[2] / "weak"
+    folder = tmp_path / "runs" / "explicit" / STEMS[2] / "weak"
     folder.mkdir(parents=True)
     (folder / "outcome.json").write_text('{"status": "failed", "reason": "bad input: no rock"}', encoding="utf-8")
     assert make(tmp_path / "runs", tmp_path / "out") == 0

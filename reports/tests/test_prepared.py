@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from reports.choices import choice_figure
+from reports.comparison import comparisons, inertia_words
 from reports.crack import raster, side_of
 from reports.curves import height_figure, largest_turn, path_figure, profile_figure
 from reports.layout import layout_of
-from reports.ledger import base_of, closure_of, differences
+from reports.ledger import base_of, closure_of, differences, suspicions
 from reports.outcome import finding, outcome_of, outcomes_of
-from reports.runs import load_run, load_runs
-from reports.tests.synthetic import Plan, write_run
+from reports.runs import NotAvailable, load_run, load_runs
+from reports.sensitivity import sensitivity
+from reports.tests.synthetic import STEMS, Plan, claims, write_both, write_run
 from reports.verdicts import claim_rows
 from reports.words import number, quantity
+from verification.harness.choices import Choice, Point
+from verification.harness.claim_data import NOT_REPRODUCED, Case, CaseResult, ClaimResult
 
 
 def test_sides_are_signs_about_the_extended_crack() -> None:
@@ -129,11 +135,21 @@ def test_a_variant_is_told_by_what_differs(tmp_path: Path) -> None:
 
 def test_verdicts_keep_bounds_and_open_cases() -> None:
     """A case that is only bounded says so; one that is open is neither right nor wrong."""
-    case = {"observable": "start_Pa", "variant": "soft", "unit": "Pa", "value": 4e6, "low": 4e6, "high": None,
-            "holds": None, "at_most": 3e6, "parameters": {"from_m": 6, "interface": 1}}
-    row = claim_rows([{"id": "2c", "text": "t", "verdict": "not reproduced", "cases": [case]}])[0].cases[0]
-    assert (row.holds, row.measured, row.asked) == ("open", "at least 4\u00a0MPa", "≤ 3\u00a0MPa")
-    assert row.what == "soft: start (from 6\u00a0m, interface 1)"
+    asked = Case("start_Pa", "soft", at_most=3e6, parameters={"from_m": {"interface": 1, "plus_m": -2}, "interface": 1})
+    result = CaseResult(asked, "Pa", 4e6, 4e6, None, None, True, "", ())
+    claim = ClaimResult("2c", STEMS[2], "explicit", "t", "w", "start_Pa", NOT_REPRODUCED, None, (result,), (), ())
+    row = claim_rows([claim])[0].cases[0]
+    assert row.asked == "≤ 3\u00a0MPa" and row.what == "soft: start (from 2\u00a0m below interface 1, interface 1)"
+    assert (row.found[0].holds, row.found[0].measured) == ("open", "at least 4\u00a0MPa")
+
+
+def test_claims_of_both_mechanics_are_one_row() -> None:
+    """One row a claim, its cases with what each mechanics found, in the same order."""
+    rows = claim_rows(claims())
+    assert [row.id for row in rows] == ["1b", "2c", "5a"]
+    assert [(one.mechanics, one.kind) for one in rows[1].verdicts] == [("explicit", "partly"), ("quasi-static", "yes")]
+    assert [found.holds for found in rows[1].cases[0].found] == ["no", "yes"]
+    assert rows[2].readings[0].partial and rows[2].readings[0].holds == (("explicit", "open"), ("quasi-static", "open"))
 
 
 def test_numbers_in_words() -> None:
@@ -141,3 +157,139 @@ def test_numbers_in_words() -> None:
     assert quantity("restart_inlet_Pa", 3.21e6) == "3.21\u00a0MPa"
     assert quantity("minimum_opening_m", 2e-4) == "2.00×10⁻⁴\u00a0m"
     assert number(0.0123456) == "0.0123" and number(2.0) == "2" and number(float("nan")) == "not finite"
+
+
+# --- both mechanics
+
+WEAK = Plan("weak", ("weak",), stop_at_m=10.0, restart_Pa=3.2e6)
+
+
+def test_an_arrest_by_J_is_not_flagged_where_energy_finds_it_too(tmp_path: Path) -> None:
+    """The quasi-static run of the same variant confirms an arrest at the same height, and no other."""
+    write_both(tmp_path, 1, WEAK)
+    runs = load_runs(tmp_path)
+    explicit, static = outcome_of(runs[0], runs).arrests[0], outcome_of(runs[1], runs).arrests[0]
+    assert explicit.by_J and explicit.confirmed is True and not static.by_J and static.interface == "weak"
+    assert not height_figure(runs).flagged and height_figure(runs[:1]).flagged
+    assert suspicions(runs[0], runs) == [] and suspicions(runs[0]) == ["J at interface (10\u00a0m)"]
+    write_run(tmp_path, 1, replace(WEAK, mechanics="quasistatic", by="energy", stop_at_m=None))
+    runs = load_runs(tmp_path)
+    assert outcome_of(runs[0], runs).arrests[0].confirmed is False and height_figure(runs).flagged
+
+
+def test_an_arrest_that_energy_decides_beyond_its_interface_is_that_interface_s(tmp_path: Path) -> None:
+    """Within the reach of the J rings energy decides: such an arrest belongs to the interface; farther off it does not."""
+    for stop, name in ((14.0, "weak"), (30.0, None)):
+        plan = replace(WEAK, stop_at_m=stop, mechanics="quasistatic", by="energy")
+        assert outcome_of(load_run(write_run(tmp_path, 1, plan))).arrests[0].interface == name
+
+
+def test_figures_overlay_both_mechanics_and_tell_of_the_quasistatic_one(tmp_path: Path) -> None:
+    """The explicit curve stands beside; title and caption are the quasi-static run's."""
+    write_both(tmp_path, 1, Plan("perfect"))
+    runs = load_runs(tmp_path)
+    figure = height_figure(runs)
+    assert [(curve.mechanics, curve.beside) for curve in figure.curves] == [("explicit", True), ("quasi-static", False)]
+    assert figure.title.startswith("Quasi-static: Perfect grew") and figure.title.count("grew") == 1
+    assert not height_figure(runs[:1]).curves[0].beside and height_figure(runs[:1]).title.startswith("Perfect grew")
+
+
+def test_paths_overlay_both_mechanics(tmp_path: Path) -> None:
+    """The heading tells the quasi-static path, the explicit one has a label of its own."""
+    write_run(tmp_path, 5, Plan("perfect", drift_m=-0.4))
+    write_run(tmp_path, 5, Plan("perfect", drift_m=-1.4, mechanics="quasistatic"))
+    panel = path_figure([load_runs(tmp_path)]).panels[0]
+    assert [(path.variant, path.beside) for path in panel.paths] == [("perfect", False), ("perfect", True)]
+    assert "by 1.4\u00a0m (perfect)" in panel.heading and "0.40" in panel.paths[1].label and "explicit" in panel.paths[1].label
+
+
+def test_profiles_of_both_mechanics(tmp_path: Path) -> None:
+    """A panel for each, the quasi-static one first and named."""
+    write_both(tmp_path, 4, Plan("perfect"))
+    panels = profile_figure(load_runs(tmp_path)).panels
+    assert [panel.mechanics for panel in panels] == ["quasistatic", "explicit"]
+    assert "quasi-static" in panels[0].heading
+
+
+def test_the_difference_that_inertia_makes(tmp_path: Path) -> None:
+    """Start, arrest, end, path and energies of one variant in both mechanics, by hand."""
+    write_both(tmp_path, 1, WEAK)
+    (row,) = comparisons(load_runs(tmp_path))
+    assert row.start_Pa.difference == pytest.approx(0.03e6, abs=0.02e6)
+    assert row.arrest_m.quasistatic == row.arrest_m.explicit == 10.0 and row.unlike == () and row.path_m == 0.0
+    assert row.kinetic_ratio.explicit == pytest.approx(0.02 / 0.6) and row.kinetic_ratio.quasistatic == 0.0
+    assert row.G_over_J == pytest.approx(1.02)
+    assert "In 1 of 1 variants" in inertia_words([row]) and "3.3\u00a0%" in inertia_words([row])
+
+
+@pytest.mark.parametrize("other, words", [
+    (Plan("weak", ("weak",)), "arrested only with inertia"),
+    (replace(WEAK, restart_Pa=None), "driven on only with inertia"),
+    (replace(WEAK, stop_at_m=16.0, restart_Pa=None), "arrested elsewhere"),
+])
+def test_what_is_not_alike_is_said(tmp_path: Path, other: Plan, words: str) -> None:
+    """A quasi-static run that does another thing than the explicit one is told so."""
+    write_run(tmp_path, 1, WEAK)
+    write_run(tmp_path, 1, replace(other, mechanics="quasistatic", by="energy"))
+    (row,) = comparisons(load_runs(tmp_path))
+    assert words in row.unlike
+
+
+def test_paths_apart_are_measured(tmp_path: Path) -> None:
+    """A path that drifts by 1 m at its end against a straight one: between nothing and that."""
+    write_run(tmp_path, 5, Plan("perfect"))
+    write_run(tmp_path, 5, Plan("perfect", drift_m=1.0, mechanics="quasistatic"))
+    (row,) = comparisons(load_runs(tmp_path))
+    # a parabola's root mean square is 1/sqrt(5) of its end; a little less with the straight start
+    assert row.path_m == pytest.approx(1.0 / 5.0**0.5, rel=0.05)
+
+
+def test_open_monitors_are_suspect(tmp_path: Path) -> None:
+    """A fluid balance that does not close is flagged; one that does is not."""
+    run = load_run(write_run(tmp_path, 1, Plan("perfect", mechanics="quasistatic")))
+    assert suspicions(run) == []
+    run.summary["monitors"]["volume_balance"] = 1e-5
+    assert suspicions(run) == ["fluid volume open by 1.00×10⁻⁵"]
+
+
+# --- open points
+
+POINT = Point("flow", "flow law", "the study's", (
+    Choice("uniform", "flow law: uniform", "uniform", {STEMS[1]: {"perfect": "uniform", "weak": "weak"}}),
+    Choice("other", "flow law: other", "other", {STEMS[1]: {"weak": "flow"}, STEMS[5]: {"perfect": "near"}}),
+))
+
+
+def test_a_choice_stands_beside_its_default(tmp_path: Path) -> None:
+    """Only variants that the choice changes are drawn, with the default of their own mechanics, and the effect is told."""
+    write_both(tmp_path, 1, Plan("perfect"))
+    write_both(tmp_path, 1, WEAK)
+    write_run(tmp_path, 1, Plan("uniform", start_Pa=2.6e6))
+    write_run(tmp_path, 1, replace(WEAK, variant="flow", restart_Pa=None, mechanics="quasistatic"))
+    figure = choice_figure(POINT, load_runs(tmp_path))
+    headings = [panel.heading for row in figure.rows for panel in row]
+    assert headings == ["Experiment 1, quasi-static", "Experiment 1, explicit"]
+    kinds = [[(line.variant, line.choice) for line in panel.lines] for row in figure.rows for panel in row]
+    assert kinds == [[("weak", 0), ("weak", 2)], [("perfect", 0), ("perfect", 1)]]
+    assert "uniform: start +0.2" in figure.title and "ends at 10\u00a0m instead of 70\u00a0m (weak, Experiment 1)" in figure.title
+    assert figure.rows[0][0].x_range == figure.rows[0][1].x_range, "one row, the same axes"
+
+
+def test_a_choice_of_paths(tmp_path: Path) -> None:
+    """Where the interface is parallel the path is drawn, and its distance told."""
+    write_run(tmp_path, 5, Plan("perfect"))
+    write_run(tmp_path, 5, Plan("near", drift_m=2.0))
+    figure = choice_figure(POINT, load_runs(tmp_path))
+    assert figure.rows[0][0].is_path and "path 0.8" in figure.title
+    with pytest.raises(NotAvailable):
+        choice_figure(POINT, load_runs(tmp_path / "nowhere"))
+
+
+def test_the_table_of_claims_against_choices() -> None:
+    """Columns are the choices that claims were evaluated under; a claim that some choice overturns is named."""
+    point = Point("edges", "edges", "held", (Choice("loaded", "edges: loaded", "loaded", {}), Choice("x", "edges: x", "x", {})))
+    table = sensitivity(claims(), [point, POINT])
+    assert table.points == (("edges", "edges", 1),) and [column.name for column in table.columns] == ["loaded"]
+    kinds = {(line.id, line.mechanics): [cell.kind for cell in line.cells] for line in table.lines}
+    assert kinds["2c", "explicit"] == ["no", "yes"] and kinds["5a", "explicit"] == ["no", "open"]
+    assert "not under others: 2c" in table.finding and "that was run: 1b" in table.finding

@@ -52,3 +52,19 @@ def test_a_torn_history_is_named_with_its_line(tmp_path: Path) -> None:
         stream.write("1.0,2.0\n")
     with pytest.raises(LoadError, match="history.csv:6"):
         load(folder)
+
+
+def test_what_a_quasistatic_run_adds_is_optional(tmp_path: Path) -> None:
+    folder = write_run(tmp_path / "exp" / "weak", climb(to_m=20.0, plateaus={10.0: 0.1e6}), mechanics="quasistatic")
+    run = load(folder)
+    assert math.isnan(run.summary.tips[0].G_N_m) and run.summary.events[0].by == "" and run.summary.monitors == {}
+    assert not run.decides_by_J
+    summary = json.loads((folder / "summary.json").read_text())
+    summary["tips"][0]["G_N_m"] = 205.0
+    summary["events"][1] |= {"by": "energy", "at_interface": False}
+    summary["events"][2] |= {"by": "J", "at_interface": True}
+    summary["monitors"] = {"volume_balance": 1e-12, "mirror": True}
+    (folder / "summary.json").write_text(json.dumps(summary))
+    run = load(folder)
+    assert run.summary.tips[0].G_N_m == 205.0 and run.summary.monitors["mirror"] is True
+    assert [(event.by, event.at_interface) for event in run.summary.events[1:3]] == [("energy", False), ("J", True)]

@@ -133,3 +133,16 @@ def test_bounds_are_judged_by_both_ends() -> None:
     assert Measured(1.0, 2.0).holds(1.5, None) is None
     assert Measured(1.0, 2.0).holds(2.5, None) is False
     assert Measured(math.nan, math.nan).holds(None, 1.0) is None
+
+
+def test_heights_may_be_given_above_an_interface(tmp_path: Path) -> None:
+    low = make(tmp_path, "low", climb(to_m=14.0))
+    layers = '[{rock = "stiff", thickness_m = 15.0}, {rock = "stiff", thickness_m = 65.0}]'
+    high = make(tmp_path, "high", climb(to_m=14.0), layers=layers)
+    assert measure("final_height_m", {}, low, None).value == pytest.approx(14.0)
+    assert measure("final_height_m", {"above_interface": 1}, low, None).value == pytest.approx(4.0)
+    assert measure("final_height_m", {"above_interface": 1}, high, None).value == pytest.approx(-1.0)
+    late = make(tmp_path, "late", climb(2.40 * MPA, to_m=14.0))
+    given = {"height_m": {"interface": 1, "plus_m": 2}}
+    assert measure("pressure_at_height_difference_Pa", given, late, low).value == pytest.approx(0.04 * MPA)
+    assert not measure("pressure_at_height_difference_Pa", given, high, low).exact, "17 m is not reached"
