@@ -48,7 +48,7 @@ void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& st
   add_net_tractions(state);                // f_i += D^T (P n - t_in_situ) A
   fold_to_masters(state, state.sums);      // symmetric and fixed edges
   const GridEnergy grid = advance_momentum(scene.numerics.damping_1_s, state);  // v_i = mom_i/m_i + dt f_i/m_i
-  solve_reactions(scene, state);  // contact, friction, springs at the step's end
+  solve_reactions(scene, rocks, state);  // contact, friction, springs at the step's end
   const GridEnergyAfter after = grid_energy(state);
   spread_to_tied(state);
   const std::vector<NodeMotion> by_forces = state.motion;  // J takes accelerations from it

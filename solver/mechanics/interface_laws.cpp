@@ -3,31 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mechanics/surface_law.hpp"
+
 namespace strata {
 
 namespace {
 
 using Kind = InterfaceLaw::Kind;
 
-// Coulomb friction that holds the tangential jump where it was (stick), up to mu n.
-double coulomb(double mu, double n, const FreeJump& w) {
-  const double stick = w.per_t > 0.0 ? -(w.t - w.t_start) / w.per_t : 0.0;
-  return std::clamp(stick, -mu * n, mu * n);
+// r = r_rest - D w with w = w_free + per r, in the form that keeps its digits for any D > 0.
+double spring(double D, double r_rest, double w_free, double per) {
+  return D > 0.0 ? (r_rest / D - w_free) / (1.0 / D + per) : 0.0;
 }
 
-// Reaction of contact: none while open, else what closes the jump but for contact_compliance.
-double contact(const FreeJump& w) {
-  if (!(w.per_n > 0.0)) return 0.0;
-  const double compliance = contact_compliance * w.per_n;
-  return std::max(0.0, (compliance * w.n_rest - w.n) / (w.per_n + compliance));
-}
-
-Reaction react_soft(const InterfaceLaw& law, const FreeJump& w) {
-  // -D w with w = w_free + per r: r = -w_free/(1/D + per).
-  const auto spring = [](double D, double w_free, double per) { return D > 0.0 ? -w_free / (1.0 / D + per) : 0.0; };
-  const double pushed = law.compression == InterfaceLaw::Compression::contact ? contact(w) : 0.0;
-  const double n = pushed > 0.0 ? pushed : spring(law.normal_stiffness_Pa_m, w.n, w.per_n);
-  return {n, spring(law.shear_stiffness_Pa_m, w.t, w.per_t)};
+// Both branches fall as the jump grows, so that the larger answer is that of the larger branch.
+Reaction react_soft(const InterfaceLaw& law, double k, const FreeJump& w) {
+  double n = spring(law.normal_stiffness_Pa_m, 0.0, w.n, w.per_n);
+  if (law.compression == InterfaceLaw::Compression::contact) n = std::max(n, spring(k, w.n_rest, w.n, w.per_n));
+  return {n, spring(law.shear_stiffness_Pa_m, 0.0, w.t, w.per_t)};
 }
 
 // Places share nodes with about six neighbours, so plain Gauss-Seidel (1) is slow: 327 sweeps a step in Experiment 1
@@ -45,6 +38,8 @@ Reaction admissible(const InterfaceLaw& law, Reaction r) {
 struct Place {
   SurfacePoint* s = nullptr;
   const InterfaceLaw* law = nullptr;
+  double k = 0.0;          // contact stiffness (Pa/m)
+  double r_t_start = 0.0;  // tangential reaction at the start of the step (Pa)
   std::array<int, 18> record{};
   std::array<double, 18> c_x{}, c_y{};  // weights in the jump
   std::array<double, 18> d_x{}, d_y{};  // velocity per unit of reaction (m/s/Pa)
@@ -60,22 +55,29 @@ void add_entry(Place& place, const Master& master, double weight) {
   place.c_y[static_cast<std::size_t>(k)] += weight * master.y;
 }
 
-Place make_place(const State& state, const SurfaceStencil& stencil, SurfacePoint& s, const InterfaceLaw& law) {
+Vec2 tangent_of(const SurfacePoint& s) {
+  return {s.n.y(), -s.n.x()};
+}
+
+Place make_place(const State& state, const SurfaceStencil& stencil, SurfacePoint& s, const InterfaceLaw& law,
+                 double k) {
   Place place;
   place.s = &s;
   place.law = &law;
+  place.k = k;
+  place.r_t_start = s.reaction.dot(tangent_of(s));
   for (std::size_t n = 0; n < 9; ++n) {
     if (stencil.plus[n] == stencil.minus[n]) continue;
     add_entry(place, state.masters[static_cast<std::size_t>(stencil.plus[n])], stencil.N[n]);
     add_entry(place, state.masters[static_cast<std::size_t>(stencil.minus[n])], -stencil.N[n]);
   }
   double a_x = 0.0, a_y = 0.0;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(place.n); ++k) {
-    const double per_mass = state.dt * s.A / state.sums[static_cast<std::size_t>(place.record[k])].m;
-    place.d_x[k] = per_mass * place.c_x[k];
-    place.d_y[k] = per_mass * place.c_y[k];
-    a_x += state.dt * place.c_x[k] * place.d_x[k];
-    a_y += state.dt * place.c_y[k] * place.d_y[k];
+  for (std::size_t e = 0; e < static_cast<std::size_t>(place.n); ++e) {
+    const double per_mass = state.dt * s.A / state.sums[static_cast<std::size_t>(place.record[e])].m;
+    place.d_x[e] = per_mass * place.c_x[e];
+    place.d_y[e] = per_mass * place.c_y[e];
+    a_x += state.dt * place.c_x[e] * place.d_x[e];
+    a_y += state.dt * place.c_y[e] * place.d_y[e];
   }
   place.per_n = s.n.x() * s.n.x() * a_x + s.n.y() * s.n.y() * a_y;
   place.per_t = s.n.y() * s.n.y() * a_x + s.n.x() * s.n.x() * a_y;
@@ -104,15 +106,16 @@ Vec2 jump_rate(const Place& place, const std::vector<NodeMotion>& motion) {
 // allows; returns how much the reaction changed (Pa).
 double relax(const Place& place, double dt, std::vector<NodeMotion>& motion) {
   SurfacePoint& s = *place.s;
-  const Vec2 tangent{s.n.y(), -s.n.x()};
+  const Vec2 tangent = tangent_of(s);
   const Vec2 w = s.w + dt * jump_rate(place, motion);
   const FreeJump free{w.dot(s.n) - place.per_n * s.reaction.dot(s.n),
                       w.dot(tangent) - place.per_t * s.reaction.dot(tangent),
                       s.w.dot(tangent),
+                      place.r_t_start,
                       place.per_n,
                       place.per_t,
                       s.closing_stress() - s.P};
-  const Reaction r = react(*place.law, free);
+  const Reaction r = react(*place.law, place.k, free);
   const Reaction over =
       admissible(*place.law, {s.reaction.dot(s.n) + over_relaxation * (r.n - s.reaction.dot(s.n)),
                               s.reaction.dot(tangent) + over_relaxation * (r.t - s.reaction.dot(tangent))});
@@ -138,32 +141,34 @@ SurfaceStencil tie_stencil(const TipTie& tie) {
   return stencil;
 }
 
-std::vector<Place> split_places(const Scene& scene, State& state, const InterfaceLaw& faces,
-                                const std::vector<InterfaceLaw>& ties) {
+std::vector<Place> split_places(const Scene& scene, const std::vector<Elasticity>& rocks, State& state,
+                                const InterfaceLaw& faces, const std::vector<InterfaceLaw>& ties) {
   std::vector<Place> places;
   const auto mass = [&](int record) {
     return state.sums[static_cast<std::size_t>(state.masters[static_cast<std::size_t>(record)].record)].m;
   };
   for (std::size_t k = 0; k < state.ties.size(); ++k) {
     if (mass(state.ties[k].plus) == 0.0 || mass(state.ties[k].minus) == 0.0) continue;
-    places.push_back(make_place(state, tie_stencil(state.ties[k]), state.ties[k].s, ties[k]));
+    places.push_back(make_place(state, tie_stencil(state.ties[k]), state.ties[k].s, ties[k], 0.0));
   }
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
     Surface& surface = state.surfaces[k];
     const InterfaceLaw& law = surface.kind == Surface::Kind::fracture ? faces : scene.laws[surface.law];
+    const double stiffness = contact_stiffness(law, rocks, state.grid);
     for (std::size_t q = 0; q < surface.points.size(); ++q) {
       if (!surface.points[q].split) continue;
-      Place place = make_place(state, state.point_stencils[k][q], surface.points[q], law);
+      Place place = make_place(state, state.point_stencils[k][q], surface.points[q], law, stiffness);
       if (place.n > 0) places.push_back(place);
     }
   }
   return places;
 }
 
+// Closed contact and stick hold r^2/(2k), some 1e-4 of what the rock beside them does: that is left in the ledger's
+// friction, which is then negative by as much while load comes on. All of it is counted, so the ledger closes.
 double spring_energy_at(const InterfaceLaw& law, const SurfacePoint& s) {
   if (law.kind != Kind::soft || !s.split) return 0.0;
-  const Vec2 tangent{s.n.y(), -s.n.x()};
-  const double w_n = s.opening(), w_t = s.w.dot(tangent);
+  const double w_n = s.opening(), w_t = s.w.dot(tangent_of(s));
   const bool closed = law.compression == InterfaceLaw::Compression::contact && w_n < 0.0;
   return 0.5 * s.A * ((closed ? 0.0 : law.normal_stiffness_Pa_m * w_n * w_n) + law.shear_stiffness_Pa_m * w_t * w_t);
 }
@@ -182,11 +187,12 @@ Stress sampled_stress(const std::vector<Elasticity>& rocks, const Particles& p,
 
 }  // namespace
 
-Reaction react(const InterfaceLaw& law, const FreeJump& w) {
+Reaction react(const InterfaceLaw& law, double k, const FreeJump& w) {
   if (law.kind == Kind::perfect) return {};
-  if (law.kind == Kind::soft) return react_soft(law, w);
-  const double n = contact(w);
-  return {n, coulomb(law.kind == Kind::weak ? law.residual_friction : law.coefficient, n, w)};
+  if (law.kind == Kind::soft) return react_soft(law, k, w);
+  const double n = std::max(0.0, spring(k, w.n_rest, w.n, w.per_n));
+  const double bound = n * (law.kind == Kind::weak ? law.residual_friction : law.coefficient);
+  return {n, std::clamp(spring(k, w.r_t_start, w.t - w.t_start, w.per_t), -bound, bound)};
 }
 
 bool fails(const InterfaceLaw& law, const Reaction& r) {
@@ -215,24 +221,23 @@ bool fail_interfaces(const Scene& scene, const std::vector<Elasticity>& rocks, S
       if (s.split || failed[static_cast<std::size_t>(s.column)] == 0) continue;
       s.split = true;
       s.w = Vec2::Zero();  // what neighbours' splitting let it open while bonded is no gap, and no overlap to push back
-      s.reaction = std::max(0.0, carried[q].dot(s.n)) * s.n;
+      // The law takes over from what was carried; tension it cannot carry, and shear only as far as friction holds it.
+      s.reaction = carried[q] - std::min(0.0, carried[q].dot(s.n)) * s.n;
       any = true;
     }
   }
   return any;
 }
 
-void solve_reactions(const Scene& scene, State& state) {
+void solve_reactions(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
   // Change of a sweep, of the largest reaction. What is left is not lost: the next step starts from these reactions and
   // sees the jumps they led to.
   constexpr double tolerance = 1e-6;
   constexpr int most_sweeps = 200;  // bounds the time of a step; steps that end here are counted in the monitors
-  InterfaceLaw faces;               // the fracture's own faces: frictionless contact
-  faces.kind = Kind::friction;
-  faces.coefficient = 0.0;
+  const InterfaceLaw faces = face_law();
   std::vector<InterfaceLaw> ties;
   for (const TipTie& tie : state.ties) ties.push_back(tie_law(tie));
-  std::vector<Place> places = split_places(scene, state, faces, ties);
+  std::vector<Place> places = split_places(scene, rocks, state, faces, ties);
   for (const Place& place : places) push(place, place.s->reaction, state.motion);
   int sweeps = 0;
   for (double change = 1.0, largest = 0.0;
@@ -248,7 +253,7 @@ void solve_reactions(const Scene& scene, State& state) {
   for (const Place& place : places) {
     SurfacePoint& s = *place.s;
     const Vec2 dw = state.dt * jump_rate(place, state.motion);
-    const Vec2 tangent{s.n.y(), -s.n.x()};
+    const Vec2 tangent = tangent_of(s);
     SurfacePoint after = s;
     after.w += dw;
     const double stored = spring_energy_at(*place.law, after) - spring_energy_at(*place.law, s);

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "mechanics/surface_law.hpp"
 #include "small_scenes.hpp"
 
 using namespace strata;
@@ -11,12 +12,17 @@ namespace {
 
 using Compression = InterfaceLaw::Compression;
 
-// Contact closes the jump but for contact_compliance: jumps this much larger give the reactions of rigid contact.
-constexpr double yielding = 1.0 + contact_compliance;
+// Contact stiffness of the laws that are asked by hand, 1000 and 1500 times that of their place: jumps larger by a
+// 1000th and a 1500th give the reactions of rigid contact and of rigid stick.
+constexpr double k_hand = 5e14, yielding = 1.0 + 1e-3, sticking = 1.0 + 1.0 / 1500.0;
 
 // A jump without reaction and the compliance of its place.
-FreeJump free_jump(double n, double t, double t_start = 0.0) {
-  return {n, t, t_start, 2e-12, 3e-12, 0.0};
+FreeJump free_jump(double n, double t, double t_start = 0.0, double r_t_start = 0.0) {
+  return {n, t, t_start, r_t_start, 2e-12, 3e-12, 0.0};
+}
+
+Reaction react(const InterfaceLaw& law, const FreeJump& w) {
+  return strata::react(law, k_hand, w);
 }
 
 // Splits all points of the only interface, in contact under the in-situ stress.
@@ -117,22 +123,25 @@ struct Bars {
 }  // namespace
 
 // Requires Coulomb's law: the tangential jump stays where it was while mu n suffices, and slips against |t| = mu n in
-// either direction beyond. By hand: n = 4e-6/2e-12 = 2e6, mu n = 1.2e6, 3e-12 per unit of t.
-// Mutations that fail: t of the other sign, mu doubled or left out, t_start left out.
+// either direction beyond. By hand: n = 4e-6/2e-12 = 2e6, mu n = 1.2e6, 3e-12 per unit of t. What friction held at
+// the start of the step it still holds where nothing else moves the place.
+// Mutations that fail: t of the other sign, mu doubled or left out, t_start or r_t_start left out.
 TEST_CASE("friction sticks and slips both ways") {
   const InterfaceLaw law = friction_law(0.6);
   for (const double sign : {1.0, -1.0}) {
-    const Reaction stick = react(law, free_jump(-4e-6 * yielding, sign * 3e-6 + 7e-3, 7e-3));
+    const Reaction stick = react(law, free_jump(-4e-6 * yielding, sign * 3e-6 * sticking + 7e-3, 7e-3));
     CHECK(stick.n == Approx(2e6));
     CHECK(stick.t == Approx(-sign * 1e6));
-    CHECK(sign * 3e-6 + 3e-12 * stick.t == Approx(0.0).margin(1e-18));
+    CHECK(sign * 3e-6 * sticking + 3e-12 * stick.t == Approx(sign * 1e6 / k_hand));
+    const Reaction held = react(law, free_jump(-4e-6 * yielding, sign * 3e-12 * 9e5 + 7e-3, 7e-3, -sign * 9e5));
+    CHECK(held.t == Approx(-sign * 9e5));
     const Reaction slip = react(law, free_jump(-4e-6 * yielding, sign * 4.5e-6 + 7e-3, 7e-3));
     CHECK(slip.n == Approx(2e6));
     CHECK(slip.t == Approx(-sign * 1.2e6));
   }
 }
 
-// Requires n >= 0, w_n >= 0, n w_n = 0 of contact but for the compliance it is given (w_n = -1e-3 per_n (n - n_rest)),
+// Requires n >= 0, w_n >= 0, n w_n = 0 of contact but for the stiffness it is given (w_n = -(n - n_rest)/k),
 // so that the reaction is n_rest at zero jump, and no friction where it is open; a failed weak interface has its
 // residual friction, a perfect one no law.
 TEST_CASE("contact is complementary") {
@@ -150,6 +159,37 @@ TEST_CASE("contact is complementary") {
   CHECK(react(weak_law(1e5, 1e5, 0.3), free_jump(-4e-6 * yielding, 1.0)).t == Approx(-0.6e6));
   CHECK(react(weak_law(1e5, 1e5), free_jump(-4e-6, 1.0)).t == 0.0);
   CHECK(react(InterfaceLaw{}, free_jump(-4e-6, 1.0)).n == 0.0);
+}
+
+// Requires of every law that react() gives what law_at() says at the jump which that reaction leaves, whatever the
+// jump, the memory of friction, the stress at rest and the place's compliance: the law of equilibria and of steps is
+// one. Mutations that fail: the place's compliance or k left out or doubled, n_rest or memory left out or of the other
+// sign.
+TEST_CASE("a step's reaction satisfies the law at its end") {
+  const std::vector<InterfaceLaw> laws = {friction_law(0.6),
+                                          weak_law(1e5, 1e5, 0.3),
+                                          weak_law(1e5, 1e5),
+                                          soft_law(1e12, 2e11),
+                                          soft_law(1e12, 2e11, Compression::spring),
+                                          face_law()};
+  for (const InterfaceLaw& law : laws) {
+    for (const double per : {0.0, 1e-12}) {
+      for (const double w_n : {-4e-6, -1e-9, 0.0, 1e-9, 3e-6}) {
+        for (const double w_t : {-5e-6, -1e-10, 2e-10, 5e-6}) {
+          const FreeJump w{w_n, w_t + 1e-3, 1e-3, 2e5, 2.0 * per, 3.0 * per, 7e5};
+          const Reaction r = strata::react(law, 1e14, w);
+          LawInput in;
+          in.w_n = w.n + w.per_n * r.n, in.w_t = w.t + w.per_t * r.t;
+          in.w_t_start = w.t_start, in.r_t_start = w.r_t_start, in.n_rest = w.n_rest;
+          const LawAnswer at_end = law_at(law, 1e14, in);
+          CAPTURE(static_cast<int>(law.kind), per, w_n, w_t, r.n, r.t);
+          // k times the round-off of the jumps, of which the tangential one is that of 1e-3 m
+          CHECK(r.n == Approx(at_end.n).epsilon(1e-9).margin(1.0));
+          CHECK(r.t == Approx(at_end.t).epsilon(1e-9).margin(100.0));
+        }
+      }
+    }
+  }
 }
 
 // Requires n = -D w at the end of the step, w = w_free + n per_n, in tension, and in compression contact or spring.
@@ -170,7 +210,7 @@ TEST_CASE("springs react to the jump at the end of the step") {
 
 // Requires that a spring of 1/D -> 0 holds the jump at zero like a rigid tie, and that a weak one is -D w_free.
 TEST_CASE("springs have rigid and free limits") {
-  const Reaction rigid = react(soft_law(1e30, 1e30), free_jump(3e-6, -3e-6));
+  const Reaction rigid = react(soft_law(1e30, 1e30, Compression::spring), free_jump(3e-6, -3e-6));
   CHECK(rigid.n == Approx(-1.5e6));
   CHECK(rigid.t == Approx(1e6));
   const Reaction free = react(soft_law(1.0, 2.0), free_jump(3e-6, -3e-6));
@@ -213,6 +253,27 @@ TEST_CASE("a weak interface fails at the exact stress") {
         CHECK_FALSE(weak_fails(at, in_situ, {-1e6, 0.6 * 0.24998e6, sign * 0.8 * 0.49998e6}));
         CHECK(weak_fails(at, in_situ, {-1e6, 0.6 * 0.25002e6, sign * 0.8 * 0.50002e6}));
         CHECK_FALSE(weak_fails(at, in_situ, {0.0, -5e6, sign * 0.49998e6}));
+      }
+    }
+  }
+}
+
+// Requires that a place that fails goes on with what it carried, as the law's first reaction and as what friction
+// remembers: compression and shear of either sign, but no tension.
+// Mutations that fail: shear left out or of the other sign, the in-situ stress left out, tension kept.
+TEST_CASE("a failed place starts with what it carried") {
+  for (const double sign : {1.0, -1.0}) {
+    for (const double normal : {-1e6, 0.3e6}) {
+      Scene scene = block(6, 8);
+      add_interface(scene, friction_law(0.6), 4.0);
+      Run run(scene);
+      load(run, {0.0, -0.4e6, 0.0}, {0.0, normal, sign * 0.7e6});
+      REQUIRE(fail_interfaces(run.scene, run.rocks, run.state));
+      for (const SurfacePoint& s : run.state.surfaces[0].points) {
+        REQUIRE(s.split);
+        CHECK(s.reaction.dot(s.n) == Approx(std::max(0.0, -normal)).margin(1e-6));
+        CHECK(s.reaction.x() == Approx(-sign * 0.7e6));
+        CHECK(s.w.norm() == 0.0);
       }
     }
   }
@@ -272,15 +333,17 @@ TEST_CASE("soft interface in series with two bars, hat functions") {
   }
 }
 
-// Requires that bars pressed together on a soft interface in contact close by no more than 1e-4 of the stretch, the
-// compliance given to contact, and carry on the whole the pressure that the bars' shortening gives.
+// Requires that bars pressed together on a soft interface in contact settle on the law's own closure n/k at every
+// place, which is less than 1e-4 of the stretch, and carry on the whole the pressure that the bars' shortening gives.
 TEST_CASE("soft interface in contact") {
   Bars bars(4.0, 1e9, Numerics::Shape::bspline2, Compression::contact, -1.0);
   bars.run.advance(800);
   const double t = Bars::stretch / (4.0 / bars.M[0] + 4.0 / bars.M[1]);
+  const double k = contact_stiffness(bars.run.scene.laws[1], bars.run.rocks, bars.run.state.grid);
   double total = 0.0;
   for (const SurfacePoint& s : bars.run.state.surfaces[0].points) {
     CHECK(std::abs(s.opening()) < 1e-4 * Bars::stretch);
+    CHECK(s.opening() == Approx(-s.reaction.dot(s.n) / k).epsilon(1e-3));
     total += s.reaction.dot(s.n) * s.A;
   }
   CHECK(total == Approx(4.0 * t).epsilon(1e-4));
@@ -336,6 +399,27 @@ TEST_CASE("springs hold their law in random motion") {
     CHECK(off < (D < 1e13 ? 1e-3 : 0.02) * largest);
     CHECK(top_speed(run.state.particles) < 0.02);
     CHECK(run.state.ledger.stored() + strain_energy(run.rocks, run.state.particles) < 1.2 * energy);
+  }
+}
+
+// Requires that a stuck interface goes on holding the shear of either sign that it carries, step after step: nothing
+// moves, and no jump comes up. Mutations that fail: the reaction that friction remembers left out or of the other sign.
+TEST_CASE("stick holds what it carries") {
+  for (const double sign : {1.0, -1.0}) {
+    Scene scene = block(6, 8);
+    add_interface(scene, friction_law(0.6), 4.0);
+    Run run(scene);
+    for (SurfacePoint& s : run.state.surfaces[0].points) {
+      s.split = true;
+      s.in_situ = s.reaction = Vec2{sign * 0.5e6, 1e6};
+    }
+    run.rebuild();
+    run.advance(100);
+    CHECK(top_speed(run.state.particles) < 1e-15);
+    for (const SurfacePoint& s : run.state.surfaces[0].points) {
+      CHECK(s.w.norm() < 1e-18);
+      CHECK(s.reaction.x() == Approx(sign * 0.5e6));
+    }
   }
 }
 

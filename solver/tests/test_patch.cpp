@@ -147,7 +147,7 @@ TEST_CASE("the law of a soft interface gives the reactions of its jumps") {
         state.motion[r] = {v.x(), v.y(), v.x(), v.y()};
         before = std::max(before, v.norm());
       }
-      solve_reactions(bonded.run.scene, state);
+      solve_reactions(bonded.run.scene, bonded.run.rocks, state);
       for (const NodeMotion& node : state.motion) after = std::max(after, std::hypot(node.v_x, node.v_y));
       CAPTURE(static_cast<int>(shape), at, before, after);
       CHECK(before > 0.01);
