@@ -140,7 +140,8 @@ double margin_of(const Scene& scene, const std::vector<Elasticity>& rocks, State
     if (may_grow(scene, state, state.tips[k]))
       margin = std::max(margin, tip_margin(scene, rocks, state, run, k, state.tips[k]));
   }
-  for (const BondedPlace& place : bonded_places(scene, rocks, state)) margin = std::max(margin, place.index);
+  load_bonds(scene, rocks, state, run.model.bonds);
+  for (const BondedPlace& place : run.model.bonds.places) margin = std::max(margin, place.index);
   return margin;
 }
 
@@ -248,7 +249,7 @@ void fail_worst(const Scene& scene, const std::vector<BondedPlace>& places, doub
 // What is due at the present load.
 void let_happen(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
   const LoadPoint before = load_point(state);
-  const std::vector<BondedPlace> places = bonded_places(scene, rocks, state);
+  const std::vector<BondedPlace>& places = run.model.bonds.places;
   double worst = 0.0;
   for (const BondedPlace& place : places) worst = std::max(worst, place.index);
   const bool fails = worst >= 1.0;

@@ -50,7 +50,7 @@ double pressure(const State& state, const ContactPlace& place) {
 LawAnswer answer_at(const State& state, const ContactPlace& place, const Vec2& w) {
   const Vec2 t = tangent_of(place.n);
   return law_at(place.law, place.k,
-                {w.dot(place.n), w.dot(t), place.w_t_start, place.r_t_start,
+                {w.dot(place.n), w.dot(t), place.w_t_start, place.r_t_start, place.bound,
                  place.in_situ.dot(place.n) - pressure(state, place)});
 }
 
@@ -149,6 +149,11 @@ bool slips(const std::vector<LawAnswer>& answers) {
   return std::any_of(answers.begin(), answers.end(), [](const LawAnswer& r) { return r.dt_dn != 0.0; });
 }
 
+double friction_of(const InterfaceLaw& law) {
+  if (law.kind == InterfaceLaw::Kind::weak) return law.residual_friction;
+  return law.kind == InterfaceLaw::Kind::friction ? law.coefficient : 0.0;
+}
+
 [[noreturn]] void report_mechanism(const State& state, const std::vector<ContactPlace>& places) {
   int interfaces = 0;
   for (const Surface& surface : state.surfaces) interfaces += surface.kind == Surface::Kind::interface ? 1 : 0;
@@ -156,6 +161,20 @@ bool slips(const std::vector<LawAnswer>& answers) {
       "the block has become a mechanism: parts that its surfaces cut off move freely, since nothing on " +
       std::to_string(places.size()) + " split places (of a fracture and " + std::to_string(interfaces) +
       " interfaces) and on the edges holds them. Use domain.sides = \"fixed\", friction, or a stiffer interface");
+}
+
+// Factors the tangent at `at` unless `factor` has it already; false where it is singular. On the way to a solution
+// parts may be free for a while, so the factor is then that of a tangent slightly stiffer.
+bool factor_tangent(const Condensed& condensed, const std::vector<ContactPlace>& places, const Equilibrium& at,
+                    const State& state, TangentFactor& factor) {
+  if (factor.pieces == at.pieces && factor.scale.size() == condensed.size()) return true;
+  factor.pieces = at.pieces;
+  Eigen::MatrixXd T = tangent(condensed, places, at.answers);
+  if (factorise(T, !slips(at.answers), factor)) return true;
+  T.diagonal() *= 1.0 + 1e-6;
+  if (!factorise(T, !slips(at.answers), factor)) report_mechanism(state, places);
+  factor.pieces.clear();
+  return false;
 }
 
 // Newton's step shortened to the minimum of the energy's slope along it: halving from the full step.
@@ -169,6 +188,67 @@ double step_length(const State& state, const Condensed& condensed, const std::ve
     if (trial.energy < from.energy) break;
   }
   return length;
+}
+
+// Newton's method on the pieces from at.j; false where it does not end within its iterations.
+bool iterate(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
+             TangentFactor& factor, Equilibrium& at) {
+  constexpr int most_iterations = 60;
+  constexpr int plain_iterations = 15;  // without line search it ends within some 5 where it does
+  constexpr double balanced = 1e-10;    // places on the border of two pieces may change by round-off for ever
+  evaluate(state, condensed, places, at);
+  for (at.iterations = 1; at.iterations <= most_iterations; ++at.iterations) {
+    const Pieces pieces = at.pieces;
+    const bool sliding = slips(at.answers);
+    if (sliding && at.iterations > 2 * plain_iterations) return false;
+    const bool singular = !factor_tangent(condensed, places, at, state, factor);
+    const Eigen::VectorXd next = solve_on_pieces(state, condensed, places, at.answers, factor);
+    const bool search = at.iterations > plain_iterations && !sliding;
+    const double length = search ? step_length(state, condensed, places, at, next) : 1.0;
+    at.j = length == 1.0 ? next : Eigen::VectorXd(at.j + length * (next - at.j));
+    evaluate(state, condensed, places, at);
+    if (!at.j.allFinite()) report_mechanism(state, places);
+    const bool settled = length == 1.0 && (at.pieces == pieces || (at.iterations > 4 && at.residual < balanced));
+    if (!settled) continue;
+    if (singular) report_mechanism(state, places);
+    return true;
+  }
+  return false;
+}
+
+// Friction by bounds that are held while the jumps are found, and renewed from the normal reactions.
+Equilibrium solve_with_fixed_bounds(const State& state, const Condensed& condensed, std::vector<ContactPlace> places,
+                                    TangentFactor& factor) {
+  constexpr int most_rounds = 400;
+  constexpr double renewed = 1e-10;  // change of a bound against the largest
+  Equilibrium at;
+  at.j = Eigen::VectorXd::Zero(condensed.size());
+  evaluate(state, condensed, places, at);
+  factor.pieces.clear();
+  double change = 0.0;
+  for (int round = 0; round < most_rounds; ++round) {
+    double largest = 0.0;
+    change = 0.0;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      ContactPlace& place = places[k];
+      const double mu = friction_of(place.law);
+      const double bound = mu * at.answers[k].n;
+      if (mu == 0.0) continue;
+      change = std::max(change, std::abs(bound - std::max(0.0, place.bound)));
+      largest = std::max(largest, bound);
+      place.bound = bound;
+    }
+    if (round > 0 && change <= renewed * largest) break;
+    if (!iterate(state, condensed, places, factor, at)) break;
+  }
+  for (ContactPlace& place : places) place.bound = -1.0;
+  const double found = at.residual;
+  evaluate(state, condensed, places, at);
+  factor.pieces.clear();  // bounds that follow the normal reaction have another tangent
+  if (at.residual < 1e-8 && factor_tangent(condensed, places, at, state, factor)) return at;
+  throw NumericalFailure("no equilibrium of the surfaces was found; the force out of balance is " +
+                         std::to_string(std::max(found, at.residual)) +
+                         " of the load. Use less friction or a smaller load step");
 }
 
 }  // namespace
@@ -200,7 +280,8 @@ std::vector<ContactPlace> contact_places(const Scene& scene, const std::vector<E
       const SurfacePoint& s = surface.points[q];
       if (!s.split) continue;
       const Vec2 t = tangent_of(s.n);
-      ContactPlace place{k, q, -1, law, stiffness, s.A, s.n, s.in_situ, s.bonded, s.w.dot(t), s.reaction.dot(t), {}};
+      ContactPlace place{k,         q,        -1,   law,        stiffness,         s.A, s.n,
+                         s.in_situ, s.bonded, -1.0, s.w.dot(t), s.reaction.dot(t), {}};
       place.D = jump_rows(condensed, state.point_stencils[k][q]);
       places.push_back(std::move(place));
     }
@@ -213,7 +294,8 @@ std::vector<ContactPlace> contact_places(const Scene& scene, const std::vector<E
     spring.normal_stiffness_Pa_m = spring.shear_stiffness_Pa_m = tie.stiffness;
     SurfaceStencil stencil;
     stencil.plus[0] = tie.plus, stencil.minus[0] = tie.minus, stencil.N[0] = 1.0;
-    ContactPlace place{0, 0, static_cast<int>(k), spring, 0.0, 1.0, tie.s.n, Vec2::Zero(), Vec2::Zero(), 0.0, 0.0, {}};
+    ContactPlace place{0,   0, static_cast<int>(k), spring, 0.0, 1.0, tie.s.n, Vec2::Zero(), Vec2::Zero(), -1.0, 0.0,
+                       0.0, {}};
     place.D = jump_rows(condensed, stencil);
     places.push_back(std::move(place));
   }
@@ -222,39 +304,10 @@ std::vector<ContactPlace> contact_places(const Scene& scene, const std::vector<E
 
 Equilibrium solve_equilibrium(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
                               const Eigen::VectorXd& start, TangentFactor& factor) {
-  constexpr int most_iterations = 80;
-  constexpr int plain_iterations = 15;  // Newton without line search ends within some 5 where it does
-  constexpr double balanced = 1e-9;     // places on the border of two pieces may change by round-off for ever
   Equilibrium at;
   at.j = start.size() == condensed.size() ? start : Eigen::VectorXd::Zero(condensed.size());
-  evaluate(state, condensed, places, at);
-  for (at.iterations = 1; at.iterations <= most_iterations; ++at.iterations) {
-    const Pieces pieces = at.pieces;
-    bool singular = false;
-    if (factor.pieces != pieces || factor.scale.size() != condensed.size()) {
-      factor.pieces = pieces;
-      Eigen::MatrixXd T = tangent(condensed, places, at.answers);
-      singular = !factorise(T, !slips(at.answers), factor);
-      if (singular) {  // on the way to the solution parts may be free for a while
-        T.diagonal() *= 1.0 + 1e-6;
-        if (!factorise(T, !slips(at.answers), factor)) report_mechanism(state, places);
-        factor.pieces.clear();
-      }
-    }
-    const Eigen::VectorXd next = solve_on_pieces(state, condensed, places, at.answers, factor);
-    const double length =
-        at.iterations > plain_iterations && !slips(at.answers) ? step_length(state, condensed, places, at, next) : 1.0;
-    at.j = length == 1.0 ? next : Eigen::VectorXd(at.j + length * (next - at.j));
-    evaluate(state, condensed, places, at);
-    if (!at.j.allFinite()) report_mechanism(state, places);
-    const bool settled = length == 1.0 && (at.pieces == pieces || (at.iterations > 4 && at.residual < balanced));
-    if (!settled) continue;
-    if (singular) report_mechanism(state, places);
-    return at;
-  }
-  throw NumericalFailure("no equilibrium of the surfaces was found in " + std::to_string(most_iterations) +
-                         " iterations; the force out of balance is " + std::to_string(at.residual) +
-                         " of the load. Use less friction or a smaller load step");
+  if (iterate(state, condensed, places, factor, at)) return at;
+  return solve_with_fixed_bounds(state, condensed, places, factor);
 }
 
 Eigen::MatrixXd opening_per_pressure(const State& state, const Condensed& condensed,

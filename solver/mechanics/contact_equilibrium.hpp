@@ -22,6 +22,7 @@ struct ContactPlace {
   Vec2 n = Vec2::Zero();
   Vec2 in_situ = Vec2::Zero();                           // Pa
   Vec2 bonded = Vec2::Zero();                            // jump when it split (m)
+  double bound = -1.0;                                   // friction's bound where it is held fixed (Pa)
   double w_t_start = 0.0, r_t_start = 0.0;               // what friction remembers
   std::array<std::vector<std::pair<int, double>>, 2> D;  // rows of the jump's x and y
 };
@@ -55,10 +56,11 @@ std::vector<ContactPlace> contact_places(const Scene& scene, const std::vector<E
                                          const Condensed& condensed);
 
 /// Solves S j = sum_s A_s D_s^T (P n - t_in_situ + r(D j)) for the pressures that the state's points hold, by Newton's
-/// method on the pieces of the laws (semismooth; a line search on the energy where it does not end by itself). What is
-/// returned depends on loads and memory only, not on `start` (the first guess, or empty). `factor` is reused where the
-/// pieces are the same, and left for what follows. Throws NumericalFailure where parts of the block move freely, or
-/// where no equilibrium is found.
+/// method on the pieces of the laws (semismooth). Where that does not end by itself, friction's bounds are held fixed,
+/// so that the problem is the minimum of a convex energy (Newton with a line search), and renewed until they agree with
+/// the normal reactions. What is returned depends on loads and memory only, not on `start` (the first guess, or empty).
+/// `factor` is reused where the pieces are the same, and left for what follows. Throws NumericalFailure where parts of
+/// the block move freely, or where no equilibrium is found.
 Equilibrium solve_equilibrium(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
                               const Eigen::VectorXd& start, TangentFactor& factor);
 

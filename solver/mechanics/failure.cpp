@@ -2,21 +2,166 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
+
+#include "mechanics/stiffness.hpp"
+#include "state/rebuild.hpp"
 
 namespace strata {
 
 namespace {
 
-// Mean total stress over the samples.
-Stress sampled_stress(const std::vector<Elasticity>& rocks, const Particles& p,
-                      const std::vector<StressSample>& samples) {
-  Stress mean;
-  for (const StressSample& sample : samples) {
-    const auto q = static_cast<std::size_t>(sample.particle);
-    const Stress change = stress_of(rocks[p.rock[q]], p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]);
-    mean = mean + sample.weight * (p.in_situ[q] + change);
+constexpr double least_share = 0.1;  // of a cell: a column that reaches less of the interface has no mean to speak of
+
+// The rows (for a vertical interface: columns) of nodes that an interface splits when it lets go.
+struct Band {
+  bool along_x = true;
+  int first = 0, last = 0;
+  bool holds(int across) const { return across >= first && across <= last; }
+};
+
+Band band_of(const Scene& scene, const State& state, const Surface& surface) {
+  const Grid& g = state.grid;
+  Band band;
+  band.along_x = scene.strata.along == Strata::Along::y;
+  const Vec2 x = surface.vertices.front().x;
+  const int at = g.nearest(band.along_x ? x.y() : x.x());
+  const double offset = (band.along_x ? x.y() : x.x()) / g.h - at;  // 0 on a grid line, +-1/2 at mid-cell
+  const double reach = support_in_cells(scene) - 0.02;
+  band.first = at + static_cast<int>(std::ceil(offset - reach));
+  band.last = at + static_cast<int>(std::floor(offset + reach));
+  return band;
+}
+
+// Whether the fracture splits the nodes of a column on one side of the interface.
+bool split_by_fracture(const State& state, const Band& band, int column, bool plus) {
+  const int across = plus ? band.last : band.first;
+  const int node = band.along_x ? state.grid.node(column, across) : state.grid.node(across, column);
+  const int c = state.copies.cut_of_node[static_cast<std::size_t>(node)];
+  return c >= 0 && state.copies.cut[static_cast<std::size_t>(c)].fracture != 0;
+}
+
+// Column, side of the interface, side of the fracture (-1: not told apart).
+using SampleKey = std::tuple<int, bool, int>;
+
+struct Builder {
+  const Scene& scene;
+  const State& state;
+  const Surface& surface;
+  Band band;
+  std::map<SampleKey, BondSample> samples;
+};
+
+SampleKey key_at(const Builder& b, int column, SideWord sides, bool plus) {
+  const bool parted = b.state.has_fracture && split_by_fracture(b.state, b.band, column, plus);
+  return {column, plus, parted ? ((sides & b.state.fracture().mask()) != 0 ? 1 : 0) : -1};
+}
+
+// The weight Phi and its gradient of the three columns around a place.
+struct ColumnWeights {
+  std::array<int, 3> column{};
+  std::array<double, 3> Phi{};
+  std::array<Vec2, 3> grad{Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
+};
+
+ColumnWeights column_weights(const Builder& b, const Vec2& x, double half) {
+  const Grid& g = b.state.grid;
+  const int i = std::clamp(g.nearest(x.x()), 0, g.nx), j = std::clamp(g.nearest(x.y()), 0, g.ny);
+  const Gradients N = gradients_at(b.scene, g, i, j, x, half);
+  ColumnWeights out;
+  for (std::size_t n = 0; n < 9; ++n) {
+    const int node_i = i + static_cast<int>(n % 3) - 1, node_j = j + static_cast<int>(n / 3) - 1;
+    const std::size_t a = b.band.along_x ? n % 3 : n / 3;
+    out.column[a] = b.band.along_x ? node_i : node_j;
+    if (!b.band.holds(b.band.along_x ? node_j : node_i)) continue;
+    out.Phi[a] += N.N[n];
+    out.grad[a] += Vec2{N.N_x[n], N.N_y[n]};
   }
-  return mean;
+  return out;
+}
+
+void add_particles(Builder& b) {
+  const Particles& p = b.state.particles;
+  const Grid& g = b.state.grid;
+  for (std::size_t q = 0; q < p.size(); ++q) {
+    const Vec2 x{p.x[q], p.y[q]};
+    const double across = (b.band.along_x ? x.y() : x.x()) / g.h;
+    if (across < b.band.first - 2 || across > b.band.last + 2) continue;
+    const ColumnWeights w = column_weights(b, x, p.half[q]);
+    const bool plus = (p.sides[q] & b.surface.mask()) != 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (w.grad[a].isZero()) continue;
+      b.samples[key_at(b, w.column[a], p.sides[q], plus)].particles.push_back({q, p.V[q] * w.grad[a]});
+    }
+  }
+}
+
+// The fracture's two faces load the columns on its two sides.
+void add_faces(Builder& b) {
+  if (!b.state.has_fracture) return;
+  const Surface& fracture = b.state.fracture();
+  for (std::size_t q = 0; q < fracture.points.size(); ++q) {
+    const SurfacePoint& s = fracture.points[q];
+    const double across = (b.band.along_x ? s.x.y() : s.x.x()) / b.state.grid.h;
+    if (across < b.band.first - 2 || across > b.band.last + 2) continue;
+    const ColumnWeights w = column_weights(b, s.x, 0.0);
+    const bool plus = (s.sides & b.surface.mask()) != 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (w.Phi[a] == 0.0) continue;
+      for (const double face : {1.0, -1.0}) {
+        const SampleKey key = key_at(b, w.column[a], face > 0.0 ? fracture.mask() : SideWord{0}, plus);
+        if (std::get<2>(key) < 0) continue;  // both faces in one column: no force
+        b.samples[key].faces.push_back({q, {face * s.A * w.Phi[a], 0.0}});
+      }
+    }
+  }
+}
+
+void add_lengths(Builder& b) {
+  for (std::size_t q = 0; q < b.surface.points.size(); ++q) {
+    const SurfacePoint& s = b.surface.points[q];
+    // Four places a point: hat functions and B-splines are integrated well enough to tell halves of a column apart.
+    for (int part = 0; part < 4; ++part) {
+      const Vec2 along{s.n.y(), -s.n.x()};
+      const Vec2 x = s.x + s.A * ((part + 0.5) / 4.0 - 0.5) * along;
+      const ColumnWeights w = column_weights(b, x, 0.0);
+      const SideWord sides = sides_at(b.state, x, b.surface.bit);
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double share = 0.25 * s.A * w.Phi[a];
+        if (share == 0.0) continue;
+        for (const bool plus : {false, true}) {
+          BondSample& sample = b.samples[key_at(b, w.column[a], sides, plus)];
+          if (s.split) {
+            sample.loose.push_back({q, {share, 0.0}});
+          } else {
+            sample.length += share;
+          }
+        }
+      }
+    }
+  }
+}
+
+// Mean total stress that a sample implies on the interface, on the + face.
+Vec2 traction(const std::vector<Elasticity>& rocks, const State& state, const Surface& surface,
+              const BondSample& sample) {
+  const Particles& p = state.particles;
+  Vec2 force = Vec2::Zero();
+  for (const BondSample::Share& share : sample.particles) {
+    const std::size_t q = share.index;
+    force += stress_of(rocks[p.rock[q]], p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]).on(share.weight);
+  }
+  for (const BondSample::Share& share : sample.faces) {
+    const SurfacePoint& s = state.fracture().points[share.index];
+    force -= share.weight.x() * (s.P * s.n - s.in_situ + s.reaction);
+  }
+  force *= -sample.sign;
+  for (const BondSample::Share& share : sample.loose) {
+    const SurfacePoint& s = surface.points[share.index];
+    force -= share.weight.x() * (s.reaction - s.in_situ);
+  }
+  return force / sample.length;
 }
 
 }  // namespace
@@ -31,21 +176,51 @@ double failure_index(const InterfaceLaw& law, double n, double t) {
   return t == 0.0 ? 0.0 : std::abs(t) / (law.coefficient * n);
 }
 
-std::vector<BondedPlace> bonded_places(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
-  std::vector<BondedPlace> places;
+Bonds find_bonds(const Scene& scene, const State& state) {
+  Bonds bonds;
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
     const Surface& surface = state.surfaces[k];
-    if (state.stress_samples[k].empty()) continue;
+    if (surface.kind != Surface::Kind::interface) continue;
+    const InterfaceLaw::Kind kind = scene.laws[surface.law].kind;
+    if (kind != InterfaceLaw::Kind::weak && kind != InterfaceLaw::Kind::friction) continue;
+    Builder b{scene, state, surface, band_of(scene, state, surface), {}};
+    add_particles(b);
+    add_faces(b);
+    add_lengths(b);
+    std::map<SampleKey, std::size_t> at;
+    for (auto& [key, sample] : b.samples) {
+      if (sample.length < least_share * state.grid.h) continue;
+      sample.sign = std::get<1>(key) ? -1.0 : 1.0;
+      at.emplace(key, bonds.samples.size());
+      bonds.samples.push_back(std::move(sample));
+    }
     for (std::size_t q = 0; q < surface.points.size(); ++q) {
       const SurfacePoint& s = surface.points[q];
       if (s.split) continue;
-      BondedPlace place{k, q, 0.0, -sampled_stress(rocks, state.particles, state.stress_samples[k][q]).on(s.n)};
-      const Vec2 t{s.n.y(), -s.n.x()};
-      place.index = failure_index(scene.laws[surface.law], place.carried.dot(s.n), place.carried.dot(t));
-      places.push_back(place);
+      BondedPlace place{k, q, {}, 0.0, Vec2::Zero()};
+      const bool below = split_by_fracture(state, b.band, s.column, false),
+                 above = split_by_fracture(state, b.band, s.column, true);
+      for (const bool plus : {false, true}) {
+        if (below != above && (plus ? above : below) == false) continue;  // the side that the fracture parts tells more
+        const auto found = at.find(key_at(b, s.column, s.sides, plus));
+        if (found != at.end()) place.samples.push_back(found->second);
+      }
+      bonds.places.push_back(place);
     }
   }
-  return places;
+  return bonds;
+}
+
+void load_bonds(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, Bonds& bonds) {
+  for (BondedPlace& place : bonds.places) {
+    const Surface& surface = state.surfaces[place.surface];
+    const SurfacePoint& s = surface.points[place.point];
+    place.carried = s.in_situ;
+    for (const std::size_t k : place.samples)
+      place.carried += traction(rocks, state, surface, bonds.samples[k]) / static_cast<double>(place.samples.size());
+    const Vec2 t{s.n.y(), -s.n.x()};
+    place.index = failure_index(scene.laws[surface.law], place.carried.dot(s.n), place.carried.dot(t));
+  }
 }
 
 }  // namespace strata

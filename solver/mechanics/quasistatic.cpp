@@ -52,6 +52,7 @@ void update_model(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
   model.condensed = condense(scene, rocks, state, *model.body, same_body ? &model.condensed : nullptr);
   model.places = contact_places(scene, rocks, state, model.condensed);
   model.factor = TangentFactor{};
+  model.bonds = find_bonds(scene, state);
   model.j.resize(0);
 }
 

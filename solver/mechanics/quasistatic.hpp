@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mechanics/contact_equilibrium.hpp"
+#include "mechanics/failure.hpp"
 
 namespace strata {
 
@@ -15,6 +16,7 @@ struct QuasistaticModel {
   Condensed condensed;
   std::vector<ContactPlace> places;
   TangentFactor factor;
+  Bonds bonds;
   Eigen::VectorXd j;  // the last solution, as a first guess
 };
 

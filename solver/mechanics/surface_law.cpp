@@ -50,16 +50,22 @@ LawAnswer law_at(const InterfaceLaw& law, double k, const LawInput& in) {
   const double mu = law.kind == InterfaceLaw::Kind::weak ? law.residual_friction : law.coefficient;
   if (mu == 0.0) return r;
   const double held = in.r_t_start - k * (in.w_t - in.w_t_start);
-  if (std::abs(held) <= mu * r.n) {
+  const bool given = in.bound >= 0.0;
+  const double bound = given ? in.bound : mu * r.n;
+  const double at_start = in.r_t_start * in.r_t_start / (2.0 * k);
+  if (std::abs(held) <= bound) {
     r.piece = Piece::stick;
     r.t = held, r.t_0 = in.r_t_start + k * in.w_t_start, r.dt_dt = -k;
-    r.energy += (held * held - in.r_t_start * in.r_t_start) / (2.0 * k);
-  } else {
-    const double sign = std::copysign(1.0, held);
-    r.piece = sign > 0.0 ? Piece::slip_plus : Piece::slip_minus;
-    r.t = sign * mu * r.n, r.t_0 = sign * mu * in.n_rest, r.dt_dn = sign * mu * r.dn_dn;
-    r.energy += (r.t * r.t - in.r_t_start * in.r_t_start) / (2.0 * k);
+    r.energy += held * held / (2.0 * k) - at_start;
+    return r;
   }
+  const double sign = std::copysign(1.0, held);
+  r.piece = sign > 0.0 ? Piece::slip_plus : Piece::slip_minus;
+  r.t = sign * bound;
+  r.t_0 = given ? r.t : sign * mu * in.n_rest;
+  r.dt_dn = given ? 0.0 : sign * mu * r.dn_dn;
+  // A given bound makes sliding the gradient of an energy, too.
+  r.energy += (given ? 2.0 * bound * std::abs(held) - bound * bound : bound * bound) / (2.0 * k) - at_start;
   return r;
 }
 

@@ -14,6 +14,7 @@ struct LawInput {
   double w_t = 0.0;        // tangential jump (m)
   double w_t_start = 0.0;  // what friction remembers: tangential jump (m)
   double r_t_start = 0.0;  // and reaction (Pa) of the last equilibrium
+  double bound = -1.0;     // friction's bound where it is given (Pa), instead of mu n
   double n_rest = 0.0;     // normal reaction of closed contact at zero jump (Pa): in-situ less fluid
 };
 
