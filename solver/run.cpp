@@ -102,9 +102,18 @@ std::size_t fracture_points(const State& state) {
   return state.has_fracture ? state.fracture().points.size() : 0;
 }
 
+// Strain energy and fields as they are now; without inertia only those that decide what happens next are kept.
+void complete_fields(Run& run) {
+  if (run.statics) {
+    set_all_particles(run.scene, run.state, run.statics->model);
+  } else {
+    run.state.ledger.strain = strain_energy(run.rocks, run.state.particles);
+  }
+}
+
 void output(Run& run) {
   if (run.state.time == run.last_output) return;
-  run.state.ledger.strain = strain_energy(run.rocks, run.state.particles);
+  complete_fields(run);
   run.recorder.output(run.scene, run.state);
   run.last_output = run.state.time;
 }
@@ -133,7 +142,7 @@ void step_and_record(Run& run, double interval) {
   if (run.state.time >= static_cast<double>(run.recorder.outputs()) * interval - slack) {
     output(run);
   } else if (fracture_points(run.state) != points) {
-    run.state.ledger.strain = strain_energy(run.rocks, run.state.particles);
+    if (!run.statics) run.state.ledger.strain = strain_energy(run.rocks, run.state.particles);
     run.recorder.row(run.scene, run.state);
   }
 }
@@ -192,8 +201,9 @@ int run_from(Run run, const RunFolder& folder, const RunOptions& options, Clock:
   return outcome.exit;
 }
 
-void set_up(const RunOptions& options) {
+void set_up(const Scene& scene, const RunOptions& options) {
   if (options.threads > 0) omp_set_num_threads(options.threads);
+  if (is_quasistatic(scene)) omp_set_num_threads(1);  // its loops over particles are short; threads would only wait
   std::signal(SIGINT, ask_to_stop);
   std::signal(SIGTERM, ask_to_stop);
 }
@@ -202,7 +212,7 @@ void set_up(const RunOptions& options) {
 
 int run_scene(const Scene& scene, const RunOptions& options) {
   const Clock::time_point start = Clock::now();
-  set_up(options);
+  set_up(scene, options);
   const std::vector<Elasticity> rocks = make_elasticities(scene);
   std::optional<RunFolder> folder;
   try {
@@ -232,7 +242,7 @@ int resume_run(const std::filesystem::path& dir, const RunOptions& options) {
   }
   const Scene& scene = *read.scene;
   if (std::filesystem::exists(folder.summary())) return done;
-  set_up(options);
+  set_up(scene, options);
   const std::vector<Elasticity> rocks = make_elasticities(scene);
   std::optional<Checkpoint> checkpoint;
   std::optional<Recorder> recorder;

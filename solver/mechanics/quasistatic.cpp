@@ -15,10 +15,11 @@ Vec2 tangent_of(const Vec2& n) {
   return {n.y(), -n.x()};
 }
 
-void set_particles(const Scene& scene, const std::vector<Vec2>& u, State& state) {
+// Fields of the particles of some bins; `which` empty: of all.
+void set_particles(const Scene& scene, const std::vector<Vec2>& u, const std::vector<char>& which, State& state) {
   Particles& p = state.particles;
-#pragma omp parallel for schedule(static)
   for (std::size_t b = 0; b < state.bins.size(); ++b) {
+    if (!which.empty() && which[b] == 0) continue;
     const Bin& bin = state.bins[b];
     for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
       const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]);
@@ -31,6 +32,27 @@ void set_particles(const Scene& scene, const std::vector<Vec2>& u, State& state)
       p.g_xx[q] = d_x.x(), p.g_xy[q] = d_y.x(), p.g_yx[q] = d_x.y(), p.g_yy[q] = d_y.y();
     }
   }
+}
+
+std::vector<char> watched_bins(const State& state, const Bonds& bonds) {
+  constexpr double around_tip_cells = 8.0;  // J's widest ring, 4 cells, and what its weight reaches beyond
+  const Particles& p = state.particles;
+  std::vector<char> particle(p.size(), 0);
+  for (const BondSample& sample : bonds.samples) {
+    for (const BondSample::Share& share : sample.particles) particle[share.index] = 1;
+  }
+  std::vector<char> watched(state.bins.size(), 0);
+  for (std::size_t b = 0; b < watched.size(); ++b) {
+    const Bin& bin = state.bins[b];
+    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
+      for (const Tip& tip : state.tips) {
+        const Vec2 off = Vec2{p.x[q], p.y[q]} - tip_position(state, tip);
+        if (off.lpNorm<Eigen::Infinity>() < around_tip_cells * state.grid.h) particle[q] = 1;
+      }
+      if (particle[q] != 0) watched[b] = 1;
+    }
+  }
+  return watched;
 }
 
 // Plastic slip of a place since friction's memory (m): the tangential jump less what the stick spring gives way.
@@ -53,6 +75,7 @@ void update_model(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
   model.places = contact_places(scene, rocks, state, model.condensed);
   model.factor = TangentFactor{};
   model.bonds = find_bonds(scene, state);
+  model.watched = watched_bins(state, model.bonds);
   model.j.resize(0);
 }
 
@@ -62,8 +85,13 @@ Equilibrium find_equilibrium(const State& state, QuasistaticModel& model) {
   return found;
 }
 
-void set_fields(const Scene& scene, State& state, const QuasistaticModel& model, const Equilibrium& equilibrium) {
-  set_particles(scene, displacements(scene, state, *model.body, model.condensed, equilibrium.j), state);
+void set_all_particles(const Scene& scene, State& state, const QuasistaticModel& model) {
+  set_particles(scene, model.u, {}, state);
+}
+
+void set_fields(const Scene& scene, State& state, QuasistaticModel& model, const Equilibrium& equilibrium) {
+  model.u = displacements(scene, state, *model.body, model.condensed, equilibrium.j);
+  set_particles(scene, model.u, model.watched, state);
   for (std::size_t k = 0; k < model.places.size(); ++k) {
     const ContactPlace& place = model.places[k];
     const LawAnswer& r = equilibrium.answers[k];

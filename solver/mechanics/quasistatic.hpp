@@ -17,7 +17,9 @@ struct QuasistaticModel {
   std::vector<ContactPlace> places;
   TangentFactor factor;
   Bonds bonds;
-  Eigen::VectorXd j;  // the last solution, as a first guess
+  std::vector<char> watched;  // bins whose fields decide what happens next: around tips, beside bonded interfaces
+  std::vector<Vec2> u;        // displacements of all records (m) as last found
+  Eigen::VectorXd j;          // the last solution, as a first guess
 };
 
 /// Rebuilds what follows from the state's particles and surfaces (copies, springs of tips, stencils) and brings the
@@ -29,9 +31,12 @@ void update_model(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
 /// Equilibrium under the pressures that the state's points hold; see solve_equilibrium().
 Equilibrium find_equilibrium(const State& state, QuasistaticModel& model);
 
-/// Writes an equilibrium to the state: displacements and their gradients to the particles, jumps (m) and reactions (Pa)
-/// to the surfaces. Friction's memory stays what it was.
-void set_fields(const Scene& scene, State& state, const QuasistaticModel& model, const Equilibrium& equilibrium);
+/// Writes an equilibrium to the state: jumps (m) and reactions (Pa) to the surfaces, displacements and their gradients
+/// to the particles that decide what happens next. Friction's memory stays what it was.
+void set_fields(const Scene& scene, State& state, QuasistaticModel& model, const Equilibrium& equilibrium);
+
+/// Displacements and their gradients to all particles, for whoever looks at them.
+void set_all_particles(const Scene& scene, State& state, const QuasistaticModel& model);
 
 /// Makes the equilibrium that the state holds the one that friction remembers; adds up slip.
 void remember(State& state, QuasistaticModel& model, const Equilibrium& equilibrium);
