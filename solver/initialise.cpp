@@ -7,26 +7,21 @@
 #include "mechanics/equilibrium.hpp"
 #include "mechanics/explicit_step.hpp"
 #include "mechanics/tip_ties.hpp"
+#include "state/make_grid.hpp"
 #include "state/rebuild.hpp"
 
 namespace strata {
 
 namespace {
 
-Grid make_grid(const Scene& scene) {
-  const double h = scene.numerics.cell_m;
-  return {static_cast<int>(std::lround(scene.domain.width_m / h)),
-          static_cast<int>(std::lround(scene.domain.height_m / h)), h};
-}
-
-void append_particle(const Scene& scene, const std::vector<Elasticity>& rocks, const Vec2& x, double side_m,
+void append_particle(const Scene& scene, const std::vector<Elasticity>& rocks, const GridPoint& x, const GridPoint& y,
                      Particles& p) {
-  const std::size_t rock = rock_at(scene, x);
+  const std::size_t rock = rock_at(scene, {x.at, y.at});
   for (auto* array : {&p.u_x, &p.u_y, &p.v_x, &p.v_y, &p.g_xx, &p.g_xy, &p.g_yx, &p.g_yy}) array->push_back(0.0);
-  p.x.push_back(x.x()), p.y.push_back(x.y());
-  p.V.push_back(side_m * side_m);
-  p.m.push_back(rocks[rock].rho * side_m * side_m);
-  p.half.push_back(0.5 * side_m);
+  p.x.push_back(x.at), p.y.push_back(y.at);
+  p.V.push_back(x.length * y.length);
+  p.m.push_back(rocks[rock].rho * x.length * y.length);
+  p.half.push_back(0.5 * std::min(x.length, y.length));
   p.rock.push_back(static_cast<std::uint8_t>(rock));
   p.sides.push_back(0);
   p.in_situ.push_back({-scene.in_situ.horizontal_Pa, -scene.in_situ.vertical_Pa, 0.0});
@@ -35,11 +30,10 @@ void append_particle(const Scene& scene, const std::vector<Elasticity>& rocks, c
 
 Particles make_particles(const Scene& scene, const std::vector<Elasticity>& rocks, const Grid& grid) {
   const int across = static_cast<int>(std::lround(std::sqrt(scene.numerics.particles_per_cell)));
-  const double side_m = grid.h / across;
+  const std::vector<GridPoint> columns = points_along_x(grid, across), rows = points_along_y(grid, across);
   Particles particles;
-  for (int j = 0; j < grid.ny * across; ++j) {
-    for (int i = 0; i < grid.nx * across; ++i)
-      append_particle(scene, rocks, {(i + 0.5) * side_m, (j + 0.5) * side_m}, side_m, particles);
+  for (const GridPoint& y : rows) {
+    for (const GridPoint& x : columns) append_particle(scene, rocks, x, y, particles);
   }
   return particles;
 }
@@ -65,17 +59,34 @@ void make_fracture(const Scene& scene, State& state) {
   state.tips.push_back(Tip{});
 }
 
+// The vertices of an interface at `at` (m). Along a graded grid its legs are halves of spans, each with a point in its
+// middle where the particles stand too: what a law exerts then balances a uniform stress in the rock at every node.
+std::vector<Vec2> interface_path(const Scene& scene, const Grid& grid, double at) {
+  const bool along_x = scene.strata.along == Strata::Along::y;
+  const std::vector<double>& knots = along_x ? grid.x_knots : grid.y_knots;
+  std::vector<double> along{0.0, along_x ? scene.domain.width_m : scene.domain.height_m};
+  if (!knots.empty()) {
+    along.clear();
+    const int n = along_x ? grid.nx : grid.ny;
+    for (int k = 0; k <= n; ++k) {
+      if (k > 0) along.push_back(knots[static_cast<std::size_t>(k + 1)]);
+      along.push_back(along_x ? grid.x(k) : grid.y(k));
+    }
+  }
+  std::vector<Vec2> path;
+  for (const double s : along) path.push_back(along_x ? Vec2{s, at} : Vec2{at, s});
+  return path;
+}
+
 void make_interfaces(const Scene& scene, State& state) {
   const bool along_x = scene.strata.along == Strata::Along::y;
   for (const InterfacePlace& place : scene.strata.interfaces) {
     if (scene.laws[place.law].kind == InterfaceLaw::Kind::perfect) continue;
-    const Vec2 from = along_x ? Vec2{0.0, place.at_m} : Vec2{place.at_m, 0.0};
-    const Vec2 to = along_x ? Vec2{scene.domain.width_m, place.at_m} : Vec2{place.at_m, scene.domain.height_m};
-    Surface surface = make_surface(Surface::Kind::interface, static_cast<int>(state.surfaces.size()), {from, to},
-                                   surface_spacing(state.grid));
+    Surface surface = make_surface(Surface::Kind::interface, static_cast<int>(state.surfaces.size()),
+                                   interface_path(scene, state.grid, place.at_m), surface_spacing(state.grid));
     surface.law = place.law;
     for (SurfacePoint& s : surface.points) {
-      s.column = state.grid.nearest(along_x ? s.x.x() : s.x.y());
+      s.column = along_x ? state.grid.column_at(s.x.x()) : state.grid.row_at(s.x.y());
       s.split = scene.laws[place.law].kind == InterfaceLaw::Kind::soft;
     }
     state.surfaces.push_back(surface);

@@ -132,10 +132,13 @@ Stress in_situ_at(const Scene& scene, const State& state, const Vec2& x) {
   if (scene.in_situ.initialise == InSitu::Initialise::uniform)
     return {-scene.in_situ.horizontal_Pa, -scene.in_situ.vertical_Pa, 0.0};
   const Particles& p = state.particles;
+  const Grid& g = state.grid;
+  const double s_x = g.span_x(std::clamp(g.column_at(x.x()), 0, g.nx));
+  const double s_y = g.span_y(std::clamp(g.row_at(x.y()), 0, g.ny));
   Stress sum;
   double weights = 0.0;
   for (std::size_t q = 0; q < p.size(); ++q) {
-    const double d_x = std::abs(p.x[q] - x.x()) / state.grid.h, d_y = std::abs(p.y[q] - x.y()) / state.grid.h;
+    const double d_x = std::abs(p.x[q] - x.x()) / s_x, d_y = std::abs(p.y[q] - x.y()) / s_y;
     if (d_x >= 1.0 || d_y >= 1.0 || p.rock[q] != rock_at(scene, x)) continue;
     const double weight = (1.0 - d_x) * (1.0 - d_y) * p.V[q];
     sum = sum + weight * p.in_situ[q];

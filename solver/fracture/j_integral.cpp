@@ -51,14 +51,15 @@ using NodalWeights = std::array<double, 9>;
 NodalWeights nodal_weights(const Grid& g, const Vec2& tip, const Ring& ring, int i, int j) {
   NodalWeights q{};
   for (int n = 0; n < 9; ++n) {
-    const Vec2 x{(i + n % 3 - 1) * g.h, (j + n / 3 - 1) * g.h};
+    const Vec2 x{g.x(i + n % 3 - 1), g.y(j + n / 3 - 1)};
     q[static_cast<std::size_t>(n)] = ring.at_node((x - tip).norm());
   }
   return q;
 }
 
+// Spans are h where q is not 0: rings lie among fine cells.
 Weight weight_at(const Grid& g, const Frame& frame, const NodalWeights& nodes, int i, int j, const Vec2& x) {
-  const Weights X = QuadraticBspline::at(x.x() / g.h - i, 0.0), Y = QuadraticBspline::at(x.y() / g.h - j, 0.0);
+  const Weights X = weights_x<QuadraticBspline>(g, i, x.x(), 0.0), Y = weights_y<QuadraticBspline>(g, j, x.y(), 0.0);
   double q = 0.0;
   Vec2 grad = Vec2::Zero();
   for (std::size_t n = 0; n < 9; ++n) {
@@ -158,8 +159,8 @@ LocalFields fields_at(const State& state, const Elasticity& rock, const Frame& f
   f.v = frame.local({p.v_x[q], p.v_y[q]});
   // Acceleration and velocity gradient are interpolated with B-splines whatever the scene's shape: they only enter
   // here.
-  const Weights X = QuadraticBspline::at(p.x[q] / state.grid.h - bin.i, 0.0),
-                Y = QuadraticBspline::at(p.y[q] / state.grid.h - bin.j, 0.0);
+  const Weights X = weights_x<QuadraticBspline>(state.grid, bin.i, p.x[q], 0.0),
+                Y = weights_y<QuadraticBspline>(state.grid, bin.j, p.y[q], 0.0);
   Vec2 a = Vec2::Zero(), v_1 = Vec2::Zero();
   for (std::size_t n = 0; n < 9; ++n) {
     const NodeMotion& node = state.motion[static_cast<std::size_t>(bin.record[n])];
@@ -217,7 +218,7 @@ void add_faces(const Elasticity& rock, const Grid& grid, const Surface& fracture
         4.0 / rock.E_prime * 2.0 * (std::sqrt(far) - std::sqrt(std::max(near, 0.0))) / std::sqrt(2.0 * pi);
     const Vec2 forward = frame.local(at_back ? Vec2{s.n.y(), -s.n.x()} : Vec2{-s.n.y(), s.n.x()});
     for (std::size_t j = 0; j < rings.size(); ++j) {
-      const int i_s = grid.nearest(s.x.x()), j_s = grid.nearest(s.x.y());
+      const int i_s = grid.column_at(s.x.x()), j_s = grid.row_at(s.x.y());
       const Weight weight = weight_at(grid, frame, nodal_weights(grid, frame.tip, rings[j], i_s, j_s), i_s, j_s, s.x);
       const double q = weight.q, dq_ds = weight.grad.dot(forward);
       sums[j].J += s.A * (w.dot(t) * dq_ds + q * w.dot(dt_ds));
@@ -319,10 +320,10 @@ void measure_tips(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
       rings.push_back({inner_fraction * fraction * tip.ring_m, fraction * tip.ring_m});
     std::vector<Sums> sums(rings.size());
     const Elasticity& rock = rocks[rock_at(scene, frame.tip + ahead_cells * state.grid.h * frame.e_1)];
-    const double reach = tip.ring_m / state.grid.h + 2.0;
+    const double reach = tip.ring_m + 2.0 * state.grid.h;
     for (const Bin& bin : state.bins) {
-      if (std::abs(bin.i - frame.tip.x() / state.grid.h) > reach ||
-          std::abs(bin.j - frame.tip.y() / state.grid.h) > reach)
+      if (std::abs(state.grid.x(bin.i) - frame.tip.x()) > reach ||
+          std::abs(state.grid.y(bin.j) - frame.tip.y()) > reach)
         continue;
       add_bin(rocks, state, frame, rings, bin, sums);
     }

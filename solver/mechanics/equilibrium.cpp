@@ -3,6 +3,7 @@
 #include <Eigen/CholmodSupport>
 
 #include "mechanics/stiffness.hpp"
+#include "state/make_grid.hpp"
 #include "state/rebuild.hpp"
 
 namespace strata {
@@ -15,24 +16,35 @@ Unknown unknown_of(const State& state, int record, int component) {
   return strata::unknown_of(state.masters, record, component);
 }
 
-// Adds the force of a uniform traction t (Pa) on the straight edge from a to b to f; two points a cell.
+// Adds the force of a uniform traction t (Pa) on 1/parts of an edge of `length` m to f, applied at x.
+void load_point(const Scene& scene, const State& state, const Vec2& x, const Vec2& t, double length, int parts,
+                Eigen::VectorXd& f) {
+  const Grid& g = state.grid;
+  const int i = std::min(g.column_at(x.x()), g.nx), j = std::min(g.row_at(x.y()), g.ny);
+  const Gradients weights = gradients_at(scene, g, i, j, x, 1e-6 * g.h);
+  for (std::size_t node = 0; node < 9; ++node) {
+    const int record = g.node(i + static_cast<int>(node % 3) - 1, j + static_cast<int>(node / 3) - 1);
+    for (int component = 0; component < 2; ++component) {
+      const Unknown at = unknown_of(state, record, component);
+      if (at.index >= 0) f[at.index] += at.factor * weights.N[node] * t[component] * length / parts;
+    }
+  }
+}
+
+// Adds the force of a uniform traction t (Pa) on the straight edge from a to b to f, at the coordinates at which the
+// particles beside it stand: a uniform stress in these is then in equilibrium with it at every node.
 void load_edge(const Scene& scene, const State& state, const Vec2& a, const Vec2& b, const Vec2& t,
                Eigen::VectorXd& f) {
   const Grid& g = state.grid;
-  const int n = static_cast<int>(std::lround(2.0 * (b - a).norm() / g.h));
-  for (int k = 0; k < n; ++k) {
-    const Vec2 x = a + (b - a) * ((k + 0.5) / n);
-    Bin bin;
-    bin.i = std::min(g.nearest(x.x()), g.nx), bin.j = std::min(g.nearest(x.y()), g.ny);
-    const Gradients weights = gradients_at(scene, g, bin.i, bin.j, x, 1e-6 * g.h);
-    for (std::size_t node = 0; node < 9; ++node) {
-      const int record = g.node(bin.i + static_cast<int>(node % 3) - 1, bin.j + static_cast<int>(node / 3) - 1);
-      for (int component = 0; component < 2; ++component) {
-        const Unknown at = unknown_of(state, record, component);
-        if (at.index >= 0) f[at.index] += at.factor * weights.N[node] * t[component] * (b - a).norm() / n;
-      }
-    }
+  const bool along_x = a.y() == b.y();
+  const int across = static_cast<int>(std::lround(std::sqrt(scene.numerics.particles_per_cell)));
+  if ((along_x ? g.x_knots : g.y_knots).empty()) {
+    const int n = across * (along_x ? g.nx : g.ny);
+    for (int k = 0; k < n; ++k) load_point(scene, state, a + (b - a) * ((k + 0.5) / n), t, (b - a).norm(), n, f);
+    return;
   }
+  for (const GridPoint& s : along_x ? points_along_x(g, across) : points_along_y(g, across))
+    load_point(scene, state, along_x ? Vec2{s.at, a.y()} : Vec2{a.x(), s.at}, t, s.length, 1, f);
 }
 
 // The loads are in balance, so holding as many unknowns as there are rigid motions costs no reaction.

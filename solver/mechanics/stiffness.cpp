@@ -1,21 +1,6 @@
 #include "mechanics/stiffness.hpp"
 
-#include "state/shape_functions.hpp"
-
 namespace strata {
-
-Gradients gradients_at(const Scene& scene, const Grid& g, int i, int j, const Vec2& x, double half) {
-  return with_shape(scene.numerics.shape, [&](auto shape) {
-    const Weights X = shape.at(x.x() / g.h - i, half / g.h), Y = shape.at(x.y() / g.h - j, half / g.h);
-    Gradients out;
-    for (std::size_t n = 0; n < 9; ++n) {
-      out.N[n] = X.N[n % 3] * Y.N[n / 3];
-      out.N_x[n] = X.dN[n % 3] * Y.N[n / 3] / g.h;
-      out.N_y[n] = X.N[n % 3] * Y.dN[n / 3] / g.h;
-    }
-    return out;
-  });
-}
 
 void add_stiffness(const Elasticity& rock, const Gradients& g, double V, LocalStiffness& K) {
   Eigen::Matrix<double, 3, 18> B = Eigen::Matrix<double, 3, 18>::Zero();

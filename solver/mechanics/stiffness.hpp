@@ -2,22 +2,13 @@
 #pragma once
 
 #include <Eigen/SparseCore>
-#include <array>
 #include <vector>
 
 #include "state/elasticity.hpp"
+#include "state/shape_functions.hpp"
 #include "state/state.hpp"
 
 namespace strata {
-
-// Shape functions of the nine nodes around a place and their derivatives (1/m).
-struct Gradients {
-  std::array<double, 9> N{}, N_x{}, N_y{};
-};
-
-/// Weights of the scene's shape function at x (m), of the 3 x 3 nodes around column i and row j; half: half the size of
-/// a uGIMP particle (m). Throws nothing.
-Gradients gradients_at(const Scene& scene, const Grid& grid, int i, int j, const Vec2& x, double half);
 
 using LocalStiffness = Eigen::Matrix<double, 18, 18>;
 

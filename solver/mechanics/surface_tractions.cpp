@@ -8,8 +8,7 @@ namespace {
 
 template <class Shape>
 void weigh(const Grid& g, const Vec2& x, SurfaceStencil& stencil) {
-  const Weights X = Shape::at(x.x() / g.h - stencil.i, 0.0);
-  const Weights Y = Shape::at(x.y() / g.h - stencil.j, 0.0);
+  const Weights X = weights_x<Shape>(g, stencil.i, x.x(), 0.0), Y = weights_y<Shape>(g, stencil.j, x.y(), 0.0);
   for (std::size_t b = 0; b < 3; ++b) {
     for (std::size_t a = 0; a < 3; ++a) stencil.N[3 * b + a] = X.N[a] * Y.N[b];
   }

@@ -35,7 +35,7 @@ TipTie make_tie(double c, const Elasticity& rock, const State& state, int node, 
   const Surface& fracture = state.fracture();
   TipTie tie;
   tie.node = node;
-  tie.s.x = Vec2{g.column(node) * g.h, g.row(node) * g.h};
+  tie.s.x = Vec2{g.x(g.column(node)), g.y(g.row(node))};
   tie.s.n = at_back ? fracture.points.back().n : fracture.points.front().n;
   tie.s.A = 1.0;
   tie.s.split = true;
@@ -63,7 +63,7 @@ void update_tip_ties(const Scene& scene, const std::vector<Elasticity>& rocks, S
     for (const CutNode& cut : state.copies.cut) {
       if (cut.fracture == 0 || cut.records.size() < 2) continue;
       const int node = state.copies.node_of_record[static_cast<std::size_t>(cut.records.front())];
-      const Vec2 x{state.grid.column(node) * state.grid.h, state.grid.row(node) * state.grid.h};
+      const Vec2 x{state.grid.x(state.grid.column(node)), state.grid.y(state.grid.row(node))};
       // A tied node is less than a cell behind the tip and no more than 1.5 cells across: never as far as this.
       if ((x - at).norm() > 3.0 * state.grid.h) continue;
       TipTie tie = make_tie(tip_tie_coefficient(scene), rock, state, node, tip.at_back);

@@ -17,7 +17,7 @@ namespace strata {
 namespace {
 
 constexpr std::string_view magic = "strata-checkpoint\n";
-constexpr std::uint32_t format_version = 1;  // to be raised with every change of what is saved
+constexpr std::uint32_t format_version = 2;  // to be raised with every change of what is saved
 constexpr std::uint32_t byte_order = 0x01020304;
 
 std::uint64_t fnv1a(std::string_view bytes) {
@@ -37,8 +37,8 @@ concept Is = std::is_same_v<std::remove_const_t<T>, Plain>;
 // a new one cannot be left out by oversight: the compiler asks for it here. Then raise format_version.
 template <class Archive>
 void fields(Archive& ar, Is<Grid> auto& grid) {
-  auto& [nx, ny, h] = grid;
-  ar(nx, ny, h);
+  auto& [nx, ny, h, x_knots, y_knots] = grid;
+  ar(nx, ny, h, x_knots, y_knots);
 }
 
 template <class Archive>

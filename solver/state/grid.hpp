@@ -1,15 +1,25 @@
-// The background grid: square cells, nodes at their corners, and one ring of ghost nodes around the block, which
+// The background grid: rectilinear cells, nodes at their corners, and one ring of ghost nodes around the block, which
 // quadratic B-splines reach.
+//
+// Each node stands in the middle of its span of both axes, [t_i, t_i+1] with knots t: those of quadratic B-splines, of
+// which node i's lives on the spans i - 1, i and i + 1. On a uniform grid t_i = (i - 1/2) h. On a graded one spans grow
+// (see scene/graded_cells.hpp) and a cell, from node to node, is the mean of two spans; the first and the last node
+// stand on the block's edges, so that their spans reach half over them, and the ghosts' spans are those that they
+// mirror.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace strata {
 
 struct Grid {
-  int nx = 0;      // cells along x
-  int ny = 0;      // cells along y
-  double h = 0.0;  // cell size (m)
+  int nx = 0;                                // cells along x
+  int ny = 0;                                // cells along y
+  double h = 0.0;                            // cell size (m); of the fine cells where the grid is graded
+  std::vector<double> x_knots{}, y_knots{};  // t_-1 ... t_n+2 (m) of a graded axis; none: uniform
 
   int columns() const { return nx + 3; }
   int rows() const { return ny + 3; }
@@ -20,8 +30,32 @@ struct Grid {
   int column(int node) const { return node % columns() - 1; }
   int row(int node) const { return node / columns() - 1; }
 
-  // Column (or row) of the node nearest to a coordinate (m).
-  int nearest(double x) const { return static_cast<int>(std::floor(x / h + 0.5)); }
+  // Coordinate (m) of the nodes of column i (-1 ... nx + 1) or row j.
+  double x(int i) const { return node_at(x_knots, i); }
+  double y(int j) const { return node_at(y_knots, j); }
+
+  // Length (m) of the span of column i (-1 ... nx + 1) or row j.
+  double span_x(int i) const { return span(x_knots, i); }
+  double span_y(int j) const { return span(y_knots, j); }
+
+  // Column (or row) whose span holds a coordinate (m): that of the nearest node on a uniform grid. Outside the block it
+  // is that of a ghost or, on a uniform grid, one still farther out.
+  int column_at(double x) const { return holding(x_knots, x); }
+  int row_at(double y) const { return holding(y_knots, y); }
+
+ private:
+  double node_at(const std::vector<double>& t, int i) const {
+    const auto k = static_cast<std::size_t>(i + 1);
+    return t.empty() ? i * h : 0.5 * (t[k] + t[k + 1]);
+  }
+  double span(const std::vector<double>& t, int i) const {
+    const auto k = static_cast<std::size_t>(i + 1);
+    return t.empty() ? h : t[k + 1] - t[k];
+  }
+  int holding(const std::vector<double>& t, double x) const {
+    if (t.empty()) return static_cast<int>(std::floor(x / h + 0.5));
+    return static_cast<int>(std::upper_bound(t.begin() + 1, t.end() - 1, x) - t.begin()) - 2;
+  }
 };
 
 }  // namespace strata

@@ -34,7 +34,8 @@ bool has_tip(const State& state, bool at_back) {
   return std::any_of(state.tips.begin(), state.tips.end(), [&](const Tip& tip) { return tip.at_back == at_back; });
 }
 
-// The tip rule: the fracture splits a node within reach whose projection lies strictly behind the tip.
+// The tip rule: the fracture splits a node within reach whose projection lies strictly behind the tip. Reach is a
+// number of cells, since all cells beside a surface are of h across it.
 void mark_fracture(const Scene& scene, const State& state, std::vector<SideWord>& mask) {
   const Surface& s = state.fracture();
   const Grid& g = state.grid;
@@ -42,13 +43,13 @@ void mark_fracture(const Scene& scene, const State& state, std::vector<SideWord>
   const bool front = has_tip(state, false), back = has_tip(state, true);
   for (std::size_t k = 0; k + 1 < s.vertices.size(); ++k) {
     const Vec2 a = s.vertices[k].x, b = s.vertices[k + 1].x;
-    const int i0 = std::max(-1, g.nearest(std::min(a.x(), b.x())) - 2),
-              i1 = std::min(g.nx + 1, g.nearest(std::max(a.x(), b.x())) + 2);
-    const int j0 = std::max(-1, g.nearest(std::min(a.y(), b.y())) - 2),
-              j1 = std::min(g.ny + 1, g.nearest(std::max(a.y(), b.y())) + 2);
+    const int i0 = std::max(-1, g.column_at(std::min(a.x(), b.x())) - 2),
+              i1 = std::min(g.nx + 1, g.column_at(std::max(a.x(), b.x())) + 2);
+    const int j0 = std::max(-1, g.row_at(std::min(a.y(), b.y())) - 2),
+              j1 = std::min(g.ny + 1, g.row_at(std::max(a.y(), b.y())) + 2);
     for (int j = j0; j <= j1; ++j) {
       for (int i = i0; i <= i1; ++i) {
-        const Vec2 x{i * g.h, j * g.h};
+        const Vec2 x{g.x(i), g.y(j)};
         auto& word = mask[static_cast<std::size_t>(g.node(i, j))];
         if ((word & s.mask()) != 0 || !segment_meets_box(a, b, x, half)) continue;
         const double arc = project(s, x, extension(g)).arc;
@@ -69,10 +70,12 @@ void mark_interface(const Scene& scene, const State& state, const Surface& s, st
   for (const SurfacePoint& point : s.points) {
     if (point.split) split[static_cast<std::size_t>(point.column)] = 1;
   }
-  const double half = support_in_cells(scene) - slack_cells;
-  const double at = (along_x ? s.vertices[0].x.y() : s.vertices[0].x.x()) / g.h;
-  for (int across = static_cast<int>(std::ceil(at - half)); across <= static_cast<int>(std::floor(at + half));
-       ++across) {
+  const double half = (support_in_cells(scene) - slack_cells) * g.h;
+  const double at = along_x ? s.vertices[0].x.y() : s.vertices[0].x.x();
+  const int middle = along_x ? g.row_at(at) : g.column_at(at);
+  const int last = std::min(middle + 2, (along_x ? g.ny : g.nx) + 1);
+  for (int across = std::max(middle - 2, -1); across <= last; ++across) {
+    if (std::abs((along_x ? g.y(across) : g.x(across)) - at) > half) continue;
     for (int k = -1; k <= n + 1; ++k) {
       const int column = k < 0 ? 1 : (k > n ? n - 1 : k);  // a ghost as the node inside
       if (split[static_cast<std::size_t>(column)] == 0) continue;
@@ -186,7 +189,7 @@ std::vector<SortKey> sort_keys(const State& state, const std::vector<SideWord>& 
   }
   std::vector<SortKey> keys(p.size());
   for (std::size_t k = 0; k < p.size(); ++k) {
-    const int i = g.nearest(p.x[k]), j = g.nearest(p.y[k]);
+    const int i = g.column_at(p.x[k]), j = g.row_at(p.y[k]);
     if (i < 0 || i > g.nx || j < 0 || j > g.ny) {
       throw NumericalFailure("a particle has left the block at x = " + std::to_string(p.x[k]) +
                              ", y = " + std::to_string(p.y[k]) + " m: parts move freely, or the time step is too long");
@@ -272,12 +275,21 @@ void make_masters(const Scene& scene, State& state) {
   }
 }
 
+// Half the width along an interface (m) of the hat with which its points in one column (row) sample stress: no more
+// than the distance to the particles of the next.
+double half_along(const Grid& g, bool along_x, int column) {
+  const auto span = [&](int k) { return along_x ? g.span_x(k) : g.span_y(k); };
+  return 0.5 * std::min({span(column - 1), span(column), span(column + 1)});
+}
+
 // Stress at a point of a bonded interface: the mean over the particles around it, weighted with a hat half a cell wide
 // to each side. Exact where stress is uniform or linear. With 4 points a cell on a grid line these are the two
 // particles right above and below: a wider mean would hide the shear beside an approaching tip, which changes sign
 // across it.
-std::vector<std::vector<StressSample>> sample_stress(const State& state, const Surface& s) {
-  const double half = 0.5 * state.grid.h;
+std::vector<std::vector<StressSample>> sample_stress(const Scene& scene, const State& state, const Surface& s) {
+  const Grid& g = state.grid;
+  const double half = 0.5 * g.h;
+  const bool along_x = scene.strata.along == Strata::Along::y;
   const Particles& p = state.particles;
   const Vec2 from = s.vertices.front().x, to = s.vertices.back().x;
   const Vec2 along = (to - from).normalized(), across{-along.y(), along.x()};
@@ -287,11 +299,13 @@ std::vector<std::vector<StressSample>> sample_stress(const State& state, const S
     const Vec2 off = Vec2{p.x[k], p.y[k]} - from;
     const double share = 1.0 - std::abs(off.dot(across)) / half;
     if (share <= 0.0) continue;
-    const auto near = static_cast<std::ptrdiff_t>(off.dot(along) / s.length() * static_cast<double>(s.points.size()));
-    for (std::ptrdiff_t c = near - 2; c <= near + 2; ++c) {
+    const int column = along_x ? g.column_at(p.x[k]) : g.row_at(p.y[k]);
+    const std::ptrdiff_t near = 2 * column;  // points 2 i - 1 and 2 i stand in the span of column i
+    for (std::ptrdiff_t c = near - 3; c <= near + 2; ++c) {
       if (c < 0 || c >= static_cast<std::ptrdiff_t>(s.points.size())) continue;
       const auto point = static_cast<std::size_t>(c);
-      const double weight = share * (1.0 - std::abs(off.dot(along) - s.points[point].arc) / half) * p.V[k];
+      const double width = half_along(g, along_x, s.points[point].column);
+      const double weight = share * (1.0 - std::abs(off.dot(along) - s.points[point].arc) / width) * p.V[k];
       if (weight > 1e-3 * p.V[k]) samples[point].push_back({q, weight});
     }
   }
@@ -310,15 +324,15 @@ void make_stress_samples(const Scene& scene, State& state) {
     if (s.kind != Surface::Kind::interface) continue;
     const auto kind = scene.laws[s.law].kind;
     if (kind == InterfaceLaw::Kind::weak || kind == InterfaceLaw::Kind::friction)
-      state.stress_samples[k] = sample_stress(state, s);
+      state.stress_samples[k] = sample_stress(scene, state, s);
   }
 }
 
 SurfaceStencil stencil_at(const State& state, const Surface& s, const SurfacePoint& point) {
   SurfaceStencil stencil;
   const Grid& g = state.grid;
-  stencil.i = std::clamp(g.nearest(point.x.x()), 0, g.nx);
-  stencil.j = std::clamp(g.nearest(point.x.y()), 0, g.ny);
+  stencil.i = std::clamp(g.column_at(point.x.x()), 0, g.nx);
+  stencil.j = std::clamp(g.row_at(point.x.y()), 0, g.ny);
   const auto nodes = stencil_nodes(g, stencil.i, stencil.j);
   for (std::size_t n = 0; n < 9; ++n) {
     const int minus = record_of(state.copies, nodes[n], point.sides);

@@ -1,0 +1,182 @@
+#include "scene/graded_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace strata {
+namespace {
+
+using Point = std::array<double, 2>;
+
+// Length of the straight way from x along the unit vector d until it leaves the block.
+double way_to_edge(const Domain& domain, const Point& x, const Point& d) {
+  const Point far{domain.width_m, domain.height_m};
+  double way = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (d[k] > 0.0) way = std::min(way, (far[k] - x[k]) / d[k]);
+    if (d[k] < 0.0) way = std::min(way, -x[k] / d[k]);
+  }
+  return std::max(0.0, way);
+}
+
+// Unit vector along which the fracture would go on at its end `tip`, which `before` comes before.
+Point direction(const Point& before, const Point& tip) {
+  const Point d{tip[0] - before[0], tip[1] - before[1]};
+  const double length = std::hypot(d[0], d[1]);
+  return {d[0] / length, d[1] / length};
+}
+
+// Ends of the fracture's straight ways. A tip that goes up goes as far as stop.tip_y_m; one that does not goes as far
+// as the one that does.
+std::vector<Point> ends_of_growth(const Scene& scene) {
+  const Fracture& fracture = *scene.fracture;
+  const auto& path = fracture.path_m;
+  if (fracture.growth == Fracture::Growth::none) return {};
+  struct Way {
+    Point tip, d;
+    double length;
+  };
+  std::vector<Way> ways{{path.back(), direction(path[path.size() - 2], path.back()), 0.0}};
+  const bool from_symmetry = scene.domain.bottom == Edge::symmetry && path.front()[1] == 0.0;
+  if (!from_symmetry) ways.push_back({path.front(), direction(path[1], path.front()), 0.0});
+  double longest = std::numeric_limits<double>::infinity();
+  for (const Way& way : ways) {
+    if (!scene.stop.tip_y_m || way.d[1] <= 0.0) continue;
+    longest = std::min(longest, std::max(0.0, (*scene.stop.tip_y_m - way.tip[1]) / way.d[1]));
+  }
+  std::vector<Point> ends;
+  for (Way& way : ways) {
+    way.length = std::min(longest, way_to_edge(scene.domain, way.tip, way.d));
+    ends.push_back({way.tip[0] + way.length * way.d[0], way.tip[1] + way.length * way.d[1]});
+  }
+  return ends;
+}
+
+bool rocks_or_law_change(const Scene& scene, std::size_t k) {
+  return scene.laws[scene.strata.interfaces[k].law].kind != InterfaceLaw::Kind::perfect ||
+         scene.strata.layers[k].rock != scene.strata.layers[k + 1].rock;
+}
+
+// Spans of one stretch of growing cells, for a trial q.
+struct Growth {
+  double h, far;
+  bool to_edge;  // the last span counts half; otherwise spans grow from both ends
+  double span(int k, int m, double q) const {
+    return std::min(h * std::pow(q, to_edge ? k : std::min(k, m + 1 - k)), far);
+  }
+  double sum(int m, double q) const {
+    double total = 0.0;
+    for (int k = 1; k <= m; ++k) total += (to_edge && k == m ? 0.5 : 1.0) * span(k, m, q);
+    return total;
+  }
+};
+
+// Spans that fill `length` m, from the fine ones on.
+std::vector<double> growing_spans(const Growth& growth, double length) {
+  const double round_off = 1e-9 * growth.h;
+  int m = 1;
+  while (growth.sum(m, span_growth) < length - round_off) ++m;
+  double low = 1.0, high = span_growth;
+  while (high - low > 2e-16 * high) {
+    const double q = 0.5 * (low + high);
+    if (q <= low || q >= high) break;
+    (growth.sum(m, q) < length ? low : high) = q;
+  }
+  std::vector<double> spans;
+  for (int k = 1; k <= m; ++k) spans.push_back(growth.span(k, m, high));
+  return spans;
+}
+
+// First and last node of a fine stretch, as numbers of cells of h from the origin.
+struct FineNodes {
+  long first, last;
+};
+
+std::vector<FineNodes> fine_nodes(double h, long cells, const std::vector<Stretch>& fine) {
+  constexpr double round_off = 1e-6;  // of a cell
+  std::vector<FineNodes> nodes;
+  for (const Stretch& s : fine) {
+    const long first = std::max(0L, std::lround(std::floor(s.from / h + round_off)));
+    const long last = std::min(cells, std::lround(std::ceil(s.to / h - round_off)));
+    if (!nodes.empty() && first <= nodes.back().last + 1) {
+      nodes.back().last = std::max(nodes.back().last, last);
+    } else {
+      nodes.push_back({first, last});
+    }
+  }
+  if (nodes.empty()) nodes.push_back({0, std::min(cells, 1L)});
+  return nodes;
+}
+
+}  // namespace
+
+std::vector<Stretch> fine_stretches(const Scene& scene, int axis) {
+  const auto k = static_cast<std::size_t>(axis);
+  const double h = scene.numerics.cell_m;
+  const double extent = axis == 0 ? scene.domain.width_m : scene.domain.height_m;
+  std::vector<Stretch> fine;
+  if (scene.fracture) {
+    std::vector<Point> places = scene.fracture->path_m;
+    for (const Point& end : ends_of_growth(scene)) places.push_back(end);
+    const auto [low, high] = std::ranges::minmax_element(places, {}, [k](const Point& x) { return x[k]; });
+    fine.push_back({(*low)[k] - fine_cells_at_fracture * h, (*high)[k] + fine_cells_at_fracture * h});
+  }
+  const bool across = (scene.strata.along == Strata::Along::x) == (axis == 0);
+  for (std::size_t n = 0; across && n < scene.strata.interfaces.size(); ++n) {
+    if (!rocks_or_law_change(scene, n)) continue;
+    const double at = scene.strata.interfaces[n].at_m;
+    fine.push_back({at - fine_cells_at_interface * h, at + fine_cells_at_interface * h});
+  }
+  std::ranges::sort(fine, {}, &Stretch::from);
+  std::vector<Stretch> merged;
+  for (Stretch s : fine) {
+    s = {std::max(0.0, s.from), std::min(extent, s.to)};
+    if (!merged.empty() && s.from <= merged.back().to) {
+      merged.back().to = std::max(merged.back().to, s.to);
+    } else {
+      merged.push_back(s);
+    }
+  }
+  return merged;
+}
+
+std::vector<double> graded_knots(double extent, double h, double far, const std::vector<Stretch>& fine) {
+  const long cells = std::lround(extent / h);
+  const std::vector<FineNodes> nodes = fine_nodes(h, cells, fine);
+  std::vector<double> t;  // from t_0 on, the lower end of the first node's span
+  if (nodes.front().first > 0) {
+    const double length = (static_cast<double>(nodes.front().first) - 0.5) * h;
+    const std::vector<double> spans = growing_spans({h, far, true}, length);
+    t.push_back(-0.5 * spans.back());
+    for (std::size_t k = spans.size() - 1; k > 0; --k) t.push_back(t.back() + spans[k]);
+  }
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    for (long i = nodes[n].first; i <= nodes[n].last + 1; ++i) t.push_back((static_cast<double>(i) - 0.5) * h);
+    if (n + 1 == nodes.size()) break;
+    const double gap = static_cast<double>(nodes[n + 1].first - nodes[n].last - 1) * h;
+    const std::vector<double> spans = growing_spans({h, far, false}, gap);
+    for (std::size_t k = 0; k + 1 < spans.size(); ++k) t.push_back(t.back() + spans[k]);
+  }
+  if (nodes.back().last < cells) {
+    const double length = (static_cast<double>(cells - nodes.back().last) - 0.5) * h;
+    const std::vector<double> spans = growing_spans({h, far, true}, length);
+    for (std::size_t k = 0; k + 1 < spans.size(); ++k) t.push_back(t.back() + spans[k]);
+    t.push_back(2.0 * extent - t.back());  // the last node, in the middle, stands on the edge
+  }
+  t[0] = -t[1];  // the first node stands on the edge
+  // Ghosts: node -1 mirrors node 1, node n + 1 mirrors node n - 1.
+  t.insert(t.begin(), t[0] - (t[2] - t[1]));
+  const std::size_t end = t.size() - 1;
+  t.push_back(t[end] + (t[end - 1] - t[end - 2]));
+  return t;
+}
+
+std::vector<double> scene_knots(const Scene& scene, int axis) {
+  const double h = scene.numerics.cell_m, far = scene.numerics.far_cell_m.value_or(h);
+  if (far <= h) return {};
+  const double extent = axis == 0 ? scene.domain.width_m : scene.domain.height_m;
+  return graded_knots(extent, h, far, fine_stretches(scene, axis));
+}
+
+}  // namespace strata

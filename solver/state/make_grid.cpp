@@ -1,0 +1,51 @@
+#include "state/make_grid.hpp"
+
+#include <cmath>
+
+#include "scene/graded_cells.hpp"
+
+namespace strata {
+
+namespace {
+
+std::vector<GridPoint> points_along(const std::vector<double>& t, int n, double h, int across) {
+  std::vector<GridPoint> points;
+  if (t.empty()) {
+    const double side = h / across;
+    for (int k = 0; k < n * across; ++k) points.push_back({(k + 0.5) * side, side});
+    return points;
+  }
+  for (int i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i + 1);  // t[k] is t_i
+    const double s = t[k + 1] - t[k], next = t[k + 2] - t[k + 1];
+    for (int m = 0; m < across; ++m) {
+      const double c = (m + 0.5) / across;
+      if (2 * m + 1 < across) points.push_back({0.5 * (t[k] + t[k + 1]) + c * s, s / across});
+      if (2 * m + 1 == across) points.push_back({t[k + 1], 0.5 * (s + next) / across});
+      if (2 * m + 1 > across) points.push_back({0.5 * (t[k + 1] + t[k + 2]) - (1.0 - c) * next, next / across});
+    }
+  }
+  return points;
+}
+
+}  // namespace
+
+Grid make_grid(const Scene& scene) {
+  const double h = scene.numerics.cell_m;
+  Grid grid{static_cast<int>(std::lround(scene.domain.width_m / h)),
+            static_cast<int>(std::lround(scene.domain.height_m / h)), h, scene_knots(scene, 0), scene_knots(scene, 1)};
+  constexpr int ghosts = 4;  // knots beyond those between the nodes
+  if (!grid.x_knots.empty()) grid.nx = static_cast<int>(grid.x_knots.size()) - ghosts;
+  if (!grid.y_knots.empty()) grid.ny = static_cast<int>(grid.y_knots.size()) - ghosts;
+  return grid;
+}
+
+std::vector<GridPoint> points_along_x(const Grid& grid, int across) {
+  return points_along(grid.x_knots, grid.nx, grid.h, across);
+}
+
+std::vector<GridPoint> points_along_y(const Grid& grid, int across) {
+  return points_along(grid.y_knots, grid.ny, grid.h, across);
+}
+
+}  // namespace strata
