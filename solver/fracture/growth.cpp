@@ -10,7 +10,8 @@ namespace strata {
 
 namespace {
 
-constexpr double edge_cells = 3.0;      // a tip nearer than this to an edge has no ring left to measure J in
+constexpr double edge_cells = 3.0;  // a tip nearer than this to an edge has no ring left to measure J in
+constexpr double fine_cells = 5.0;  // around a tip: its rings reach 4 cells, and the functions there half a span more
 constexpr double arrest_rise_Pa = 5e4;  // the inlet's rise over which a tip that stays counts as arrested
 constexpr double sliver = 0.25;         // no growth step is shorter than this fraction of an increment
 
@@ -213,9 +214,18 @@ std::size_t rock_ahead(const Scene& scene, const State& state, const Tip& tip) {
   return rock_at(scene, tip_position(state, tip) + ahead);
 }
 
+std::string what_stops(const Scene& scene, const State& state, const Tip& tip) {
+  const Vec2 at = tip_position(state, tip);
+  const double h = state.grid.h;
+  if (tip.has_grown && near_edge(scene, at, tip_direction(state.fracture(), tip.at_back), h))
+    return "within 3 cells of an edge of the block";
+  if (!state.grid.fine_around(at.x(), at.y(), fine_cells * h))
+    return "within 5 cells of coarser ones; leave out numerics.far_cell_m";
+  return "";
+}
+
 bool stopped_by_edge(const Scene& scene, const State& state, const Tip& tip) {
-  return tip.has_grown &&
-         near_edge(scene, tip_position(state, tip), tip_direction(state.fracture(), tip.at_back), state.grid.h);
+  return !what_stops(scene, state, tip).empty();
 }
 
 bool interface_within(const Scene& scene, const State& state, const Tip& tip, double reach) {
@@ -248,7 +258,7 @@ bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state
     if (tip.last_growth_s >= 0.0 && state.time - tip.last_growth_s < rayleigh_wait(scene, ahead)) continue;
     if (stopped_by_edge(scene, state, tip)) {
       tip.growing = false;
-      tip.stopped_by = "within 3 cells of an edge of the block";
+      tip.stopped_by = what_stops(scene, state, tip);
       continue;
     }
     note_growth(state, tip, "J", !tip.at_interface);

@@ -1,6 +1,7 @@
 // Growth of the fracture: when a tip moves, where to, and what is told about it.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "state/elasticity.hpp"
@@ -12,15 +13,19 @@ namespace strata {
 /// along its own direction or that of maximum hoop stress. A tip moves no faster than the Rayleigh speed of that rock:
 /// the next increment waits for increment/c_R. An increment that would cross an interface, or end less than a quarter
 /// of an increment short of it, ends on it; one that starts on it, or less than a quarter of an increment before it,
-/// goes on. A tip that has grown to within 3 cells of an edge stops for good and says so. A closed tip (K_I = 0) does
-/// not grow. Returns true if any tip moved: the copies must then be rebuilt. Throws nothing.
+/// goes on. A tip that has grown to within 3 cells of an edge, or off its straight way to within 5 cells of the coarse
+/// cells of a graded grid, stops for good and says so. A closed tip (K_I = 0) does not grow. Returns true if any tip
+/// moved: the copies must then be rebuilt. Throws nothing.
 bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
 
 /// Index of the rock that a tip is about to enter. Throws nothing.
 std::size_t rock_ahead(const Scene& scene, const State& state, const Tip& tip);
 
-/// Whether a tip that has grown stands within 3 cells of an edge that it heads for: it has no room to grow or to
-/// measure J in. Throws nothing.
+/// What leaves a tip no room to grow or to measure J in, "" where nothing does: an edge that it heads for, nearer than
+/// 3 cells, once it has grown; the coarse cells of a graded grid, nearer than 5. Throws nothing but std::bad_alloc.
+std::string what_stops(const Scene& scene, const State& state, const Tip& tip);
+
+/// Whether something stops it so.
 bool stopped_by_edge(const Scene& scene, const State& state, const Tip& tip);
 
 /// Whether an interface that does something (a law, or another rock beyond it) lies within `reach` (m) of a tip.

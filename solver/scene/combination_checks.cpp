@@ -64,6 +64,14 @@ void check_far_cell(const Scene& scene, const Positions& positions, Faults& faul
   const Numerics& numerics = scene.numerics;
   if (!numerics.far_cell_m || !usable(positions, "numerics.far_cell_m") || !usable(positions, "numerics.cell_m"))
     return;
+  // The middle one of three stands on the border of two spans: at a loaded edge, which halves a span, its weights do
+  // not integrate the derivative of a B-spline, and a uniform stress would not be in equilibrium.
+  if (numerics.particles_per_cell == 9 && positions.sound("numerics.particles_per_cell")) {
+    faults.add(where_is(positions, "numerics.particles_per_cell"),
+               fmt::format("numerics.particles_per_cell = 9 is for uniform grids, but numerics.far_cell_m = {} grades "
+                           "this one. Use 4 or 16, or leave far_cell_m out.",
+                           number_text(*numerics.far_cell_m)));
+  }
   if (*numerics.far_cell_m >= numerics.cell_m) return;
   faults.add(where_is(positions, "numerics.far_cell_m"),
              fmt::format("numerics.far_cell_m = {} is below numerics.cell_m = {}: cells grow away from the fracture. "

@@ -292,9 +292,9 @@ std::vector<Key> numerics_keys() {
       number(
           "numerics.far_cell_m", "m", positive,
           +[](Scene& s, std::size_t) -> std::optional<double>& { return s.numerics.far_cell_m; },
-          "Side of the cells far from fracture and interfaces, quasi-static only: cell_m within 10 cells of them, then "
-          "coarser "
-          "by at most 1.2 a cell. Left out: uniform."),
+          "Side of the cells far away, quasi-static only: cells are of cell_m within 10 of them around the initial "
+          "fracture and its straight way up to stop.tip_y_m, and within 4 of them around interfaces and borders of "
+          "rocks elsewhere; then coarser by at most 1.2 a cell. Left out: uniform."),
       particles,
       word(
           "numerics.shape", {as("bspline2", Shape::bspline2), as("linear", Shape::linear), as("gimp", Shape::gimp)},

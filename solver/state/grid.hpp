@@ -43,6 +43,11 @@ struct Grid {
   int column_at(double x) const { return holding(x_knots, x); }
   int row_at(double y) const { return holding(y_knots, y); }
 
+  // True where all spans that meet the square of `reach` m around a place (m) are of h.
+  bool fine_around(double x, double y, double reach) const {
+    return fine(x_knots, nx, x - reach, x + reach) && fine(y_knots, ny, y - reach, y + reach);
+  }
+
  private:
   double node_at(const std::vector<double>& t, int i) const {
     const auto k = static_cast<std::size_t>(i + 1);
@@ -55,6 +60,13 @@ struct Grid {
   int holding(const std::vector<double>& t, double x) const {
     if (t.empty()) return static_cast<int>(std::floor(x / h + 0.5));
     return static_cast<int>(std::upper_bound(t.begin() + 1, t.end() - 1, x) - t.begin()) - 2;
+  }
+  bool fine(const std::vector<double>& t, int n, double from, double to) const {
+    if (t.empty()) return true;
+    for (int i = std::max(0, holding(t, from)); i <= std::min(n, holding(t, to)); ++i) {
+      if (std::abs(span(t, i) - h) > 1e-6 * h) return false;
+    }
+    return true;
   }
 };
 
