@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "fracture/growth.hpp"
 #include "mechanics/equilibrium.hpp"
@@ -82,8 +83,10 @@ void make_interfaces(const Scene& scene, State& state) {
   const bool along_x = scene.strata.along == Strata::Along::y;
   for (const InterfacePlace& place : scene.strata.interfaces) {
     if (scene.laws[place.law].kind == InterfaceLaw::Kind::perfect) continue;
+    const bool graded = !(along_x ? state.grid.x_knots : state.grid.y_knots).empty();
     Surface surface = make_surface(Surface::Kind::interface, static_cast<int>(state.surfaces.size()),
-                                   interface_path(scene, state.grid, place.at_m), surface_spacing(state.grid));
+                                   interface_path(scene, state.grid, place.at_m),
+                                   graded ? std::numeric_limits<double>::infinity() : surface_spacing(state.grid));
     surface.law = place.law;
     for (SurfacePoint& s : surface.points) {
       s.column = along_x ? state.grid.column_at(s.x.x()) : state.grid.row_at(s.x.y());

@@ -229,7 +229,7 @@ void remove_rigid_motion(const Scene& scene, const State& state, bool halved, st
   const Grid& grid = state.grid;
   for (std::size_t r = 0; r < u.size(); ++r) {
     const int node = state.copies.node_of_record[r];
-    const Vec2 arm = Vec2{grid.column(node) * grid.h, grid.row(node) * grid.h} - centre;
+    const Vec2 arm = Vec2{grid.x(grid.column(node)), grid.y(grid.row(node))} - centre;
     u[r] -= mean + turn * Vec2{-arm.y(), arm.x()};
   }
 }

@@ -54,6 +54,14 @@ inline void add_fracture(Scene& scene, const std::vector<std::array<double, 2>>&
   scene.fluid.start_Pa = pressure;
 }
 
+// A block with a short fracture in it, so that cells are fine around its middle and coarse towards all edges.
+inline Scene graded_block(int nx = 60, int ny = 50, double far = 5.0, double h = 1.0) {
+  Scene scene = block(nx, ny, h);
+  scene.numerics.far_cell_m = far;
+  add_fracture(scene, {{20.0 * h, 24.0 * h}, {20.0 * h, 26.0 * h}});
+  return scene;
+}
+
 inline InterfaceLaw soft_law(double D_n, double D_t,
                              InterfaceLaw::Compression compression = InterfaceLaw::Compression::contact) {
   InterfaceLaw law;
