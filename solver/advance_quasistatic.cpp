@@ -275,7 +275,7 @@ void stop_at_edges(const Scene& scene, State& state) {
   for (Tip& tip : state.tips) {
     if (!tip.growing || !stopped_by_edge(scene, state, tip)) continue;
     tip.growing = false;
-    tip.stopped_by = "within 3 cells of an edge of the block";
+    tip.stopped_by = what_stops(scene, state, tip);
   }
 }
 

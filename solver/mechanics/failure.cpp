@@ -26,8 +26,9 @@ Band band_of(const Scene& scene, const State& state, const Surface& surface) {
   Band band;
   band.along_x = scene.strata.along == Strata::Along::y;
   const Vec2 x = surface.vertices.front().x;
-  const int at = g.nearest(band.along_x ? x.y() : x.x());
-  const double offset = (band.along_x ? x.y() : x.x()) / g.h - at;  // 0 on a grid line, +-1/2 at mid-cell
+  const int at = band.along_x ? g.row_at(x.y()) : g.column_at(x.x());
+  const double offset =
+      (band.along_x ? x.y() - g.y(at) : x.x() - g.x(at)) / g.h;  // 0 on a grid line, +-1/2 at mid-cell
   const double reach = support_in_cells(scene) - 0.02;
   band.first = at + static_cast<int>(std::ceil(offset - reach));
   band.last = at + static_cast<int>(std::floor(offset + reach));
@@ -67,7 +68,7 @@ struct ColumnWeights {
 
 ColumnWeights column_weights(const Builder& b, const Vec2& x, double half) {
   const Grid& g = b.state.grid;
-  const int i = std::clamp(g.nearest(x.x()), 0, g.nx), j = std::clamp(g.nearest(x.y()), 0, g.ny);
+  const int i = std::clamp(g.column_at(x.x()), 0, g.nx), j = std::clamp(g.row_at(x.y()), 0, g.ny);
   const Gradients N = gradients_at(b.scene, g, i, j, x, half);
   ColumnWeights out;
   for (std::size_t n = 0; n < 9; ++n) {
@@ -86,7 +87,7 @@ void add_particles(Builder& b) {
   const Grid& g = b.state.grid;
   for (std::size_t q = 0; q < p.size(); ++q) {
     const Vec2 x{p.x[q], p.y[q]};
-    const double across = (b.band.along_x ? x.y() : x.x()) / g.h;
+    const int across = b.band.along_x ? g.row_at(x.y()) : g.column_at(x.x());
     if (across < b.band.first - 2 || across > b.band.last + 2) continue;
     const ColumnWeights w = column_weights(b, x, p.half[q]);
     const bool plus = (p.sides[q] & b.surface.mask()) != 0;
@@ -103,7 +104,8 @@ void add_faces(Builder& b) {
   const Surface& fracture = b.state.fracture();
   for (std::size_t q = 0; q < fracture.points.size(); ++q) {
     const SurfacePoint& s = fracture.points[q];
-    const double across = (b.band.along_x ? s.x.y() : s.x.x()) / b.state.grid.h;
+    const Grid& g = b.state.grid;
+    const int across = b.band.along_x ? g.row_at(s.x.y()) : g.column_at(s.x.x());
     if (across < b.band.first - 2 || across > b.band.last + 2) continue;
     const ColumnWeights w = column_weights(b, s.x, 0.0);
     const bool plus = (s.sides & b.surface.mask()) != 0;
