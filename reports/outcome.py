@@ -132,7 +132,9 @@ def arrests_of(run: Run) -> tuple[Arrest, ...]:
 
 def decided_by_J(run: Run, event: dict[str, Any]) -> bool:
     """Whether an event at a tip rests on a J too near to an interface to be trusted."""
-    if event.get("by") in ("energy", "failure"):
+    if event.get("by") == "J":
+        return bool(event.get("at_interface"))
+    if event.get("by"):
         return False
     if crossing_of(run) != "J":
         return False

@@ -184,6 +184,15 @@ def test_an_arrest_that_energy_decides_beyond_its_interface_is_that_interface_s(
         assert outcome_of(load_run(write_run(tmp_path, 1, plan))).arrests[0].interface == name
 
 
+def test_J_that_decides_at_an_interface_is_flagged_in_any_mechanics(tmp_path: Path) -> None:
+    """The run's own word on what decided counts, whatever its criterion is elsewhere."""
+    run = load_run(write_run(tmp_path, 1, replace(WEAK, mechanics="quasistatic", by="J")))
+    assert not outcome_of(run).arrests[0].by_J, "away from interfaces, by the run's word"
+    for event in run.summary["events"]:
+        event["at_interface"] = True
+    assert outcome_of(run).arrests[0].by_J
+
+
 def test_figures_overlay_both_mechanics_and_tell_of_the_quasistatic_one(tmp_path: Path) -> None:
     """The explicit curve stands beside; title and caption are the quasi-static run's."""
     write_both(tmp_path, 1, Plan("perfect"))

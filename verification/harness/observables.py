@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from verification.harness.claim_data import BY_J
-from verification.harness.load import GROWTH_M, Array, LoadError, Run, frames
+from verification.harness.load import GROWTH_M, Array, Event, LoadError, Run, frames
 
 Parameters = dict[str, Any]
 
@@ -114,11 +114,9 @@ def arrests_at(run: Run, height_m: float) -> list[Measured]:
     attracts the tip and arrests it after the crossing, and up to 4 cells away K and J are not independent of it.
     """
     events = [event for event in run.summary.events if event.kind in ("arrest", "restart")]
-    lowest = height_m - 1.5 * run.increment_m - SLACK_M
-    highest = height_m + 4.0 * float(run.scene["numerics"]["cell_m"]) + SLACK_M
     found = []
     for k, event in enumerate(events):
-        if event.kind != "arrest" or not lowest <= event.tip_y_m <= highest:
+        if event.kind != "arrest" or not is_at(event, run, height_m):
             continue
         after = next((later for later in events[k + 1 :] if later.kind == "restart"), None)
         if after is not None:
@@ -127,6 +125,17 @@ def arrests_at(run: Run, height_m: float) -> list[Measured]:
             note = f"{run.name} does not grow on from {event.tip_y_m:g} m"
             found.append(Measured(run.summary.inlet_Pa - event.inlet_Pa, math.inf, note))
     return found
+
+
+def is_at(event: Event, run: Run, height_m: float) -> bool:
+    """Whether an event is at an interface at a height (m): from 1.5 increments below to 4 cells above."""
+    lowest = height_m - 1.5 * run.increment_m - SLACK_M
+    return lowest <= event.tip_y_m <= height_m + 4.0 * float(run.scene["numerics"]["cell_m"]) + SLACK_M
+
+
+def decided_by_J(event: Event, run: Run, height_m: float) -> bool:
+    """Whether an arrest at an interface rests, by the run's own word, on a J that is not to be trusted there."""
+    return event.kind == "arrest" and event.by == "J" and event.at_interface and is_at(event, run, height_m)
 
 
 def resample(path: Array, step_m: float) -> Array:
@@ -176,7 +185,8 @@ def plateau_Pa(run: Run, _: Run | None, parameters: Parameters) -> Measured:
     found = arrests_at(run, height)
     if not found:
         return exactly(0.0)
-    flags = (BY_J,) if run.decides_by_J else ()
+    by_J = run.decides_by_J or any(decided_by_J(event, run, height) for event in run.summary.events)
+    flags = (BY_J,) if by_J else ()
     note = "; ".join(filter(None, (one.note for one in found)))
     return Measured(sum(one.low for one in found), sum(one.high for one in found), note, flags)
 

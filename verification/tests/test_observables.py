@@ -1,6 +1,7 @@
 """Observables of made-up runs whose answers are known, and of mutations of them that must be told apart."""
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -146,3 +147,14 @@ def test_heights_may_be_given_above_an_interface(tmp_path: Path) -> None:
     given = {"height_m": {"interface": 1, "plus_m": 2}}
     assert measure("pressure_at_height_difference_Pa", given, late, low).value == pytest.approx(0.04 * MPA)
     assert not measure("pressure_at_height_difference_Pa", given, high, low).exact, "17 m is not reached"
+
+
+def test_a_quasistatic_plateau_is_flagged_where_J_decided_it(tmp_path: Path) -> None:
+    folder = write_run(tmp_path / "exp" / "weak", climb(plateaus={10.0: 0.2 * MPA}), mechanics="quasistatic")
+    assert measure("plateau_Pa", {"interface": 1}, load(folder), None).flags == ()
+    summary = json.loads((folder / "summary.json").read_text())
+    for by, expected in (("energy", ()), ("J", ("J at interface",))):
+        for event in summary["events"]:
+            event |= {"by": by, "at_interface": True}
+        (folder / "summary.json").write_text(json.dumps(summary))
+        assert measure("plateau_Pa", {"interface": 1}, load(folder), None).flags == expected
