@@ -10,7 +10,7 @@ import numpy as np
 from reports.layout import settings_between
 from reports.outcome import Outcome, flag_of, outcome_of
 from reports.runs import NotAvailable, Run
-from reports.words import listed, metres, mpa, number, plain, setting, share
+from reports.words import listed, mechanics_name, metres, mpa, number, plain, setting, share
 from verification.harness.claim_data import BY_J
 
 _SUPPLIED: tuple[str, ...] = ("work", "supplied")
@@ -114,7 +114,7 @@ def ledger_figure(runs: list[Run], mechanics: str) -> LedgerFigure:
     panels = tuple(_ledger_panel(run) for run in own if _has_energies(run))
     if not panels:
         raise NotAvailable("no run of this experiment has energies in its history")
-    return LedgerFigure(_ledger_title(panels), mechanics, panels)
+    return LedgerFigure(f"{mechanics_name(mechanics).capitalize()}: {_ledger_title(panels)}", mechanics, panels)
 
 
 def _has_energies(run: Run) -> bool:
@@ -150,7 +150,7 @@ def _ledger_title(panels: tuple[LedgerPanel, ...]) -> str:
         lost = sum(float(term.energy_kJ[-1]) for term in panel.dissipated)
         if given > 0.0:
             parts.append(f"{share(lost / given)} ({plain(panel.variant)})")
-    return f"Of the net work supplied, {listed(parts)} is dissipated" if parts else "No net work is supplied"
+    return f"of the net work supplied, {listed(parts)} is dissipated" if parts else "no net work is supplied"
 
 
 def variant_figure(groups: list[list[Run]], mechanics: str) -> VariantFigure:
@@ -164,7 +164,8 @@ def variant_figure(groups: list[list[Run]], mechanics: str) -> VariantFigure:
     if not blocks:
         raise NotAvailable("there is no run")
     own_groups = [[run for run in runs if run.mechanics == mechanics] for runs in groups]
-    return VariantFigure(_variant_title(own_groups), mechanics, tuple(blocks))
+    title = f"{mechanics_name(mechanics).capitalize()}: {_variant_title(own_groups)}"
+    return VariantFigure(title, mechanics, tuple(blocks))
 
 
 def _variant_row(run: Run, runs: list[Run]) -> VariantRow:
@@ -209,11 +210,11 @@ def _variant_title(groups: list[list[Run]]) -> str:
             if here is not None and there is not None and (best is None or abs(here - there) > abs(best[0])):
                 best = (here - there, run, base)
     if best is None:
-        return "No variant beside the study's interface types has started to grow"
+        return "no variant beside the study's interface types has started to grow"
     shift, run, base = best
     move = "raises" if shift > 0 else "lowers"
     return (
-        f"Of all readings of what the study leaves open, '{plain(run.variant)}' in Experiment {run.number} {move}"
+        f"of all readings of what the study leaves open, '{plain(run.variant)}' in Experiment {run.number} {move}"
         f" the start of growth most: by {mpa(abs(shift))} against '{plain(base.variant)}'"
     )
 
