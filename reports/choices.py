@@ -176,18 +176,24 @@ def _effect(twins: Sequence[_Twin]) -> str:
         starts += [] if here is None or there is None else [(here - there, name)]
         climbs += [(shift_Pa(twin.run, twin.default), name)]
         top, usual = float(np.max(twin.run.history["height_m"])), float(np.max(twin.default.history["height_m"]))
-        ends += [(top - usual, f"ends at {metres(top)} instead of {metres(usual)} ({name})")] if abs(top - usual) > 1.5 else []
-    parts = []
+        ends += [(top - usual, f"ends at {metres(top)} instead of {metres(usual)}", name)] if abs(top - usual) > 1.5 else []
+    parts: list[tuple[str, str]] = []
     if starts:
         shift, name = max(starts, key=lambda item: abs(item[0]))
-        parts.append(f"start {signed_mpa(shift)} ({name})")
-    if climbs and max(climbs)[0] > 0.0:
-        parts.append(f"climb up to {mpa(max(climbs)[0])} apart ({max(climbs)[1]})")
+        parts.append(("the same start" if abs(shift) < SAME_PA else f"start {signed_mpa(shift)}", name))
+    if climbs and max(climbs)[0] >= SAME_PA:
+        parts.append((f"climb up to {mpa(max(climbs)[0], 3)} apart", max(climbs)[1]))
     if ends:
-        parts.append(max(ends, key=lambda item: abs(item[0]))[1])
+        _, words, name = max(ends, key=lambda item: abs(item[0]))
+        parts.append((words, name))
     if paths:
-        parts.append(f"path {number(max(paths)[0], 2)}\u00a0m away ({max(paths)[1]})")
-    return ", ".join(parts)
+        parts.append((f"path {number(max(paths)[0], 2)}\u00a0m away", max(paths)[1]))
+    told_once = len({name for _, name in parts}) == 1
+    last = f" ({parts[0][1]})" if told_once else ""
+    return ", ".join(words if told_once else f"{words} ({name})" for words, name in parts) + last
+
+
+SAME_PA = 500.0  # half of the last digit that titles and tables show
 
 
 def signed_mpa(pressure_Pa: float) -> str:

@@ -51,9 +51,9 @@ def _raised(exponent: int) -> str:
     return str(exponent).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
 
 
-def mpa(pressure_Pa: float) -> str:
-    """A pressure in Pa written in MPa to two decimals."""
-    return f"{pressure_Pa / 1e6:.2f}\u00a0MPa"
+def mpa(pressure_Pa: float, decimals: int = 2) -> str:
+    """A pressure in Pa written in MPa, to two decimals unless asked otherwise."""
+    return f"{pressure_Pa / 1e6:.{decimals}f}\u00a0MPa"
 
 
 def metres(length_m: float) -> str:

@@ -274,13 +274,14 @@ def test_a_choice_stands_beside_its_default(tmp_path: Path) -> None:
     write_both(tmp_path, 1, Plan("perfect"))
     write_both(tmp_path, 1, WEAK)
     write_run(tmp_path, 1, Plan("uniform", start_Pa=2.6e6))
-    write_run(tmp_path, 1, replace(WEAK, variant="flow", restart_Pa=None, mechanics="quasistatic"))
+    write_run(tmp_path, 1, replace(WEAK, variant="flow", start_Pa=2.37e6, restart_Pa=None, mechanics="quasistatic"))
     figure = choice_figure(POINT, load_runs(tmp_path))
     headings = [panel.heading for row in figure.rows for panel in row]
     assert headings == ["Experiment 1, quasi-static", "Experiment 1, explicit"]
     kinds = [[(line.variant, line.choice) for line in panel.lines] for row in figure.rows for panel in row]
     assert kinds == [[("weak", 0), ("weak", 2)], [("perfect", 0), ("perfect", 1)]]
-    assert "uniform: start +0.2" in figure.title and "ends at 10\u00a0m instead of 70\u00a0m (weak, Experiment 1)" in figure.title
+    assert "uniform: start +0.2" in figure.title and "(perfect, Experiment 1); other" in figure.title
+    assert "the same start" in figure.title and "ends at 10\u00a0m instead of 70\u00a0m (weak, Experiment 1)" in figure.title
     assert figure.rows[0][0].x_range == figure.rows[0][1].x_range, "one row, the same axes"
 
 
