@@ -180,7 +180,7 @@ def _effect(twins: Sequence[_Twin]) -> str:
     parts: list[tuple[str, str]] = []
     if starts:
         shift, name = max(starts, key=lambda item: abs(item[0]))
-        parts.append(("the same start" if abs(shift) < SAME_PA else f"start {signed_mpa(shift)}", name))
+        parts.append(("the same start", "") if abs(shift) < SAME_PA else (f"start {signed_mpa(shift)}", name))
     if climbs and max(climbs)[0] >= SAME_PA:
         parts.append((f"climb up to {mpa(max(climbs)[0], 3)} apart", max(climbs)[1]))
     if ends:
@@ -188,9 +188,9 @@ def _effect(twins: Sequence[_Twin]) -> str:
         parts.append((words, name))
     if paths:
         parts.append((f"path {number(max(paths)[0], 2)}\u00a0m away", max(paths)[1]))
-    told_once = len({name for _, name in parts}) == 1
-    last = f" ({parts[0][1]})" if told_once else ""
-    return ", ".join(words if told_once else f"{words} ({name})" for words, name in parts) + last
+    names = {name for _, name in parts if name}
+    last = f" ({names.pop()})" if len(names) == 1 else ""
+    return ", ".join(words if last or not name else f"{words} ({name})" for words, name in parts) + last
 
 
 SAME_PA = 500.0  # half of the last digit that titles and tables show

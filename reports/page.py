@@ -183,7 +183,7 @@ def comparison_row(row: Comparison) -> dict[str, Any]:
         "arrest_m": triple(row.arrest_m, metres, metres_signed),
         "restart": triple(row.restart_Pa, mpa, signed_mpa),
         "end": triple(row.end_m, metres, metres_signed),
-        "path": "–" if row.path_m is None else f"{number(row.path_m, 2)}\u00a0m",
+        "path": "–" if row.path_m is None else f"{row.path_m:.2f}\u00a0m",
         "kinetic": ["–" if value is None else share(value) for value in (row.kinetic_ratio.quasistatic, row.kinetic_ratio.explicit)],
         "G_over_J": "–" if row.G_over_J is None else number(row.G_over_J),
         "unlike": row.unlike,

@@ -104,19 +104,21 @@ def _failing(reading: Reading) -> list[str]:
 
 
 def _finding(lines: Sequence[Line]) -> str:
-    """Which claims no choice overturns, and which depend on one."""
+    """Which claims no choice overturns, and which depend on one; a choice that was run for some of the cases decides none."""
     firm: list[str] = []
     turned: list[str] = []
+    never: list[str] = []
     for id_ in dict.fromkeys(line.id for line in lines):
-        kinds = [{"part": "yes"}.get(cell.kind, cell.kind) for line in lines if line.id == id_ for cell in line.cells]
-        known = {kind for kind in kinds if kind in ("yes", "no")}
+        known = {cell.kind for line in lines if line.id == id_ for cell in line.cells} & {"yes", "no"}
         if len(known) == 2:
             turned.append(id_)
         elif known == {"yes"}:
             firm.append(id_)
+        elif known == {"no"}:
+            never.append(id_)
     parts = [
         f"reproduced under every choice and mechanics that was run: {', '.join(firm) or 'none'}",
         f"reproduced under some and not under others: {', '.join(turned) or 'none'}",
-        f"the other {len({line.id for line in lines}) - len(firm) - len(turned)} never",
+        f"under none: {', '.join(never) or 'none'}",
     ]
     return "; ".join(parts).capitalize() + "."

@@ -302,4 +302,4 @@ def test_the_table_of_claims_against_choices() -> None:
     assert table.points == (("edges", "edges", 1),) and [column.name for column in table.columns] == ["loaded"]
     kinds = {(line.id, line.mechanics): [cell.kind for cell in line.cells] for line in table.lines}
     assert kinds["2c", "explicit"] == ["no", "yes"] and kinds["5a", "explicit"] == ["no", "open"]
-    assert "not under others: 2c" in table.finding and "that was run: 1b" in table.finding
+    assert "not under others: 2c" in table.finding and "under none: 5a" in table.finding and "that was run: 1b" in table.finding
