@@ -253,14 +253,14 @@ Equilibrium solve_with_fixed_bounds(const State& state, const Condensed& condens
 
 }  // namespace
 
-Eigen::VectorXd TangentFactor::solve(const Eigen::VectorXd& b) const {
-  const Eigen::VectorXd scaled = scale.cwiseProduct(b);
-  Eigen::VectorXd x;
+Eigen::MatrixXd TangentFactor::solve(const Eigen::MatrixXd& b) const {
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * b;
+  Eigen::MatrixXd x;
   if (symmetric)
     x = llt.solve(scaled);
   else
     x = lu.solve(scaled);
-  return scale.cwiseProduct(x);
+  return scale.asDiagonal() * x;
 }
 
 Vec2 jump_at(const Condensed& condensed, const SurfaceStencil& stencil, const Eigen::VectorXd& j) {
@@ -314,19 +314,19 @@ Eigen::MatrixXd opening_per_pressure(const State& state, const Condensed& conden
                                      const std::vector<ContactPlace>& places, const Equilibrium& equilibrium,
                                      const TangentFactor& factor) {
   const auto n = static_cast<Eigen::Index>(state.fracture().points.size());
-  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(n, n);
-  for (std::size_t a = 0; a < places.size(); ++a) {
-    if (places[a].tie >= 0 || places[a].surface != 0) continue;
-    if (equilibrium.pieces[a] != LawAnswer::Piece::open) continue;  // the reaction gives way as much as P rises
-    Eigen::VectorXd f = Eigen::VectorXd::Zero(condensed.size());
-    add_force(places[a], places[a].n, f);
-    const Eigen::VectorXd j = factor.solve(f);
-    for (const ContactPlace& place : places) {
-      if (place.tie >= 0 || place.surface != 0) continue;
-      C(static_cast<Eigen::Index>(place.point), static_cast<Eigen::Index>(places[a].point)) =
-          Vec2{times(place.D[0], j), times(place.D[1], j)}.dot(place.n);
+  // Rows of the openings; on a closed face the reaction gives way as much as the pressure rises.
+  Eigen::MatrixXd opening = Eigen::MatrixXd::Zero(condensed.size(), n), load = opening;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const ContactPlace& place = places[k];
+    if (place.tie >= 0 || place.surface != 0) continue;
+    const auto column = static_cast<Eigen::Index>(place.point);
+    for (std::size_t c = 0; c < 2; ++c) {
+      for (const auto& [index, value] : place.D[c])
+        opening(index, column) += value * place.n[static_cast<Eigen::Index>(c)];
     }
+    if (equilibrium.pieces[k] == LawAnswer::Piece::open) load.col(column) = place.A * opening.col(column);
   }
+  const Eigen::MatrixXd C = opening.transpose() * factor.solve(load);
   return C;
 }
 

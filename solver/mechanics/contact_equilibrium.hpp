@@ -47,7 +47,7 @@ struct TangentFactor {
   Eigen::VectorXd scale;
   Eigen::LLT<Eigen::MatrixXd> llt;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu;
-  Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;  // a right-hand side a column
 };
 
 /// The split places of a state and the springs of its tips, with the memory of friction as the state holds it.

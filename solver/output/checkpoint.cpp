@@ -66,6 +66,18 @@ void fields(Archive& ar, Is<FluidLine> auto& fluid) {
 }
 
 template <class Archive>
+void fields(Archive& ar, Is<ReynoldsLine> auto& line) {
+  auto& [length, P, phi, content, w, w_rate, P_rate, rates_known, inlet, inlet_Pa] = line;
+  ar(length, P, phi, content, w, w_rate, P_rate, rates_known, inlet, inlet_Pa);
+}
+
+template <class Archive>
+void fields(Archive& ar, Is<FluidBalance> auto& balance) {
+  auto& [stored_at_start, injected, stored, largest] = balance;
+  ar(stored_at_start, injected, stored, largest);
+}
+
+template <class Archive>
 void fields(Archive& ar, Is<TipTie> auto& tie) {
   auto& [node, plus, minus, stiffness, s] = tie;
   ar(node, plus, minus, stiffness, s);
@@ -95,16 +107,17 @@ void fields(Archive& ar, Is<Ledger> auto& ledger) {
 
 template <class Archive>
 void fields(Archive& ar, Is<Monitors> auto& monitors) {
-  auto& [largest_courant, largest_penetration, contact_sweeps, contact_unconverged, largest_particle_velocity] =
-      monitors;
-  ar(largest_courant, largest_penetration, contact_sweeps, contact_unconverged, largest_particle_velocity);
+  auto& [largest_courant, largest_penetration, contact_sweeps, contact_unconverged, largest_particle_velocity,
+         contact_residual, volume_balance, mirror] = monitors;
+  ar(largest_courant, largest_penetration, contact_sweeps, contact_unconverged, largest_particle_velocity,
+     contact_residual, volume_balance, mirror);
 }
 
 // All of the state but what rebuild_copies() derives of it.
 template <class Archive>
 void fields(Archive& ar, Is<State> auto& state) {
   ar(state.time, state.step, state.dt, state.grid, state.particles, state.surfaces, state.has_fracture, state.fluid);
-  ar(state.tips, state.ties, state.events, state.ledger, state.monitors);
+  ar(state.reynolds, state.balance, state.tips, state.ties, state.events, state.ledger, state.monitors);
 }
 
 template <class Archive>

@@ -42,6 +42,8 @@ constexpr HistoryColumn columns[] = {
     {"kink_deg", "deg", &HistoryRow::kink_deg},
     {"at_interface", "1", &HistoryRow::at_interface},
     {"ring_m", "m", &HistoryRow::ring_m},
+    {"G_N_m", "N/m", &HistoryRow::G_N_m},
+    {"fluid_volume_balance", "1", &HistoryRow::fluid_volume_balance},
 };
 static_assert(sizeof(HistoryRow) == std::size(columns) * sizeof(double), "every member of HistoryRow is a column");
 
@@ -153,6 +155,8 @@ HistoryRow history_row(const Scene&, const State& state) {
   row.kink_deg = tip ? tip->kink * (180.0 / std::numbers::pi) : nan;
   row.at_interface = tip ? (tip->at_interface ? 1.0 : 0.0) : nan;
   row.ring_m = tip ? tip->ring_m : nan;
+  row.G_N_m = tip ? tip->G : nan;
+  row.fluid_volume_balance = state.monitors.volume_balance;
   const Ledger& ledger = state.ledger;
   row.kinetic_J = ledger.kinetic;
   row.strain_J = ledger.strain;

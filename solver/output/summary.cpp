@@ -73,7 +73,10 @@ Json monitors_json(const Monitors& monitors) {
           {"largest_penetration_m", monitors.largest_penetration},
           {"contact_sweeps", monitors.contact_sweeps},
           {"contact_unconverged", monitors.contact_unconverged},
-          {"largest_particle_velocity_m_s", monitors.largest_particle_velocity}};
+          {"largest_particle_velocity_m_s", monitors.largest_particle_velocity},
+          {"contact_residual", monitors.contact_residual},
+          {"volume_balance", monitors.volume_balance},
+          {"mirror", monitors.mirror}};
 }
 
 }  // namespace

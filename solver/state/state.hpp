@@ -7,18 +7,12 @@
 
 #include "scene/scene.hpp"
 #include "state/copies.hpp"
+#include "state/fluid_line.hpp"
 #include "state/grid.hpp"
 #include "state/particles.hpp"
 #include "state/surfaces.hpp"
 
 namespace strata {
-
-// Fluid pressure at the fracture's vertices (Pa), from its first vertex to its last.
-struct FluidLine {
-  std::vector<double> P;
-  std::size_t inlet = 0;  // the vertex at which the pressure is prescribed
-  double inlet_Pa = 0.0;
-};
 
 // A spring between the two copies of a node less than a cell behind a tip (see mechanics/tip_ties.hpp).
 struct TipTie {
@@ -88,6 +82,9 @@ struct Monitors {
   std::int64_t contact_sweeps = 0;         // Gauss-Seidel sweeps, summed
   std::int64_t contact_unconverged = 0;    // steps whose contact solve ran out of sweeps
   double largest_particle_velocity = 0.0;  // m/s
+  double contact_residual = 0.0;           // largest force out of balance in an equilibrium, over the largest load
+  double volume_balance = 0.0;             // fluid missing now, over what was injected (law = "reynolds")
+  bool mirror = false;                     // solved on half of a mirror-symmetric block
 };
 
 struct State {
@@ -99,6 +96,8 @@ struct State {
   std::vector<Surface> surfaces;  // the fracture first, where there is one
   bool has_fracture = false;
   FluidLine fluid;
+  ReynoldsLine reynolds;  // of law = "reynolds" only
+  FluidBalance balance;   // the same
   std::vector<Tip> tips;
   std::vector<TipTie> ties;
   std::vector<Event> events;

@@ -1,0 +1,136 @@
+#include "advance_fluid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "flow/paper_flow.hpp"
+#include "flow/reynolds_flow.hpp"
+
+namespace strata {
+
+namespace {
+
+// Pressure of the fracture's points from that of its vertices.
+void pass_to_points(State& state) {
+  auto& points = state.fracture().points;
+  for (std::size_t k = 0; k < points.size(); ++k) points[k].P = 0.5 * (state.fluid.P[k] + state.fluid.P[k + 1]);
+}
+
+void set_point_pressures(const Eigen::VectorXd& P, State& state) {
+  auto& points = state.fracture().points;
+  for (std::size_t k = 0; k < points.size(); ++k) points[k].P = P[static_cast<Eigen::Index>(k)];
+}
+
+// The study's law in equal steps, none longer than some of what its diffusion takes across a segment: the trapezoidal
+// rule would ring otherwise.
+void diffuse_in_steps(const Scene& scene, double dt, State& state) {
+  constexpr double longest = 2.0;  // in ds^2/kappa
+  constexpr int most = 1000;       // then the rule's own stability has to do
+  double shortest = dt;
+  for (const SurfacePoint& s : state.fracture().points) {
+    const double w = std::max(s.opening(), scene.fluid.minimum_opening_m);
+    const double kappa = scene.fluid.bulk_modulus_Pa * w * w / (12.0 * scene.fluid.viscosity_Pa_s);
+    if (kappa > 0.0) shortest = std::min(shortest, longest * s.A * s.A / kappa);
+  }
+  const int steps = std::clamp(static_cast<int>(std::ceil(std::min(dt / shortest, 1.0 * most))), 1, most);
+  const double start = state.time;
+  state.dt = dt / steps;
+  for (int k = 0; k < steps; ++k) {
+    state.time = start + k * state.dt;
+    advance_pressure(scene, state);
+  }
+  state.time = start;
+}
+
+// The rock as the flow sees it: openings and their change with the pressures, in equilibrium with all surfaces.
+RockModel rock_of(State& state, QuasistaticModel& model) {
+  struct Known {  // the change is the same as long as no place opens or closes
+    Pieces pieces;
+    Eigen::MatrixXd dw_dP;
+  };
+  return [&state, &model, known = Known{}](const Eigen::VectorXd& P) mutable {
+    set_point_pressures(P, state);
+    const Equilibrium at = find_equilibrium(state, model);
+    if (known.pieces != at.pieces || known.dw_dP.size() == 0)
+      known = {at.pieces, opening_per_pressure(state, model.condensed, model.places, at, model.factor)};
+    RockResponse rock{Eigen::VectorXd::Zero(P.size()), known.dw_dP};
+    for (std::size_t k = 0; k < model.places.size(); ++k) {
+      const ContactPlace& place = model.places[k];
+      if (place.tie < 0 && place.surface == 0) rock.w[static_cast<Eigen::Index>(place.point)] = at.w[k].dot(place.n);
+    }
+    return rock;
+  };
+}
+
+Inlet inlet_at(const Scene& scene, const State& state, double time) {
+  if (!scene.fluid.rate_m2_s) return {Inlet::Drive::pressure, scene.fluid.start_Pa + scene.fluid.rate_Pa_s * time};
+  // Half of a fracture that starts on the symmetry line gets half of what the whole is fed.
+  const bool half = scene.domain.bottom == Edge::symmetry && state.fracture().vertices.front().x.y() == 0.0;
+  return {Inlet::Drive::rate, *scene.fluid.rate_m2_s * (half ? 0.5 : 1.0)};
+}
+
+FluidStep couple(const Scene& scene, double dt, State& state, QuasistaticModel& model) {
+  // Of the largest opening and of the inlet's pressure over the closing stress, a step: some hundred of them then
+  // add up to less than a per cent, since what one does wrong the next ones heal.
+  constexpr double allowed = 1e-3;
+  constexpr double shortest = 1e-6;  // s; after growth the pressure drops at once, but for what flows in this time
+  const double step = std::max(dt, shortest);
+  const StepReport report = step_reynolds(scene.fluid, inlet_at(scene, state, state.time + step), step,
+                                          rock_of(state, model), state.reynolds, state.balance);
+  if (!report.converged) return {false, 0.0};
+  state.time += step;
+  state.fluid.P = vertex_pressures(state.reynolds);
+  state.fluid.inlet_Pa = report.inlet_Pa;
+  set_point_pressures(
+      Eigen::Map<const Eigen::VectorXd>(state.reynolds.P.data(), static_cast<Eigen::Index>(state.reynolds.P.size())),
+      state);
+  state.monitors.volume_balance = state.balance.closure();
+  const double net = std::abs(report.inlet_Pa - state.fracture().points.front().closing_stress());
+  const double error_P = net > 0.0 ? report.error_P / std::max(net, 1e-3 * report.inlet_Pa) : 0.0;
+  return {true, report.estimated ? std::max(report.error_w, error_P) / allowed : 0.0};
+}
+
+}  // namespace
+
+void fill_fracture(const Scene& scene, State& state, QuasistaticModel& model) {
+  if (!state.has_fracture || scene.fluid.law != Fluid::Law::reynolds) return;
+  auto& points = state.fracture().points;
+  double P = scene.fluid.start_Pa;
+  if (scene.fluid.rate_m2_s) P = points[std::min(state.fluid.inlet, points.size() - 1)].closing_stress();
+  const RockResponse rock =
+      rock_of(state, model)(Eigen::VectorXd::Constant(static_cast<Eigen::Index>(points.size()), P));
+  std::vector<double> length;
+  for (const SurfacePoint& s : points) length.push_back(s.A);
+  state.reynolds = full_line(scene.fluid, length, state.fluid.inlet, P, rock.w, state.balance);
+  std::fill(state.fluid.P.begin(), state.fluid.P.end(), P);
+  state.fluid.inlet_Pa = P;
+}
+
+void add_fluid_cells(const Scene& scene, bool at_back, std::size_t added, State& state) {
+  if (scene.fluid.law != Fluid::Law::reynolds) return;
+  const auto& points = state.fracture().points;
+  for (std::size_t k = 0; k < added; ++k) {
+    const std::size_t q = at_back ? points.size() - added + k : added - 1 - k;
+    grow(state.reynolds, scene.fluid, at_back, points[q].A);
+  }
+}
+
+FluidStep advance_fluid(const Scene& scene, double dt, State& state, QuasistaticModel& model) {
+  if (!state.has_fracture) {
+    state.time += dt;
+    return {};
+  }
+  if (scene.fluid.law == Fluid::Law::reynolds) return couple(scene, dt, state, model);
+  if (dt > 0.0) {
+    if (scene.fluid.law == Fluid::Law::paper) diffuse_in_steps(scene, dt, state);
+    state.dt = dt;
+    if (scene.fluid.law == Fluid::Law::uniform) advance_pressure(scene, state);
+    state.time += dt;
+  } else if (scene.fluid.law == Fluid::Law::uniform) {
+    std::fill(state.fluid.P.begin(), state.fluid.P.end(), state.fluid.inlet_Pa);
+  }
+  pass_to_points(state);
+  return {};
+}
+
+}  // namespace strata

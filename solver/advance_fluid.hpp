@@ -1,0 +1,27 @@
+// The fluid's part of a step without inertia, under each of the three laws.
+#pragma once
+
+#include "mechanics/quasistatic.hpp"
+#include "state/state.hpp"
+
+namespace strata {
+
+/// Fills the fracture at the start: at the inlet's start pressure or, where a rate drives the flow, at its closing
+/// stress. `model` must be up to date. Throws NumericalFailure as find_equilibrium() does.
+void fill_fracture(const Scene& scene, State& state, QuasistaticModel& model);
+
+// What a step of the fluid says: whether it was found, and its error against what is allowed (1: just so).
+struct FluidStep {
+  bool found = true;
+  double error = 0.0;
+};
+
+/// Pressures at the end of a step dt (s), in state.fluid, at the fracture's points and, under law = "reynolds", in
+/// state.reynolds; state.time moves on. uniform: the inlet's. paper: the study's diffusion in steps that resolve it,
+/// with the opening of the step's start. reynolds: flow and rock in one system. dt = 0: only what growth changed.
+FluidStep advance_fluid(const Scene& scene, double dt, State& state, QuasistaticModel& model);
+
+/// The new cells of a fracture that has grown by `added` points at a tip, empty (law = "reynolds").
+void add_fluid_cells(const Scene& scene, bool at_back, std::size_t added, State& state);
+
+}  // namespace strata

@@ -1,0 +1,46 @@
+// The fluid along the fracture.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace strata {
+
+// Fluid pressure at the fracture's vertices (Pa), from its first vertex to its last.
+struct FluidLine {
+  std::vector<double> P;
+  std::size_t inlet = 0;  // the vertex at which the pressure is prescribed
+  double inlet_Pa = 0.0;
+};
+
+// The fluid in the fracture, a value a cell from the first vertex to the last.
+struct ReynoldsLine {
+  std::vector<double> length;   // A (m)
+  std::vector<double> P;        // absolute pressure (Pa)
+  std::vector<double> phi;      // filled part of the opening
+  std::vector<double> content;  // theta w A: volume of the fluid at the cavitation pressure (m^2)
+  std::vector<double> w;        // opening at the end of the last step (m)
+  std::vector<double> w_rate;   // (m/s) and
+  std::vector<double> P_rate;   // (Pa/s) over the last step, for the estimate of its error
+  bool rates_known = false;     // false before the first step and after growth
+  std::size_t inlet = 0;        // vertex at which the fluid enters
+  double inlet_Pa = 0.0;        // pressure there
+
+  std::size_t size() const { return length.size(); }
+};
+
+// Fluid counted in and found there, as volume at the cavitation pressure (m^2).
+struct FluidBalance {
+  double stored_at_start = 0.0;
+  double injected = 0.0;  // integral of theta q dt through the inlet
+  double stored = 0.0;    // sum of theta w A over the cells, from P, phi and the rock's w
+  double largest = 0.0;   // of |injected| so far
+
+  // What is missing, relative to what was injected (or stored, where that is more).
+  double closure() const {
+    const double scale = largest > stored_at_start ? largest : stored_at_start;
+    return scale > 0.0 ? (stored - stored_at_start - injected) / scale : 0.0;
+  }
+};
+
+}  // namespace strata
