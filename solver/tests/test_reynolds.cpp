@@ -280,7 +280,8 @@ TEST_CASE("sudden growth leaves empty cells that fill") {
 }
 
 // Requires that a step right after growth converges and is lawful, whatever its length from 0.1 ms to 1 s, from a fluid
-// like gas to one like honey, in short and long fractures under a closing stress that shuts the new cell.
+// like gas to one like honey, in short and long fractures under a closing stress that shuts the new cell; in 12
+// iterations on average. Mutation that fails: no second start (a thin fluid then stalls in front of the closed cell).
 TEST_CASE("a step of any length after growth") {
   int steps = 0, iterations = 0, most = 0;
   for (const double mu : {1e-5, 1e-4, 1e-3, 1e-2, 0.1, 10.0}) {
@@ -310,7 +311,8 @@ TEST_CASE("a step of any length after growth") {
       }
     }
   }
-  WARN(steps << " " << iterations << " " << most);
+  CAPTURE(steps, iterations, most);
+  CHECK(iterations < 12 * steps);
 }
 
 // Requires that a crack fed in its middle is twice the half that symmetry leaves, at half the rate, also while both of
