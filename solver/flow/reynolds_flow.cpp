@@ -163,11 +163,10 @@ Balance evaluate(const Step& step, const Trial& trial) {
   return b;
 }
 
-// d residual/d(unknown): the unknown of a column is P where the cell is full, phi elsewhere. `frozen`: as if the
-// conductances did not change with the opening.
-MatrixXd jacobian(const Step& step, const Trial& trial, const Balance& b, bool frozen = false) {
+// d residual/d(unknown): the unknown of a column is P where the cell is full, phi elsewhere.
+MatrixXd jacobian(const Step& step, const Trial& trial, const Balance& b) {
   const Index n = trial.P.size();
-  MatrixXd by_w = (frozen ? 0.0 : -step.dt) * b.by_w;
+  MatrixXd by_w = -step.dt * b.by_w;
   for (Index k = 0; k < n; ++k)
     if (b.rock.w(k) > thinnest) by_w(k, k) += b.held(k) / b.rock.w(k);
   MatrixXd J = -step.dt * b.by_P;
@@ -233,9 +232,10 @@ struct Iterate {
   Balance b;
 };
 
-// Halves the step along dx until the imbalance falls; `best` is the best of all that were tried, from other directions
-// too. True where it fell.
-bool search(const Step& step, const Iterate& from, const VectorXd& dx, std::optional<Iterate>& best, int& rock_calls) {
+// Halves the step along dx until the imbalance falls; the best of all that were tried, nothing where none is finite.
+// Where a cell fills up none may be better than where it came from: the cell's other unknown takes its step next.
+std::optional<Iterate> search(const Step& step, const Iterate& from, const VectorXd& dx, int& rock_calls) {
+  std::optional<Iterate> best;
   double fraction = trusted_fraction(step, from.trial, dx);
   for (int halving = 0; halving < 6; ++halving, fraction *= 0.5) {
     Iterate next{moved(step.fluid, from.trial, dx, fraction), {}};
@@ -244,15 +244,13 @@ bool search(const Step& step, const Iterate& from, const VectorXd& dx, std::opti
     if (!next.b.finite()) continue;
     const double merit = next.b.merit();
     if (!best || merit < best->b.merit()) best = std::move(next);
-    if (merit < (1.0 - 1e-4 * fraction) * from.b.merit()) return true;
+    if (merit < (1.0 - 1e-4 * fraction) * from.b.merit()) break;
   }
-  return false;
+  return best;
 }
 
-// Newton's method from `at`, which becomes the solution; the report says why not otherwise. Where faces are about to
-// part, the cube of the opening makes Newton's own direction useless, and the one with conductances frozen is tried.
-// Where a cell fills up, neither may lower the imbalance: its other unknown does so next.
-StepReport iterate(const Step& step, Iterate& at) {
+// Newton's method from `at`, which becomes the solution; the report says why not otherwise.
+StepReport iterate(const Step& step, int max_iterations, Iterate& at) {
   StepReport report;
   at.b = evaluate(step, at.trial);
   ++report.rock_calls;
@@ -261,19 +259,16 @@ StepReport iterate(const Step& step, Iterate& at) {
     const MatrixXd J = jacobian(step, at.trial, at.b);
     report.converged = balanced(step, at.trial, at.b, J);
     if (report.converged) return report;
-    if (report.iterations == step.options.max_iterations) {
+    if (report.iterations == max_iterations) {
       report.reason = "the balance of flow and rock did not converge in " + std::to_string(report.iterations) +
                       " iterations. Try a smaller step";
       return report;
     }
-    std::optional<Iterate> best;
-    VectorXd dx = J.partialPivLu().solve(-at.b.residual);
-    if (!dx.allFinite() || !search(step, at, dx, best, report.rock_calls)) {
-      dx = jacobian(step, at.trial, at.b, true).partialPivLu().solve(-at.b.residual);
-      if (dx.allFinite()) search(step, at, dx, best, report.rock_calls);
-    }
-    if (!best) break;
-    at = std::move(*best);
+    const VectorXd dx = J.partialPivLu().solve(-at.b.residual);
+    if (!dx.allFinite()) break;
+    std::optional<Iterate> next = search(step, at, dx, report.rock_calls);
+    if (!next) break;
+    at = std::move(*next);
   }
   report.reason = "flow and rock gave values that are not finite. Try a smaller step";
   return report;
@@ -367,11 +362,11 @@ StepReport step_reynolds(const Fluid& fluid, const Inlet& inlet, double dt, cons
                          FluidBalance& balance, const ReynoldsOptions& options) {
   const Step step{fluid, inlet, dt, rock, line, options};
   Iterate at{before(line), {}};
-  StepReport report = iterate(step, at);
+  StepReport report = iterate(step, options.max_iterations / 2, at);
   if (!report.converged) {
     const int iterations = report.iterations, rock_calls = report.rock_calls;
     at.trial = filled(line);
-    report = iterate(step, at);
+    report = iterate(step, options.max_iterations, at);
     report.iterations += iterations;
     report.rock_calls += rock_calls;
   }

@@ -50,7 +50,7 @@ struct StepReport {
 };
 
 struct ReynoldsOptions {
-  int max_iterations = 40;   // from each of two starting points
+  int max_iterations = 40;   // half as many first, then as many again from another start
   double tolerance = 1e-12;  // of a cell's imbalance, relative to the fluid in the fracture; not below round-off
 };
 
