@@ -56,7 +56,7 @@ void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& st
   // v_p, x_p, grad u_p (and with it stress)
   const ParticleReport particles = grid_to_particles(scene, rocks, state, keep);
   state.motion = by_forces;
-  follow_surfaces(state);  // w += dt D v
+  follow_surfaces(scene, state);  // w += dt D v
   state.time += state.dt;
   ++state.step;
   close_ledger(scene, grid, after, particles, state);
@@ -64,7 +64,8 @@ void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& st
   measure_tips(scene, rocks, state);                    // J, K_I, K_II with the same P
   changed = grow(scene, rocks, state) || changed;       // a new point ahead of the tip
   watch_tips(scene, state);
-  if (changed || state.step % steps_between_rebuilds == 0 || particles.farthest_cells > bin_reach_cells) {
+  const bool moved = state.step % steps_between_rebuilds == 0 || particles.farthest_cells > bin_reach_cells;
+  if (changed || (moved && !scene.numerics.keeps_places())) {
     rebuild(scene, rocks, state);
     state.ledger.interface_strain = spring_energy(scene, state);
   }

@@ -148,6 +148,32 @@ Stress in_situ_at(const Scene& scene, const State& state, const Vec2& x) {
   return (1.0 / weights) * sum;
 }
 
+// Displacement of the rock around a place, from what each particle near it says of that place.
+Vec2 displacement_at(const State& state, const Vec2& x) {
+  const Particles& p = state.particles;
+  Vec2 sum = Vec2::Zero();
+  double weights = 0.0;
+  for (std::size_t q = 0; q < p.size(); ++q) {
+    const Vec2 d = x - Vec2{p.x[q], p.y[q]};
+    const double near_x = 1.0 - std::abs(d.x()) / state.grid.h, near_y = 1.0 - std::abs(d.y()) / state.grid.h;
+    if (near_x <= 0.0 || near_y <= 0.0) continue;
+    const double weight = near_x * near_y * p.V[q];
+    sum += weight *
+           Vec2{p.u_x[q] + p.g_xx[q] * d.x() + p.g_xy[q] * d.y(), p.u_y[q] + p.g_yx[q] * d.x() + p.g_yy[q] * d.y()};
+    weights += weight;
+  }
+  return sum / weights;
+}
+
+// New vertices and points have moved with the rock that they now part.
+void displace_new(State& state, bool at_back, std::size_t pieces) {
+  Surface& fracture = state.fracture();
+  for (auto* places : {&fracture.vertices, &fracture.points}) {
+    const std::size_t first = at_back ? places->size() - pieces : 0;
+    for (std::size_t k = first; k < first + pieces; ++k) (*places)[k].u = displacement_at(state, (*places)[k].x);
+  }
+}
+
 }  // namespace
 
 void refine_particles(State& state, std::size_t first, std::size_t last) {
@@ -203,6 +229,8 @@ double extend_tip(const Scene& scene, State& state, Tip& tip, double increment) 
   extend(fracture, tip.at_back, from + length * direction, surface_spacing(state.grid));
   const std::size_t pieces = fracture.points.size() - old_points;
   lengthen_fluid(scene, state, tip.at_back, pieces);
+  if (scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics && scene.numerics.keeps_places())
+    displace_new(state, tip.at_back, pieces);
   update_particle_sides(state, tip, old_length);
   refine_particles(state, tip.at_back ? old_points : 0, tip.at_back ? fracture.points.size() : pieces);
   for (Surface& surface : state.surfaces) place_points(scene, state, surface);

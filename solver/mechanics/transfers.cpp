@@ -74,6 +74,7 @@ void gather_bin(const std::vector<Elasticity>& rocks, const Grid& grid, const Pa
 
 struct Advance {
   double dt, keep;
+  double dt_x;  // for positions: dt, or 0 where they stay
 };
 
 template <class Shape>
@@ -101,7 +102,7 @@ void move_bin(const std::vector<Elasticity>& rocks, const Grid& grid, const Bin&
     report.largest_speed2 = std::max(report.largest_speed2, speed2);
     const double off_x = std::abs(p.x[q] * inverse_h - bin.i), off_y = std::abs(p.y[q] * inverse_h - bin.j);
     report.farthest_cells = std::max(report.farthest_cells, std::max(off_x, off_y));
-    p.x[q] += by.dt * v[0], p.y[q] += by.dt * v[1];
+    p.x[q] += by.dt_x * v[0], p.y[q] += by.dt_x * v[1];
     p.u_x[q] += by.dt * v[0], p.u_y[q] += by.dt * v[1];
     const Stress rate = stress_of(rocks[p.rock[q]], d_x[0], d_y[0], d_x[1], d_y[1]);
     report.step_strain += half_dt2 * p.V[q] * (rate.xx * d_x[0] + rate.yy * d_y[1] + rate.xy * (d_y[0] + d_x[1]));
@@ -160,7 +161,7 @@ std::vector<Vec2> filter_velocity(const Scene& scene, State& state, const std::v
 
 ParticleReport grid_to_particles(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, double keep) {
   std::vector<ParticleReport> of_strip(state.strips.size());
-  const Advance by{state.dt, keep};
+  const Advance by{state.dt, keep, scene.numerics.keeps_places() ? 0.0 : state.dt};
   with_shape(scene.numerics.shape, [&](auto shape) {
     for_each_strip(state, [&](std::size_t k) {
       for (int b = state.strips[k].first; b < state.strips[k].last; ++b) {

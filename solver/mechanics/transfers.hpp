@@ -28,7 +28,7 @@ std::vector<Vec2> filter_velocity(const Scene& scene, State& state, const std::v
 
 /// Grid to particles over state.dt: v_p = keep v_p + sum_i N_ip dv_i, x_p and u_p += dt sum_i N_ip v_i,
 /// g_p += dt sum_i v_i grad N_ip. FLIP keeps v_p (keep = 1 without damping) and adds increments; PIC and XPIC keep
-/// nothing and find the whole velocity in dv.
+/// nothing and find the whole velocity in dv. Under kinematics = "total" x_p stays.
 ParticleReport grid_to_particles(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, double keep);
 
 /// Adds what tied records gathered to their masters (see Master), component by component, and clears the records

@@ -49,8 +49,8 @@ void fields(Archive& ar, Is<Particles> auto& particles) {
 
 template <class Archive>
 void fields(Archive& ar, Is<SurfacePoint> auto& point) {
-  auto& [x, n, A, arc, w, reaction, in_situ, bonded, P, slip, column, sides, split] = point;
-  ar(x, n, A, arc, w, reaction, in_situ, bonded, P, slip, column, sides, split);
+  auto& [x, n, A, arc, w, u, reaction, in_situ, bonded, P, slip, column, sides, split] = point;
+  ar(x, n, A, arc, w, u, reaction, in_situ, bonded, P, slip, column, sides, split);
 }
 
 template <class Archive>

@@ -37,8 +37,8 @@ std::vector<double> collect(const std::vector<SurfacePoint>& points, Value value
 }
 
 void write_places(hdf5::Id group, const std::vector<SurfacePoint>& points) {
-  hdf5::write(group, "x_m", collect(points, [](const SurfacePoint& s) { return s.x.x(); }), "m");
-  hdf5::write(group, "y_m", collect(points, [](const SurfacePoint& s) { return s.x.y(); }), "m");
+  hdf5::write(group, "x_m", collect(points, [](const SurfacePoint& s) { return s.x.x() + s.u.x(); }), "m");
+  hdf5::write(group, "y_m", collect(points, [](const SurfacePoint& s) { return s.x.y() + s.u.y(); }), "m");
   hdf5::write(group, "opening_m", collect(points, [](const SurfacePoint& s) { return s.opening(); }), "m");
   hdf5::write(group, "slip_m", collect(points, [](const SurfacePoint& s) { return s.w.dot(tangent(s)); }), "m");
 }
@@ -101,8 +101,9 @@ void write_particles(hdf5::Id group, const Scene& scene, const State& state) {
   const auto put_array = [&](const char* name, const char* unit, const std::vector<double>& values) {
     put(name, unit, [&](std::size_t p) { return values[p]; });
   };
-  put_array("x_m", "m", particles.x);
-  put_array("y_m", "m", particles.y);
+  const double moved = scene.numerics.keeps_places() ? 1.0 : 0.0;  // positions are where the rock now is
+  put("x_m", "m", [&](std::size_t p) { return particles.x[p] + moved * particles.u_x[p]; });
+  put("y_m", "m", [&](std::size_t p) { return particles.y[p] + moved * particles.u_y[p]; });
   put_array("u_x_m", "m", particles.u_x);
   put_array("u_y_m", "m", particles.u_y);
   put_array("v_x_m_s", "m/s", particles.v_x);

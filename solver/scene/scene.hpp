@@ -134,6 +134,9 @@ struct Numerics {
   double courant = 0.5;  // c_P dt / h
   double damping_1_s = 0.0;
 
+  // Whether particles and surfaces stay in their reference places while displacements advance.
+  bool keeps_places() const { return mechanics == Mechanics::quasistatic || kinematics == Kinematics::total; }
+
   bool operator==(const Numerics&) const = default;
 };
 

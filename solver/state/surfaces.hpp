@@ -15,6 +15,7 @@ struct SurfacePoint {
   double A = 0.0;                // length of its piece of surface (m)
   double arc = 0.0;              // arc length from the first vertex (m)
   Vec2 w = Vec2::Zero();         // jump u(+) - u(-) since the in-situ state (m)
+  Vec2 u = Vec2::Zero();         // displacement from x under kinematics = "total", where x stays (m)
   Vec2 reaction = Vec2::Zero();  // what the law exerts on the + face (Pa)
   Vec2 in_situ = Vec2::Zero();   // what the - side exerted on the + face in the in-situ state, -sigma_0 n (Pa)
   Vec2 bonded = Vec2::Zero();    // jump that its neighbours' splitting had opened here when it split: no part of w (m)

@@ -21,6 +21,7 @@ void require_same(const SurfacePoint& a, const SurfacePoint& b) {
   CHECK(a.A == b.A);
   CHECK(a.arc == b.arc);
   CHECK(a.w == b.w);
+  CHECK(a.u == b.u);
   CHECK(a.reaction == b.reaction);
   CHECK(a.in_situ == b.in_situ);
   CHECK(a.P == b.P);
@@ -149,6 +150,7 @@ TEST_CASE("a checkpoint gives the state back to the same digits") {
   const TemporaryFolder folder;
   const auto file = folder.path / "checkpoint.bin";
   State state = made_state();
+  state.surfaces[0].vertices[1].u = {1e-3, -2e-3};
   Numbers number{900};
   state.tips.push_back(made_tip(false, number));
   save_checkpoint(file, made_scene(), state, mark);
