@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 #include <omp.h>
+#include <sched.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
 #include <optional>
+#include <vector>
 
 #include "advance.hpp"
 #include "advance_quasistatic.hpp"
@@ -201,9 +204,32 @@ int run_from(Run run, const RunFolder& folder, const RunOptions& options, Clock:
   return outcome.exit;
 }
 
+// Threads that the system moves between processors wait for each other's caches at every step. Each is kept on its own
+// processor, but only where the run has as many threads as the process may use processors: runs side by side with fewer
+// threads each would otherwise meet on the first ones. What the user says of places (OMP_PROC_BIND, OMP_PLACES) counts.
+void pin_threads() {
+  const int threads = omp_get_max_threads();
+  if (threads < 2 || std::getenv("OMP_PROC_BIND") != nullptr || std::getenv("OMP_PLACES") != nullptr) return;
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  if (sched_getaffinity(0, sizeof allowed, &allowed) != 0 || CPU_COUNT(&allowed) != threads) return;
+  std::vector<std::size_t> processors;
+  for (std::size_t k = 0; k < CPU_SETSIZE; ++k) {
+    if (CPU_ISSET(k, &allowed)) processors.push_back(k);
+  }
+#pragma omp parallel num_threads(threads)
+  {
+    cpu_set_t own;
+    CPU_ZERO(&own);
+    CPU_SET(processors[static_cast<std::size_t>(omp_get_thread_num())], &own);
+    sched_setaffinity(0, sizeof own, &own);  // a thread that cannot be kept runs where it is put
+  }
+}
+
 void set_up(const Scene& scene, const RunOptions& options) {
   if (options.threads > 0) omp_set_num_threads(options.threads);
   if (is_quasistatic(scene)) omp_set_num_threads(1);  // its loops over particles are short; threads would only wait
+  pin_threads();
   std::signal(SIGINT, ask_to_stop);
   std::signal(SIGTERM, ask_to_stop);
 }
