@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <string_view>
+
+#include "scene/graded_cells.hpp"
 
 namespace strata {
 namespace {
@@ -19,35 +19,34 @@ struct Cells {
   double x = 0.0, y = 0.0;  // along each axis; doubles, since a slip of the finger may ask for more than an int holds
 };
 
-// Cells along an axis of length `extent_m` with fine ones from `from_m` to `to_m`, and beyond them ones that grow
-// by 1.2 up to `far`: a piece of length L takes the k cells with h (1.2 + ... + 1.2^k) = L until 1.2^k h = far.
-double graded_cells(double extent_m, double from_m, double to_m, double h, double far) {
-  constexpr double growth = 1.2;
-  from_m = std::clamp(from_m, 0.0, extent_m), to_m = std::clamp(to_m, from_m, extent_m);
-  double cells = (to_m - from_m) / h;
-  for (const double piece : {from_m, extent_m - to_m}) {
-    const double most = std::log(far / h) / std::log(growth);
-    const double sum = h * growth * (std::pow(growth, most) - 1.0) / (growth - 1.0);
-    cells +=
-        piece < sum ? std::log1p(piece * (growth - 1.0) / (growth * h)) / std::log(growth) : most + (piece - sum) / far;
-  }
-  return cells;
+// Cells over a length from one end of which they grow from h to `far`: k of them with h (q + ... + q^k) = L, q = 1.2,
+// until h q^k = far.
+double growing_cells(double length, double h, double far) {
+  const double most = std::log(far / h) / std::log(span_growth);
+  const double sum = h * span_growth * (far / h - 1.0) / (span_growth - 1.0);
+  if (length > sum) return most + (length - sum) / far;
+  return std::log1p(length * (span_growth - 1.0) / (span_growth * h)) / std::log(span_growth);
 }
 
-Cells cells_of(const Scene& scene) {
-  constexpr double margin_cells = 10.0;  // of fine cells around the fracture and its way up to stop.tip_y_m
+// Along an axis of `extent` m; cells grow from both ends of a gap between fine stretches.
+double graded_cells(const Scene& scene, int axis, double extent, double far) {
   const double h = scene.numerics.cell_m;
-  const Domain& domain = scene.domain;
-  const double far = scene.numerics.far_cell_m.value_or(h);
-  if (!scene.fracture || far <= h) return {domain.width_m / h, domain.height_m / h};
-  std::array<double, 2> low = scene.fracture->path_m.front(), high = low;
-  for (const auto& point : scene.fracture->path_m) {
-    for (std::size_t k = 0; k < 2; ++k) low[k] = std::min(low[k], point[k]), high[k] = std::max(high[k], point[k]);
+  double cells = 0.0, at = 0.0;
+  for (const Stretch& fine : fine_stretches(scene, axis)) {
+    const double gap = fine.from - at;
+    cells +=
+        (at > 0.0 ? 2.0 * growing_cells(0.5 * gap, h, far) : growing_cells(gap, h, far)) + (fine.to - fine.from) / h;
+    at = fine.to;
   }
-  high[1] = std::max(high[1], scene.stop.tip_y_m.value_or(0.0));
-  const double margin = margin_cells * h;
-  return {graded_cells(domain.width_m, low[0] - margin, high[0] + margin, h, far),
-          graded_cells(domain.height_m, low[1] - margin, high[1] + margin, h, far)};
+  return cells + growing_cells(extent - at, h, far);
+}
+
+// Counted without making the grid, which may be the one that does not fit.
+Cells cells_of(const Scene& scene) {
+  const double h = scene.numerics.cell_m, far = scene.numerics.far_cell_m.value_or(h);
+  const Domain& domain = scene.domain;
+  if (far <= h) return {domain.width_m / h, domain.height_m / h};
+  return {graded_cells(scene, 0, domain.width_m, far), graded_cells(scene, 1, domain.height_m, far)};
 }
 
 }  // namespace

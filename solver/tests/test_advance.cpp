@@ -67,7 +67,8 @@ bool same_bits(const State& a, const State& b) {
     const auto &s = a.surfaces[k].points, &t = b.surfaces[k].points;
     same = s.size() == t.size();
     for (std::size_t n = 0; same && n < s.size(); ++n)
-      same = s[n].x == t[n].x && s[n].w == t[n].w && s[n].u == t[n].u && s[n].reaction == t[n].reaction && s[n].split == t[n].split;
+      same = s[n].x == t[n].x && s[n].w == t[n].w && s[n].u == t[n].u && s[n].reaction == t[n].reaction &&
+             s[n].split == t[n].split;
   }
   return same && a.ledger.supplied() == b.ledger.supplied() && a.ledger.dissipated() == b.ledger.dissipated();
 }

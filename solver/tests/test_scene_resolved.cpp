@@ -1,3 +1,4 @@
+#include "scene/graded_cells.hpp"
 #include "scene/keys.hpp"
 #include "scene/memory_need.hpp"
 #include "scene/path_geometry.hpp"
@@ -118,7 +119,13 @@ TEST_CASE("Memory needed grows with the particles, more so with a factor, and le
   CHECK(memory_need(scene) - state == Approx(8.0 * 2.782e6).epsilon(1e-3));
   const double uniform = memory_need(scene);
   scene.numerics.far_cell_m = 5.0;
+  scene.stop.tip_y_m = 20.0;
   CHECK(memory_need(scene) < 0.5 * uniform);
+  scene.numerics.mechanics =
+      Numerics::Mechanics::explicit_dynamics;  // for the cells alone: knots beyond both ends less
+  const auto cells = [&](int axis) { return static_cast<double>(scene_knots(scene, axis).size()) - 4.0; };
+  CHECK(memory_need(scene) == Approx(260.0 * 4.0 * cells(0) * cells(1)).epsilon(0.1));
+  scene.numerics.mechanics = Numerics::Mechanics::quasistatic;
   scene.numerics.far_cell_m = 1.0;
   CHECK(memory_need(scene) == uniform);
   CHECK_FALSE(too_large(scene, uniform).has_value());
