@@ -82,7 +82,7 @@ def catalogue(runs: list[Run], points: Sequence[Point] = ()) -> list[Spec]:
         specs.append(Spec(f"variants_{mechanics}", "", 0, "variants", _bind2(variant_figure, groups, mechanics),
                           draw_variants, _variant_words))
     for number in sorted(of):
-        for mechanics in present:
+        for mechanics in mechanics_in(run for run in of[number] if run.drawable):
             specs.append(Spec(f"energy{number}_{mechanics}", "", number, "energy", _bind2(ledger_figure, of[number], mechanics),
                               draw_ledger, _ledger_words))
     labels = iter(range(9, 9 + len(specs)))
