@@ -42,6 +42,24 @@ void diffuse_in_steps(const Scene& scene, double dt, State& state) {
   state.time = start;
 }
 
+// What rough faces hold between them when they just touch (m), 1e-4 of the study's openings. Under load they hold less,
+// nothing at the closing stress: the fluid can then enter a closed cell little by little. A cell between rigid faces
+// would go from no pressure to that which parts them without taking up any fluid, and its balance could not tell how
+// far it is.
+constexpr double roughness = 1e-7;
+
+// Opening of a place as the flow sees it, w + roughness (1 - r_n/t_n), and its derivatives by the pressures.
+void add_place(const ContactPlace& place, const LawAnswer& r, double w, RockResponse& rock) {
+  const auto k = static_cast<Eigen::Index>(place.point);
+  rock.w[k] = w + roughness;
+  const double closing = place.in_situ.dot(place.n);
+  if (r.piece == LawAnswer::Piece::open || closing <= 0.0) return;
+  rock.w[k] -= roughness * std::min(r.n / closing, 1.0);
+  if (r.n >= closing) return;
+  rock.dw_dP.row(k) *= 1.0 - roughness * r.dn_dn / closing;  // r_n = t_n - P - k w
+  rock.dw_dP(k, k) += roughness / closing;
+}
+
 // The rock as the flow sees it: openings and their change with the pressures, in equilibrium with all surfaces.
 RockModel rock_of(State& state, QuasistaticModel& model) {
   struct Known {  // the change is the same as long as no place opens or closes
@@ -56,7 +74,7 @@ RockModel rock_of(State& state, QuasistaticModel& model) {
     RockResponse rock{Eigen::VectorXd::Zero(P.size()), known.dw_dP};
     for (std::size_t k = 0; k < model.places.size(); ++k) {
       const ContactPlace& place = model.places[k];
-      if (place.tie < 0 && place.surface == 0) rock.w[static_cast<Eigen::Index>(place.point)] = at.w[k].dot(place.n);
+      if (place.tie < 0 && place.surface == 0) add_place(place, at.answers[k], at.w[k].dot(place.n), rock);
     }
     return rock;
   };
@@ -70,8 +88,8 @@ Inlet inlet_at(const Scene& scene, const State& state, double time) {
 }
 
 FluidStep couple(const Scene& scene, double dt, State& state, QuasistaticModel& model) {
-  // Of the largest opening and of the inlet's pressure over the closing stress, a step: some hundred of them then
-  // add up to less than a per cent, since what one does wrong the next ones heal.
+  // Of the largest opening, a step: some hundred of them add up to less than a per cent, since what one does wrong the
+  // next ones heal.
   constexpr double allowed = 1e-3;
   constexpr double shortest = 1e-6;  // s; after growth the pressure drops at once, but for what flows in this time
   const double step = std::max(dt, shortest);
@@ -85,9 +103,7 @@ FluidStep couple(const Scene& scene, double dt, State& state, QuasistaticModel& 
       Eigen::Map<const Eigen::VectorXd>(state.reynolds.P.data(), static_cast<Eigen::Index>(state.reynolds.P.size())),
       state);
   state.monitors.volume_balance = state.balance.closure();
-  const double net = std::abs(report.inlet_Pa - state.fracture().points.front().closing_stress());
-  const double error_P = net > 0.0 ? report.error_P / std::max(net, 1e-3 * report.inlet_Pa) : 0.0;
-  return {true, report.estimated ? std::max(report.error_w, error_P) / allowed : 0.0};
+  return {true, report.estimated ? report.error_w / allowed : 0.0};
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "advance_fluid.hpp"
 #include "fracture/growth.hpp"
@@ -90,24 +91,38 @@ double energy_released(const State& state, const Quasistatic& run, GrowthTrial& 
   return (before - longer.energy - dissipated_by_friction(trial.model, longer)) / trial.increment;
 }
 
-// How near a tip is to growth: sqrt(J/J_c), or the same of the energy released. A rock without toughness lets it grow
-// as soon as it is open.
+// A rock without toughness lets a tip grow as soon as the fracture is open there: where K_I, and the K that each
+// opening within two cells behind the tip stands for (w = 8 K/E' sqrt(x/(2 pi))), exceed what a cell resolves of the
+// net pressure's own. Fluid that has just wetted the last cells would let the tip run ahead of the open fracture
+// otherwise.
+double toughless_margin(const State& state, double E_prime, const Tip& tip) {
+  constexpr double resolved = 0.1;  // of p sqrt(h)
+  constexpr double large_K = 1e8;   // Pa sqrt(m), of which the tolerance of an event is 1e-4
+  const Surface& fracture = state.fracture();
+  const SurfacePoint& last = tip.at_back ? fracture.points.back() : fracture.points.front();
+  double K = tip.K_I;
+  for (const SurfacePoint& s : fracture.points) {
+    const double x = tip.at_back ? fracture.length() - s.arc : s.arc;
+    if (x < 2.0 * state.grid.h) K = std::min(K, E_prime / 8.0 * std::sqrt(2.0 * std::numbers::pi / x) * s.opening());
+  }
+  const double net = std::max(0.0, state.fluid.inlet_Pa - last.closing_stress());
+  return 1.0 + (K - resolved * net * std::sqrt(state.grid.h)) / large_K;
+}
+
+// How near a tip is to growth: sqrt(J/J_c), or the same of the energy released.
 double tip_margin(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, Quasistatic& run,
                   std::size_t k, Tip& tip) {
-  const double J_c = rocks[rock_ahead(scene, state, tip)].J_c;
+  const Elasticity& rock = rocks[rock_ahead(scene, state, tip)];
+  const double J_c = rock.J_c;
   if (tip.criterion == "energy") {
     const auto trial =
         std::find_if(run.trials.begin(), run.trials.end(), [k](const GrowthTrial& t) { return t.tip == k; });
     tip.G = energy_released(state, run, *trial);
     return J_c > 0.0 ? std::sqrt(std::max(0.0, tip.G) / J_c) : (tip.G > 0.0 ? 2.0 : 0.0);
   }
-  constexpr double large_K = 1e8;  // Pa sqrt(m): where J_c is 0, an event's tolerance is 1e-4 of it
-  if (J_c == 0.0 && tip.K_I <= 0.0) {
-    const SurfacePoint& last = tip.at_back ? state.fracture().points.back() : state.fracture().points.front();
-    return 1.0 - std::max(last.reaction.dot(last.n) * std::sqrt(state.grid.h), 1.0 - tip.K_I) / large_K;
-  }
+  if (J_c == 0.0) return toughless_margin(state, rock.E_prime, tip);
   if (tip.K_I <= 0.0 || tip.J <= 0.0) return 0.0;
-  return J_c > 0.0 ? std::sqrt(tip.J / J_c) : 1.0 + tip.K_I / large_K;
+  return std::sqrt(tip.J / J_c);
 }
 
 double margin_of(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
