@@ -29,8 +29,17 @@ void append_particle(const Scene& scene, const std::vector<Elasticity>& rocks, c
   p.id.push_back(p.next_id++);
 }
 
-Particles make_particles(const Scene& scene, const std::vector<Elasticity>& rocks, const Grid& grid) {
+// Particles across a cell. Along a fracture that turns there are four (refine_particles()). Without inertia they stand
+// everywhere from the start then: the stiffness of the intact block stays what it is, and is factored once.
+int particles_across(const Scene& scene) {
   const int across = static_cast<int>(std::lround(std::sqrt(scene.numerics.particles_per_cell)));
+  const bool turns = scene.fracture && scene.fracture->growth != Fracture::Growth::none &&
+                     scene.fracture->direction == Fracture::Direction::max_hoop;
+  return scene.numerics.mechanics == Numerics::Mechanics::quasistatic && turns && across == 2 ? 4 : across;
+}
+
+Particles make_particles(const Scene& scene, const std::vector<Elasticity>& rocks, const Grid& grid) {
+  const int across = particles_across(scene);
   const std::vector<GridPoint> columns = points_along_x(grid, across), rows = points_along_y(grid, across);
   Particles particles;
   for (const GridPoint& y : rows) {
