@@ -194,7 +194,8 @@ void condense_new(const std::vector<char>& is_new, int unknowns, Condensed& out)
       for (std::size_t k = 0; k < other.index.size(); ++k)
         product += other.value[k] * dense[static_cast<std::size_t>(other.index[k])];
       const auto i = static_cast<Eigen::Index>(a), j = static_cast<Eigen::Index>(b);
-      out.S(i, j) = out.S(j, i) = out.K_jj(i, j) - product;
+      // K_jj is symmetric but for round-off, and which of two unknowns is new depends on what came before.
+      out.S(i, j) = out.S(j, i) = 0.5 * (out.K_jj(i, j) + out.K_jj(j, i)) - product;
     }
     for (const int k : Y.index) dense[static_cast<std::size_t>(k)] = 0.0;
   }

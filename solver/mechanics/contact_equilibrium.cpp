@@ -112,22 +112,38 @@ Eigen::MatrixXd tangent(const Condensed& condensed, const std::vector<ContactPla
   return T;
 }
 
-// What stands still: the tangent scaled to a unit diagonal has a smallest pivot above this where nothing moves freely.
+// What stands still: the tangent scaled to a unit diagonal has no eigenvalue below this where nothing moves freely.
 // Round-off leaves some 1e-15 of a free motion; a soft interface of 1e3 Pa/m, the softest offered for, some 1e-8.
-constexpr double smallest_pivot = 1e-12;
+// (Pivots do not tell them apart: the last one is the eigenvalue over the square of its unknown's share in the motion.)
+constexpr double smallest_eigenvalue = 1e-12;
+
+// The smallest eigenvalue of a scaled tangent in size, by two inverse iterations.
+template <class Factor>
+double weakest(const Factor& factored, Eigen::Index n) {
+  Eigen::VectorXd x(n);
+  for (Eigen::Index k = 0; k < n; ++k) x[k] = std::sin(1.0 + static_cast<double>(k));
+  double eigenvalue = 0.0;
+  for (int iteration = 0; iteration < 2; ++iteration) {
+    x /= x.norm();
+    x = Eigen::VectorXd(factored.solve(x));
+    eigenvalue = x.allFinite() ? 1.0 / x.norm() : 0.0;
+  }
+  return eigenvalue;
+}
 
 // Factors the tangent; false where it is singular.
 bool factorise(const Eigen::MatrixXd& T, bool symmetric, TangentFactor& factor) {
   factor.symmetric = symmetric;
+  factor.scale.resize(0);
+  if (T.rows() == 0) return true;  // a fracture so short that it splits no node
   factor.scale = T.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = factor.scale.asDiagonal() * T * factor.scale.asDiagonal();
   if (symmetric) {
     factor.llt.compute(scaled);
-    if (factor.llt.info() != Eigen::Success) return false;
-    return factor.llt.matrixLLT().diagonal().cwiseAbs2().minCoeff() > smallest_pivot;
+    return factor.llt.info() == Eigen::Success && weakest(factor.llt, T.rows()) > smallest_eigenvalue;
   }
   factor.lu.compute(scaled);
-  return factor.lu.matrixLU().diagonal().cwiseAbs().minCoeff() > smallest_pivot;
+  return weakest(factor.lu, T.rows()) > smallest_eigenvalue;
 }
 
 // The solution as if all places stayed on the pieces that `answers` describe.
@@ -197,44 +213,75 @@ bool factor_tangent(const Condensed& condensed, const std::vector<ContactPlace>&
   return false;
 }
 
-// Newton's step shortened to the minimum of the energy's slope along it: halving from the full step.
-double step_length(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
-                   const Equilibrium& from, const Eigen::VectorXd& to) {
-  double length = 1.0;
-  Equilibrium trial;
-  for (int halving = 0; halving < 20; ++halving, length *= 0.5) {
-    trial.j = from.j + length * (to - from.j);
-    evaluate(state, condensed, places, trial);
-    if (trial.energy < from.energy) break;
+// Force out of balance over the load that counts as none: places on the border of two pieces may change by round-off
+// for ever.
+constexpr double balanced = 1e-9;
+
+// Slope of the energy along d at j (N): strain and laws less the work of the loads.
+double slope(const State& state, const std::vector<ContactPlace>& places, double strain, const Eigen::VectorXd& j,
+             const Eigen::VectorXd& d) {
+  double sum = strain;
+  for (const ContactPlace& place : places) {
+    const Vec2 w = Vec2{times(place.D[0], j), times(place.D[1], j)} - place.bonded;
+    const LawAnswer r = answer_at(state, place, w);
+    const Vec2 traction = net_load(state, place) + r.n * place.n + r.t * tangent_of(place.n);
+    sum -= place.A * traction.dot(Vec2{times(place.D[0], d), times(place.D[1], d)});
   }
-  return length;
+  return sum;
 }
 
-// Newton's method on the pieces from at.j; false where it does not end within its iterations.
+// Newton's step shortened to the minimum of the energy along it, where its slope, which only rises, is 0. The whole
+// step where the slope there is still down, or next to nothing.
+double step_length(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
+                   const Equilibrium& from, const Eigen::VectorXd& to) {
+  constexpr double flat = 1e-3;  // of the slope at the start
+  const Eigen::VectorXd d = to - from.j, S_d = condensed.S * d;
+  const double at_start = from.j.dot(S_d), rise = d.dot(S_d);
+  const auto slope_at = [&](double length) {
+    return slope(state, places, at_start + length * rise, from.j + length * d, d);
+  };
+  const double first = slope_at(0.0);
+  if (slope_at(1.0) <= flat * std::abs(first)) return 1.0;
+  double low = 0.0, high = 1.0;
+  for (int halving = 0; halving < 120 && high - low > 1e-9 * high; ++halving) {
+    const double middle = 0.5 * (low + high);
+    (slope_at(middle) <= 0.0 ? low : high) = middle;
+  }
+  return high;
+}
+
+// Newton's method on the pieces from at.j; false where it does not end within its iterations. bounds_held: the problem
+// is convex and any state in balance its solution.
 bool iterate(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
-             TangentFactor& factor, Equilibrium& at) {
-  constexpr int most_iterations = 60;
+             TangentFactor& factor, bool bounds_held, Equilibrium& at) {
+  constexpr int most_iterations = 200;
   constexpr int plain_iterations = 15;  // without line search it ends within some 5 where it does
-  constexpr double unbalanced = 1e-7;   // of the load: what round-off leaves is some 1e-12
-  constexpr double balanced = 1e-10;    // places on the border of two pieces may change by round-off for ever
+  // Of the load: on pieces that stay as they are round-off leaves some 1e-12. A load on a motion that only the
+  // stiffening holds is not balanced.
+  constexpr double not_solved = 1e-8;
+  bool singular = false;
   evaluate(state, condensed, places, at);
+  if (bounds_held && at.residual < balanced) return true;
   for (at.iterations = 1; at.iterations <= most_iterations; ++at.iterations) {
     const Pieces pieces = at.pieces;
     const bool sliding = slips(at.answers);
     if (sliding && at.iterations > 2 * plain_iterations) return false;
-    const bool singular = !factor_tangent(condensed, places, at, state, factor);
+    singular = !factor_tangent(condensed, places, at, state, factor);
     const Eigen::VectorXd next = solve_on_pieces(state, condensed, places, at.answers, factor);
-    const bool search = at.iterations > plain_iterations && !sliding;
+    const bool search = !sliding && (bounds_held || at.iterations > plain_iterations);
     const double length = search ? step_length(state, condensed, places, at, next) : 1.0;
     at.j = length == 1.0 ? next : Eigen::VectorXd(at.j + length * (next - at.j));
     evaluate(state, condensed, places, at);
     if (!at.j.allFinite()) report_mechanism(state, places);
-    const bool settled = length == 1.0 && (at.pieces == pieces || (at.iterations > 4 && at.residual < balanced));
+    const bool solved = at.residual < balanced && (bounds_held || (length == 1.0 && at.iterations > 4));
+    const bool settled = solved || (length == 1.0 && at.pieces == pieces);
     if (!settled) continue;
-    // A load on a motion that only the stiffening holds is not balanced.
-    if (singular || at.residual > unbalanced) report_mechanism(state, places);
-    return true;
+    if (singular && !bounds_held) report_mechanism(state, places);
+    if (at.residual <= not_solved) return true;
+    if (bounds_held) report_mechanism(state, places);
+    return false;
   }
+  if (bounds_held && singular) report_mechanism(state, places);  // the energy falls without end
   return false;
 }
 
@@ -261,13 +308,16 @@ Equilibrium solve_with_fixed_bounds(const State& state, const Condensed& condens
       place.bound = bound;
     }
     if (round > 0 && change <= renewed * largest) break;
-    if (!iterate(state, condensed, places, factor, at)) break;
+    if (!iterate(state, condensed, places, factor, true, at)) break;
   }
   for (ContactPlace& place : places) place.bound = -1.0;
   const double found = at.residual;
   evaluate(state, condensed, places, at);
   factor.pieces.clear();  // bounds that follow the normal reaction have another tangent
-  if (at.residual < 1e-8 && factor_tangent(condensed, places, at, state, factor)) return at;
+  if (at.residual < 1e-8) {
+    if (factor_tangent(condensed, places, at, state, factor)) return at;
+    report_mechanism(state, places);
+  }
   throw NumericalFailure("no equilibrium of the surfaces was found; the force out of balance is " +
                          std::to_string(std::max(found, at.residual)) +
                          " of the load. Use less friction or a smaller load step");
@@ -278,6 +328,7 @@ Equilibrium solve_with_fixed_bounds(const State& state, const Condensed& condens
 Eigen::MatrixXd TangentFactor::solve(const Eigen::MatrixXd& b) const {
   const Eigen::MatrixXd scaled = scale.asDiagonal() * b;
   Eigen::MatrixXd x;
+  if (scaled.rows() == 0) return scaled;
   if (symmetric)
     x = llt.solve(scaled);
   else
@@ -328,7 +379,8 @@ Equilibrium solve_equilibrium(const State& state, const Condensed& condensed, co
                               const Eigen::VectorXd& start, TangentFactor& factor) {
   Equilibrium at;
   at.j = start.size() == condensed.size() ? start : Eigen::VectorXd::Zero(condensed.size());
-  if (iterate(state, condensed, places, factor, at)) return at;
+  constexpr double solved = 1e-9;  // of the load
+  if (iterate(state, condensed, places, factor, false, at) && at.residual < solved) return at;
   return solve_with_fixed_bounds(state, condensed, places, factor);
 }
 

@@ -44,23 +44,27 @@ LawAnswer law_at(const InterfaceLaw& law, double k, const LawInput& in) {
   LawAnswer r;
   const double pushed = in.n_rest - k * in.w_n, at_rest = std::max(0.0, in.n_rest);
   r.energy = (std::max(0.0, pushed) * std::max(0.0, pushed) - at_rest * at_rest) / (2.0 * k);
-  if (pushed <= 0.0) return r;
-  r.piece = Piece::closed;
-  r.n = pushed, r.n_0 = in.n_rest, r.dn_dn = -k;
+  const bool closed = pushed > 0.0, given = in.bound >= 0.0;
+  if (closed) r.piece = Piece::closed, r.n = pushed, r.n_0 = in.n_rest, r.dn_dn = -k;
+  // A bound that is given does not ask for the normal reaction: else friction would jump where a face opens, and the
+  // energy with it.
+  if (!closed && !given) return r;
   const double mu = law.kind == InterfaceLaw::Kind::weak ? law.residual_friction : law.coefficient;
   if (mu == 0.0) return r;
   const double held = in.r_t_start - k * (in.w_t - in.w_t_start);
-  const bool given = in.bound >= 0.0;
   const double bound = given ? in.bound : mu * r.n;
   const double at_start = in.r_t_start * in.r_t_start / (2.0 * k);
   if (std::abs(held) <= bound) {
-    r.piece = Piece::stick;
+    r.piece = closed ? Piece::stick : Piece::open_stick;
     r.t = held, r.t_0 = in.r_t_start + k * in.w_t_start, r.dt_dt = -k;
     r.energy += held * held / (2.0 * k) - at_start;
     return r;
   }
   const double sign = std::copysign(1.0, held);
-  r.piece = sign > 0.0 ? Piece::slip_plus : Piece::slip_minus;
+  if (closed)
+    r.piece = sign > 0.0 ? Piece::slip_plus : Piece::slip_minus;
+  else
+    r.piece = sign > 0.0 ? Piece::open_slip_plus : Piece::open_slip_minus;
   r.t = sign * bound;
   r.t_0 = given ? r.t : sign * mu * in.n_rest;
   r.dt_dn = given ? 0.0 : sign * mu * r.dn_dn;

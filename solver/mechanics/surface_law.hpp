@@ -14,14 +14,14 @@ struct LawInput {
   double w_t = 0.0;        // tangential jump (m)
   double w_t_start = 0.0;  // what friction remembers: tangential jump (m)
   double r_t_start = 0.0;  // and reaction (Pa) of the last equilibrium
-  double bound = -1.0;     // friction's bound where it is given (Pa), instead of mu n
+  double bound = -1.0;     // friction's bound where it is given (Pa), instead of mu n; it then acts on open faces, too
   double n_rest = 0.0;     // normal reaction of closed contact at zero jump (Pa): in-situ less fluid
 };
 
 // The reaction on the + face (Pa, its normal component positive in compression). Laws are linear in pieces: on this one
 // n = n_0 + dn_dn w_n and t = t_0 + dt_dn w_n + dt_dt w_t.
 struct LawAnswer {
-  enum class Piece : char { open, closed, stick, slip_plus, slip_minus };
+  enum class Piece : char { open, closed, stick, slip_plus, slip_minus, open_stick, open_slip_plus, open_slip_minus };
   Piece piece = Piece::open;
   double n = 0.0, t = 0.0;
   double n_0 = 0.0, t_0 = 0.0;
