@@ -283,7 +283,7 @@ int resume_run(const std::filesystem::path& dir, const RunOptions& options) {
   }
   State& state = checkpoint->state;
   restore(scene, rocks, state);
-  const double last_output = recorder->outputs() > 0 ? state.time : -1.0;
+  const double last_output = recorder->last_output_s();
   return run_from({scene, rocks, *recorder, state, state, 0.0, last_output, std::nullopt}, folder, options, start);
 }
 

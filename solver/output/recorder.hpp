@@ -31,6 +31,7 @@ class Recorder {
 
   /// Number of output times written since the start of the run.
   std::size_t outputs() const { return result_.outputs(); }
+  double last_output_s() const { return result_.last_time_s(); }
 
  private:
   RunFolder folder_;

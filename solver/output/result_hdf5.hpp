@@ -49,6 +49,7 @@ class ResultFile {
 
   /// Number of output times in the file.
   std::size_t outputs() const { return outputs_.size(); }
+  double last_time_s() const { return outputs_.empty() ? -1.0 : outputs_.back().time_s; }  // -1: none yet
 
  private:
   // What the .xdmf needs to know about an output time.
