@@ -1,0 +1,52 @@
+#include "mechanics/failure.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "statics.hpp"
+
+using namespace strata;
+using namespace strata::test;
+
+// Requires the study's eq. 5 for weak places, tension alone counting as N, and |t|/(mu n) for friction, by hand.
+// Mutations that fail: compression counted, strengths swapped, mu left out, friction in tension at 0.
+TEST_CASE("how near a place is to failure") {
+  const InterfaceLaw weak = weak_law(2e6, 0.5e6), friction = friction_law(0.5);
+  CHECK(failure_index(weak, 5e6, 0.0) == 0.0);
+  CHECK(failure_index(weak, 5e6, -1e6) == Approx(0.5));
+  CHECK(failure_index(weak, -0.3e6, 1.6e6) == Approx(1.0));
+  CHECK(failure_index(friction, 2e6, 0.0) == 0.0);
+  CHECK(failure_index(friction, 2e6, -1e6) == Approx(1.0));
+  CHECK(std::isinf(failure_index(friction, -1.0, 0.0)));
+  CHECK(failure_index(soft_law(1e9, 1e9), -1e9, 1e9) == 0.0);
+}
+
+// Requires that under a uniform stress every bonded place carries exactly that traction (1e-12), shear included and
+// with both signs: grid line and mid-cell, both ways of stacking, hats and splines, a block with a fracture that ends
+// on the interface at its closing stress. Mutations that fail: the side's sign, an edge column's length, faces left
+// out.
+TEST_CASE("bonded places carry the traction of a uniform stress") {
+  for (const auto along : {Strata::Along::y, Strata::Along::x}) {
+    for (const double at : {5.0, 4.5}) {
+      for (const bool cracked : {false, true}) {
+        Scene scene = block(10, 10);
+        scene.in_situ = {3e6, 2e6};
+        scene.strata.along = along;
+        add_interface(scene, weak_law(1e6, 1e6), at);
+        if (cracked && along == Strata::Along::y) add_fracture(scene, {{5.0, 2.0}, {5.0, at}}, 2e6);
+        Statics s(scene);
+        REQUIRE(s.model.bonds.places.size() >= 20);
+        // A stress that a fracture along y at its closing stress does not disturb has no traction on it.
+        const Stress added = cracked ? Stress{0.0, -0.7e6, 0.0} : Stress{0.4e6, -0.7e6, 0.3e6};
+        Particles& p = s.state().particles;
+        for (std::size_t q = 0; q < p.size(); ++q) strain(s.state(), q, gradient_of(scene.rocks[0], added));
+        load_bonds(scene, s.run.rocks, s.state(), s.model.bonds);
+        for (const BondedPlace& place : s.model.bonds.places) {
+          const SurfacePoint& point = s.state().surfaces[place.surface].points[place.point];
+          const Vec2 expected = point.in_situ - added.on(point.n);
+          CAPTURE(at, static_cast<int>(along), cracked, place.point);
+          CHECK((place.carried - expected).norm() < 1e-10 * 3e6);
+        }
+      }
+    }
+  }
+}
