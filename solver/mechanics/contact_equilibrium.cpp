@@ -200,6 +200,7 @@ int unknowns_that_move(const TangentFactor& factor, Eigen::Index n) {
 bool factor_tangent(const Condensed& condensed, const std::vector<ContactPlace>& places, const Equilibrium& at,
                     const State& state, TangentFactor& factor) {
   constexpr double stiffening = 1e-9;
+  constexpr double on_the_way = 1e-6;  // parts that come to rest later: a step that does not leave all sight of it
   constexpr int sliver =
       24;  // unknowns: fewer than the copies of 3 x 3 nodes have with one jump each, and some to spare
   if (factor.pieces == at.pieces && factor.scale.size() == condensed.size()) return true;
@@ -209,6 +210,8 @@ bool factor_tangent(const Condensed& condensed, const std::vector<ContactPlace>&
   T.diagonal() *= 1.0 + stiffening;
   if (!factorise(T, !slips(at.answers), factor)) report_mechanism(state, places);
   if (unknowns_that_move(factor, condensed.size()) <= sliver) return true;
+  T.diagonal() *= 1.0 + on_the_way;
+  factorise(T, !slips(at.answers), factor);
   factor.pieces.clear();
   return false;
 }
