@@ -90,7 +90,8 @@ void evaluate(const State& state, const Condensed& condensed, const std::vector<
   at.strain = 0.5 * at.j.dot(inner);
   at.energy += at.strain;
   const double scale = std::max(load.lpNorm<Eigen::Infinity>(), inner.lpNorm<Eigen::Infinity>());
-  at.residual = scale > 0.0 ? (inner - load - reaction).lpNorm<Eigen::Infinity>() / scale : 0.0;
+  at.unbalanced = load + reaction - inner;
+  at.residual = scale > 0.0 ? at.unbalanced.lpNorm<Eigen::Infinity>() / scale : 0.0;
 }
 
 Eigen::MatrixXd tangent(const Condensed& condensed, const std::vector<ContactPlace>& places,
@@ -262,7 +263,7 @@ bool iterate(const State& state, const Condensed& condensed, const std::vector<C
   // Of the load: on pieces that stay as they are round-off leaves some 1e-12. A load on a motion that only the
   // stiffening holds is not balanced.
   constexpr double not_solved = 1e-8;
-  bool singular = false;
+  bool singular = false, stays = false;
   evaluate(state, condensed, places, at);
   if (bounds_held && at.residual < balanced) return true;
   for (at.iterations = 1; at.iterations <= most_iterations; ++at.iterations) {
@@ -270,12 +271,15 @@ bool iterate(const State& state, const Condensed& condensed, const std::vector<C
     const bool sliding = slips(at.answers);
     if (sliding && at.iterations > 2 * plain_iterations) return false;
     singular = !factor_tangent(condensed, places, at, state, factor);
-    const Eigen::VectorXd next = solve_on_pieces(state, condensed, places, at.answers, factor);
+    // A tangent that was stiffened does not solve its pieces at once: from there on by what is out of balance.
+    const Eigen::VectorXd next = stays ? Eigen::VectorXd(at.j + factor.solve(at.unbalanced))
+                                       : solve_on_pieces(state, condensed, places, at.answers, factor);
     const bool search = !sliding && (bounds_held || at.iterations > plain_iterations);
     const double length = search ? step_length(state, condensed, places, at, next) : 1.0;
     at.j = length == 1.0 ? next : Eigen::VectorXd(at.j + length * (next - at.j));
     evaluate(state, condensed, places, at);
     if (!at.j.allFinite()) report_mechanism(state, places);
+    stays = bounds_held && length < 1.0 && at.pieces == pieces;
     const bool solved = at.residual < balanced && (bounds_held || (length == 1.0 && at.iterations > 4));
     const bool settled = solved || (length == 1.0 && at.pieces == pieces);
     if (!settled) continue;

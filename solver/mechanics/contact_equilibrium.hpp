@@ -35,9 +35,10 @@ struct Equilibrium {
   std::vector<LawAnswer> answers;  // one a place
   std::vector<Vec2> w;             // jump of each place (m)
   Pieces pieces;
-  double energy = 0.0;    // potential energy: strain and laws less the work of the loads (J/m)
-  double strain = 0.0;    // strain energy of the rock (J/m)
-  double residual = 0.0;  // largest force out of balance over the largest load
+  double energy = 0.0;         // potential energy: strain and laws less the work of the loads (J/m)
+  double strain = 0.0;         // strain energy of the rock (J/m)
+  double residual = 0.0;       // largest force out of balance over the largest load
+  Eigen::VectorXd unbalanced;  // loads and reactions less S j (N/m)
   int iterations = 0;
 };
 
