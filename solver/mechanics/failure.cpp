@@ -120,17 +120,21 @@ void add_faces(Builder& b) {
   }
 }
 
+// The same rule along the interface as the particles': then a uniform stress implies its own traction to round-off, at
+// columns that an edge or the fracture cuts off too.
 void add_lengths(Builder& b) {
+  const auto& sizes = b.state.particles.half;
+  const double half = *std::min_element(sizes.begin(), sizes.end());
   for (std::size_t q = 0; q < b.surface.points.size(); ++q) {
     const SurfacePoint& s = b.surface.points[q];
-    // Four places a point: hat functions and B-splines are integrated well enough to tell halves of a column apart.
-    for (int part = 0; part < 4; ++part) {
+    const int parts = std::max(1, static_cast<int>(std::lround(0.5 * b.state.grid.h / (2.0 * half))));
+    for (int part = 0; part < parts; ++part) {
       const Vec2 along{s.n.y(), -s.n.x()};
-      const Vec2 x = s.x + s.A * ((part + 0.5) / 4.0 - 0.5) * along;
+      const Vec2 x = s.x + s.A * ((part + 0.5) / parts - 0.5) * along;
       const ColumnWeights w = column_weights(b, x, 0.0);
       const SideWord sides = sides_at(b.state, x, b.surface.bit);
       for (std::size_t a = 0; a < 3; ++a) {
-        const double share = 0.25 * s.A * w.Phi[a];
+        const double share = s.A / parts * w.Phi[a];
         if (share == 0.0) continue;
         for (const bool plus : {false, true}) {
           BondSample& sample = b.samples[key_at(b, w.column[a], sides, plus)];
