@@ -120,13 +120,15 @@ def kinetic_ratio(run: Run) -> float | None:
 
 
 def G_over_J(run: Run) -> float | None:
-    """Median of the energy released over an increment by J, away from interfaces; None where the run measures no G."""
-    if not {"G_N_m", "J_N_m"} <= run.history.keys():
+    """Energy released over an increment by the mean of J over it, the ratio farthest from 1 away from interfaces; None where not known."""
+    if not {"G_N_m", "G_by_J_N_m"} <= run.history.keys():
         return None
-    released, J = run.history["G_N_m"], run.history["J_N_m"]
-    near = run.history.get("at_interface", np.zeros_like(J))
-    known = np.isfinite(released) & (released > 0.0) & (J > 0.0) & (near == 0)
-    return float(np.median(released[known] / J[known])) if known.any() else None
+    released, by_J = run.history["G_N_m"], run.history["G_by_J_N_m"]
+    near = run.history.get("at_interface", np.zeros_like(by_J))
+    was_near = np.concatenate([near[:1], near[:-1]])  # J at the increment's start came from the row before
+    known = np.isfinite(released) & (by_J > 0.0) & (near == 0) & (was_near == 0)
+    ratios = released[known] / by_J[known]
+    return float(ratios[np.argmax(np.abs(ratios - 1.0))]) if known.any() else None
 
 
 def inertia_words(rows: Sequence[Comparison]) -> str:

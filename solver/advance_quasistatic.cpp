@@ -240,32 +240,80 @@ void fail_worst(const Scene& scene, const std::vector<BondedPlace>& places, doub
   }
 }
 
-// What is due at the present load.
+// A tip that grows: J and pressure that it had.
+struct Growing {
+  std::size_t tip = 0;
+  double increment = 0.0;  // m
+  double J = 0.0;          // N/m
+  double P = 0.0;          // Pa
+};
+
+std::vector<Growing> tips_that_grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state,
+                                    Quasistatic& run) {
+  std::vector<Growing> due;
+  for (std::size_t k = 0; k < state.tips.size(); ++k) {
+    Tip& tip = state.tips[k];
+    if (!may_grow(scene, state, tip) || tip_margin(scene, rocks, state, run, k, tip) < 1.0) continue;
+    due.push_back({k, increment_of(scene, tip), tip.J, tip.at_back ? state.fluid.P.back() : state.fluid.P.front()});
+  }
+  return due;
+}
+
+void lengthen(const Scene& scene, std::vector<Growing>& growing, State& state) {
+  for (Growing& g : growing) {
+    Tip& tip = state.tips[g.tip];
+    const std::size_t points = state.fracture().points.size();
+    note_growth(state, tip, tip.criterion.c_str(), tip.criterion == "energy" || !tip.at_interface);
+    g.increment = extend_tip(scene, state, tip, g.increment);
+    const std::size_t added = state.fracture().points.size() - points;
+    add_fluid_cells(scene, tip.at_back, added, state);
+    auto& all = state.fracture().points;
+    for (std::size_t q = 0; q < added; ++q)
+      all[tip.at_back ? points + q : q].P = g.P;  // wetted, to measure the release
+  }
+}
+
+// Two measures of what growth has released, independent of each other: the difference of potential energy over the
+// increment, and the mean of J over it (K linear between its ends, the new segment under the pressure that the tip had).
+// Where the tip all but closes on the way, under a pressure that falls off towards it, two values do not tell the mean.
+void measure_release(const Scene& scene, const std::vector<Elasticity>& rocks, double energy_before,
+                     const std::vector<Growing>& growing, State& state, Quasistatic& run) {
+  run.equilibrium = find_equilibrium(state, run.model);
+  set_fields(scene, state, run.model, run.equilibrium);
+  measure_tips(scene, rocks, state);
+  const double energy = run.equilibrium.energy + dissipated_by_friction(run.model, run.equilibrium);
+  double length = 0.0;
+  for (const Growing& g : growing) length += g.increment;
+  for (const Growing& g : growing) {
+    constexpr double least_J = 0.25;  // of J before: K halved
+    Tip& tip = state.tips[g.tip];
+    tip.G = (energy_before - energy) / length;
+    tip.G_by_J = tip.K_I > 0.0 && tip.J > least_J * g.J ? (g.J + std::sqrt(g.J * tip.J) + tip.J) / 3.0 : 0.0;
+  }
+}
+
+// What is due at the present load: the worst bonded column fails or, where none does, tips grow.
 void let_happen(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
   const LoadPoint before = load_point(state);
   const std::vector<BondedPlace>& places = run.model.bonds.places;
   double worst = 0.0;
   for (const BondedPlace& place : places) worst = std::max(worst, place.index);
-  const bool fails = worst >= 1.0;
-  if (fails) {
+  std::vector<Growing> growing;
+  double energy_before = 0.0;
+  if (worst >= 1.0) {
     fail_worst(scene, places, worst, run, state);
   } else {
-    for (std::size_t k = 0; k < state.tips.size(); ++k) {
-      Tip& tip = state.tips[k];
-      if (!may_grow(scene, state, tip) || tip_margin(scene, rocks, state, run, k, tip) < 1.0) continue;
-      const double increment = increment_of(scene, tip);
-      const std::size_t points = state.fracture().points.size();
-      note_growth(state, tip, tip.criterion.c_str(), tip.criterion == "energy" || !tip.at_interface);
-      extend_tip(scene, state, tip, increment);
-      add_fluid_cells(scene, tip.at_back, state.fracture().points.size() - points, state);
-    }
+    growing = tips_that_grow(scene, rocks, state, run);
+    energy_before = find_equilibrium(state, run.model).energy;  // against friction's present memory
+    lengthen(scene, growing, state);
   }
   rebuild_all(scene, rocks, state, run);
+  if (!growing.empty()) measure_release(scene, rocks, energy_before, growing, state, run);
   if (!advance_fluid(scene, 0.0, state, run.model).found)
     throw NumericalFailure("flow and rock found no common solution after growth at t = " + std::to_string(state.time) +
                            " s. Use smaller cells or increments");
   equilibrate(scene, rocks, state, run);
-  accept(scene, before, fails ? Change::failure : Change::growth, state, run);
+  accept(scene, before, growing.empty() ? Change::failure : Change::growth, state, run);
   state.dt = first_flow_step;
 }
 

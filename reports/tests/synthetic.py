@@ -130,7 +130,7 @@ def _write_history(folder: Path, plan: Plan, inlet: np.ndarray, height: np.ndarr
         "J_spread": np.full_like(inlet, 0.006),
     }
     if plan.mechanics == "quasistatic":
-        columns |= {"G_N_m": np.full_like(inlet, 204.0), "fluid_volume_balance": np.full_like(inlet, 1e-11)}
+        columns |= {"G_N_m": np.full_like(inlet, 204.0), "G_by_J_N_m": np.full_like(inlet, 200.0), "fluid_volume_balance": np.full_like(inlet, 1e-11)}
     with (folder / "history.csv").open("w", encoding="utf-8", newline="") as stream:
         writer = csv.writer(stream)
         writer.writerow(columns)

@@ -43,6 +43,7 @@ constexpr HistoryColumn columns[] = {
     {"at_interface", "1", &HistoryRow::at_interface},
     {"ring_m", "m", &HistoryRow::ring_m},
     {"G_N_m", "N/m", &HistoryRow::G_N_m},
+    {"G_by_J_N_m", "N/m", &HistoryRow::G_by_J_N_m},
     {"fluid_volume_balance", "1", &HistoryRow::fluid_volume_balance},
 };
 static_assert(sizeof(HistoryRow) == std::size(columns) * sizeof(double), "every member of HistoryRow is a column");
@@ -156,6 +157,7 @@ HistoryRow history_row(const Scene&, const State& state) {
   row.at_interface = tip ? (tip->at_interface ? 1.0 : 0.0) : nan;
   row.ring_m = tip ? tip->ring_m : nan;
   row.G_N_m = tip ? tip->G : nan;
+  row.G_by_J_N_m = tip ? tip->G_by_J : nan;
   row.fluid_volume_balance = state.monitors.volume_balance;
   const Ledger& ledger = state.ledger;
   row.kinetic_J = ledger.kinetic;

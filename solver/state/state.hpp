@@ -38,7 +38,7 @@ struct Tip {
   double J_at_growth = 0.0;
   double J_spread_at_growth = 0.0;
   double G = 0.0;               // energy released over the last increment that was tried, by its length (N/m)
-  double G_by_J = 0.0;          // the same from J at its two ends (N/m); 0 where it was not tried
+  double G_by_J = 0.0;          // the same from J along it (N/m); 0 where that does not tell
   std::string criterion = "J";  // what decides its growth where it stands: "J" or "energy"
   bool has_grown = false;
   bool arrested = false;
