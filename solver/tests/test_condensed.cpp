@@ -61,7 +61,7 @@ double largest(const Eigen::MatrixXd& m) {
 
 // Requires that S is the Schur complement of a dense stiffness of all records to 1e-11 of its largest entry (measured:
 // below 1e-13), and symmetric: whole, halved, with no edge held, a crack in a cell, a crack at an angle. Mutations
-// that fail: S = K_jj, S = K_jj + Y^T Y, twice S, the halved block's left half counted once, the mirror's sign turned.
+// that fail: S = K_jj, S = K_jj + Y^T Y, twice S, the halved block's left half counted once.
 TEST_CASE("S is the Schur complement of the stiffness of all records") {
   std::vector<Scene> scenes{through_interface(4.0, 4.0, 3.0), through_interface(4.0, 3.5, 6.0),
                             through_interface(4.5, 4.0, 5.25, 9.0)};
