@@ -24,8 +24,9 @@ void set_point_pressures(const Eigen::VectorXd& P, State& state) {
 // The study's law in equal steps, none longer than some of what its diffusion takes across a segment: the trapezoidal
 // rule would ring otherwise.
 void diffuse_in_steps(const Scene& scene, double dt, State& state) {
-  constexpr double longest = 2.0;  // in ds^2/kappa
-  constexpr int most = 1000;       // then the rule's own stability has to do
+  // In ds^2/kappa: the trapezoidal rule hardly rings, the explicit one is stable.
+  const double longest = scene.fluid.time_rule == Fluid::TimeRule::explicit_euler ? 0.5 : 2.0;
+  constexpr int most = 1000;  // then the rule's own stability has to do
   double shortest = dt;
   for (const SurfacePoint& s : state.fracture().points) {
     const double w = std::max(s.opening(), scene.fluid.minimum_opening_m);
@@ -91,11 +92,10 @@ FluidStep couple(const Scene& scene, double dt, State& state, QuasistaticModel& 
   // Of the largest opening, a step: some hundred of them add up to less than a per cent, since what one does wrong the
   // next ones heal.
   constexpr double allowed = 1e-3;
-  constexpr double shortest = 1e-6;  // s; after growth the pressure drops at once, but for what flows in this time
-  const double step = std::max(dt, shortest);
+  const double step = std::max(dt, shortest_fluid_step);
   const StepReport report = step_reynolds(scene.fluid, inlet_at(scene, state, state.time + step), step,
                                           rock_of(state, model), state.reynolds, state.balance);
-  if (!report.converged) return {false, 0.0};
+  if (!report.converged) return {false, 0.0, report.reason};
   state.time += step;
   state.fluid.P = vertex_pressures(state.reynolds);
   state.fluid.inlet_Pa = report.inlet_Pa;
@@ -103,7 +103,7 @@ FluidStep couple(const Scene& scene, double dt, State& state, QuasistaticModel& 
       Eigen::Map<const Eigen::VectorXd>(state.reynolds.P.data(), static_cast<Eigen::Index>(state.reynolds.P.size())),
       state);
   state.monitors.volume_balance = state.balance.closure();
-  return {true, report.estimated ? report.error_w / allowed : 0.0};
+  return {true, report.estimated ? report.error_w / allowed : 0.0, ""};
 }
 
 }  // namespace

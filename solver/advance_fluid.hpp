@@ -1,6 +1,8 @@
 // The fluid's part of a step without inertia, under each of the three laws.
 #pragma once
 
+#include <string>
+
 #include "mechanics/quasistatic.hpp"
 #include "state/state.hpp"
 
@@ -14,11 +16,17 @@ void fill_fracture(const Scene& scene, State& state, QuasistaticModel& model);
 struct FluidStep {
   bool found = true;
   double error = 0.0;
+  std::string reason;  // why none was found
 };
+
+// The shortest step of flow and rock together (s). After growth the pressure drops at once, but for what flows
+// meanwhile.
+constexpr double shortest_fluid_step = 1e-6;
 
 /// Pressures at the end of a step dt (s), in state.fluid, at the fracture's points and, under law = "reynolds", in
 /// state.reynolds; state.time moves on. uniform: the inlet's. paper: the study's diffusion in steps that resolve it,
-/// with the opening of the step's start. reynolds: flow and rock in one system. dt = 0: only what growth changed.
+/// with the opening of the step's start. reynolds: flow and rock in one system, over shortest_fluid_step at least.
+/// dt = 0: only what growth changed. Throws NumericalFailure as find_equilibrium() and diffuse() do.
 FluidStep advance_fluid(const Scene& scene, double dt, State& state, QuasistaticModel& model);
 
 /// The new cells of a fracture that has grown by `added` points at a tip, empty (law = "reynolds").

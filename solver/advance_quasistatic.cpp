@@ -105,7 +105,8 @@ double toughless_margin(const State& state, double E_prime, const Tip& tip) {
     const double x = tip.at_back ? fracture.length() - s.arc : s.arc;
     if (x < 2.0 * state.grid.h) K = std::min(K, E_prime / 8.0 * std::sqrt(2.0 * std::numbers::pi / x) * s.opening());
   }
-  const double net = std::max(0.0, state.fluid.inlet_Pa - last.closing_stress());
+  const double net = state.fluid.inlet_Pa - last.closing_stress();
+  if (net <= 0.0) return 0.0;
   return 1.0 + (K - resolved * net * std::sqrt(state.grid.h)) / large_K;
 }
 
@@ -117,8 +118,8 @@ double tip_margin(const Scene& scene, const std::vector<Elasticity>& rocks, cons
   if (tip.criterion == "energy") {
     const auto trial =
         std::find_if(run.trials.begin(), run.trials.end(), [k](const GrowthTrial& t) { return t.tip == k; });
-    tip.G = energy_released(state, run, *trial);
-    return J_c > 0.0 ? std::sqrt(std::max(0.0, tip.G) / J_c) : (tip.G > 0.0 ? 2.0 : 0.0);
+    tip.G_trial = energy_released(state, run, *trial);
+    return J_c > 0.0 ? std::sqrt(std::max(0.0, tip.G_trial) / J_c) : (tip.G_trial > 0.0 ? 2.0 : 0.0);
   }
   if (J_c == 0.0) return toughless_margin(state, rock.E_prime, tip);
   if (tip.K_I <= 0.0 || tip.J <= 0.0) return 0.0;
@@ -132,8 +133,33 @@ double margin_of(const Scene& scene, const std::vector<Elasticity>& rocks, State
       margin = std::max(margin, tip_margin(scene, rocks, state, run, k, state.tips[k]));
   }
   load_bonds(scene, rocks, state, run.model.bonds);
-  for (const BondedPlace& place : run.model.bonds.places) margin = std::max(margin, place.index);
+  bool sound = true;
+  for (const Tip& tip : state.tips) sound = sound && std::isfinite(tip.G_trial);
+  for (const BondedPlace& place : run.model.bonds.places) {
+    sound = sound && !std::isnan(place.index);
+    margin = std::max(margin, place.index);
+  }
+  if (!sound) throw NumericalFailure("the energy released or the load of a bonded interface is not finite");
   return margin;
+}
+
+// Which criterion decides about each tip where it now stands, and the trials that need it.
+void make_trials(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+  run.trials.clear();
+  for (std::size_t k = 0; k < state.tips.size(); ++k) {
+    Tip& tip = state.tips[k];
+    if (!may_grow(scene, state, tip)) continue;
+    tip.criterion = by_energy(scene, state, tip) ? "energy" : "J";
+    if (tip.criterion != "energy") continue;
+    GrowthTrial& trial = run.trials.emplace_back();
+    trial.tip = k;
+    trial.turn = tip.turn;
+    trial.state = state;
+    trial.increment = extend_tip(scene, trial.state, trial.state.tips[k], increment_of(scene, tip));
+    trial.model.body = run.model.body;
+    trial.model.condensed = run.model.condensed;
+    update_model(scene, rocks, trial.state, trial.model);
+  }
 }
 
 // Equilibrium at the state's pressures, its fields, and how near the next event is.
@@ -142,6 +168,10 @@ void equilibrate(const Scene& scene, const std::vector<Elasticity>& rocks, State
   set_fields(scene, state, run.model, run.equilibrium);
   if (state.dt <= 0.0) state.dt = 1.0;  // J's inertia divides by it; there is none
   measure_tips(scene, rocks, state);
+  const bool turned = std::any_of(run.trials.begin(), run.trials.end(), [&](const GrowthTrial& trial) {
+    return std::abs(trial.turn - state.tips[trial.tip].turn) > 1e-12;
+  });
+  if (turned && scene.fracture->direction == Fracture::Direction::max_hoop) make_trials(scene, rocks, state, run);
   run.margin = margin_of(scene, rocks, state, run);
 }
 
@@ -153,13 +183,13 @@ double work_of_loads(const State& state, const LoadPoint& before, double& in_sit
   in_situ = 0.0;
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
     const auto &now = state.surfaces[k].points, &then = before.surfaces[k].points;
-    // The fracture may have become longer at its front.
-    const std::size_t added = now.size() - then.size();
-    const bool at_front = added > 0 && (now.front().x - then.front().x).norm() > 0.0;
+    // The fracture may have become longer at its front; its older points stay where they were.
+    const auto same =
+        std::find_if(now.begin(), now.end(), [&](const SurfacePoint& s) { return s.x == then.front().x; });
+    const auto shift = static_cast<std::size_t>(same - now.begin());
     for (std::size_t q = 0; q < now.size(); ++q) {
       const SurfacePoint& s = now[q];
       if (!s.split) continue;
-      const std::size_t shift = at_front ? added : 0;
       const bool is_new = q < shift || q - shift >= then.size();
       const Vec2 dw = is_new || !then[q - shift].split ? s.w : Vec2{s.w - then[q - shift].w};
       const double P = is_new ? s.P : 0.5 * (s.P + then[q - shift].P);
@@ -196,26 +226,10 @@ void accept(const Scene& scene, const LoadPoint& before, Change change, State& s
   ++state.step;
 }
 
-// Which criterion decides about each tip where it now stands, and the trials that need it.
-void make_trials(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
-  run.trials.clear();
-  for (std::size_t k = 0; k < state.tips.size(); ++k) {
-    Tip& tip = state.tips[k];
-    if (!may_grow(scene, state, tip)) continue;
-    tip.criterion = by_energy(scene, state, tip) ? "energy" : "J";
-    if (tip.criterion != "energy") continue;
-    GrowthTrial& trial = run.trials.emplace_back();
-    trial.tip = k;
-    trial.state = state;
-    trial.increment = extend_tip(scene, trial.state, trial.state.tips[k], increment_of(scene, tip));
-    trial.model.body = run.model.body;
-    trial.model.condensed = run.model.condensed;
-    update_model(scene, rocks, trial.state, trial.model);
-  }
-}
-
 void rebuild_all(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+  const double fracture = state.ledger.fracture;
   update_model(scene, rocks, state, run.model);
+  state.ledger.fracture = fracture;  // what springs of tips give back is in the difference of stored energy already
   make_trials(scene, rocks, state, run);
 }
 
@@ -274,8 +288,9 @@ void lengthen(const Scene& scene, std::vector<Growing>& growing, State& state) {
 }
 
 // Two measures of what growth has released, independent of each other: the difference of potential energy over the
-// increment, and the mean of J over it (K linear between its ends, the new segment under the pressure that the tip had).
-// Where the tip all but closes on the way, under a pressure that falls off towards it, two values do not tell the mean.
+// increment, and the mean of J over it (K linear between its ends, the new segment under the pressure that the tip
+// had). Where the tip all but closes on the way, under a pressure that falls off towards it, two values do not tell the
+// mean.
 void measure_release(const Scene& scene, const std::vector<Elasticity>& rocks, double energy_before,
                      const std::vector<Growing>& growing, State& state, Quasistatic& run) {
   run.equilibrium = find_equilibrium(state, run.model);
@@ -309,9 +324,8 @@ void let_happen(const Scene& scene, const std::vector<Elasticity>& rocks, State&
   }
   rebuild_all(scene, rocks, state, run);
   if (!growing.empty()) measure_release(scene, rocks, energy_before, growing, state, run);
-  if (!advance_fluid(scene, 0.0, state, run.model).found)
-    throw NumericalFailure("flow and rock found no common solution after growth at t = " + std::to_string(state.time) +
-                           " s. Use smaller cells or increments");
+  const FluidStep fluid = advance_fluid(scene, 0.0, state, run.model);
+  if (!fluid.found) throw NumericalFailure("after growth at t = " + std::to_string(state.time) + " s: " + fluid.reason);
   equilibrate(scene, rocks, state, run);
   accept(scene, before, growing.empty() ? Change::failure : Change::growth, state, run);
   state.dt = first_flow_step;
@@ -330,9 +344,15 @@ void stop_at_edges(const Scene& scene, State& state) {
 FluidStep try_step(const Scene& scene, const std::vector<Elasticity>& rocks, const LoadPoint& from, double dt,
                    State& state, Quasistatic& run) {
   return_to(from, state);
-  const FluidStep fluid = advance_fluid(scene, dt, state, run.model);
-  if (fluid.found) equilibrate(scene, rocks, state, run);
-  return fluid;
+  try {
+    const FluidStep fluid = advance_fluid(scene, dt, state, run.model);
+    if (fluid.found) equilibrate(scene, rocks, state, run);
+    return fluid;
+  } catch (const NumericalFailure& failure) {  // perhaps only beyond the next event
+    run.model.factor = TangentFactor{};
+    for (GrowthTrial& trial : run.trials) trial.model.factor = TangentFactor{};
+    return {false, 0.0, failure.what()};
+  }
 }
 
 // The step at whose end the margin is 1 or hardly more, no longer than `high`, at which it is larger: regula falsi,
@@ -345,8 +365,8 @@ void locate_event(const Scene& scene, const std::vector<Elasticity>& rocks, cons
   for (int iteration = 0; iteration < 100 && high - low > 1e-12 * high; ++iteration) {
     const double share = std::isfinite(f_high) && iteration < 50 ? -f_low / (f_high - f_low) : 0.5;
     const double middle = low + (high - low) * std::clamp(share, 1e-3, 1.0 - 1e-3);
-    try_step(scene, rocks, from, middle, state, run);
-    const double margin = run.margin;
+    const bool found = try_step(scene, rocks, from, middle, state, run).found;
+    const double margin = found ? run.margin : HUGE_VAL;  // what has no solution lies beyond the event
     if (margin >= 1.0 && margin <= 1.0 + event_tolerance) return;
     const bool beyond = margin > aim;
     (beyond ? high : low) = middle;
@@ -354,7 +374,8 @@ void locate_event(const Scene& scene, const std::vector<Elasticity>& rocks, cons
     if (side == (beyond ? 1 : -1)) (beyond ? f_low : f_high) *= 0.5;
     side = beyond ? 1 : -1;
   }
-  try_step(scene, rocks, from, high, state, run);
+  const FluidStep last = try_step(scene, rocks, from, high, state, run);
+  if (!last.found) throw NumericalFailure(last.reason);
 }
 
 }  // namespace
@@ -370,7 +391,10 @@ void start_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks,
   const LoadPoint unloaded = [&] {
     LoadPoint point = load_point(state);
     for (Surface& surface : point.surfaces) {
-      for (SurfacePoint& s : surface.points) s.w = Vec2::Zero(), s.P = s.closing_stress();
+      for (SurfacePoint& s : surface.points) {
+        s.w = Vec2::Zero();
+        if (surface.kind == Surface::Kind::fracture) s.P = s.closing_stress();
+      }
     }
     return point;
   }();
@@ -394,8 +418,7 @@ void advance_quasistatic(const Scene& scene, const std::vector<Elasticity>& rock
     fluid = try_step(scene, rocks, from, dt, state, run);
     change = fluid.found ? std::abs(run.margin - margin) : 0.0;
     if (!fluid.found && dt < shortest_step)
-      throw NumericalFailure("flow and rock found no common solution at t = " + std::to_string(from.time) +
-                             " s in any step. Use smaller cells or increments");
+      throw NumericalFailure("at t = " + std::to_string(from.time) + " s, in any step: " + fluid.reason);
     const bool event = run.margin >= 1.0;
     good = fluid.found && (!flows || event || change < 2.0 * largest_change) && fluid.error < 4.0;
     good = good || (fluid.found && dt < shortest_step);

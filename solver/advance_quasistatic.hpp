@@ -13,6 +13,7 @@ namespace strata {
 struct GrowthTrial {
   std::size_t tip = 0;
   double increment = 0.0;  // m
+  double turn = 0.0;       // of the tip when it was made (rad)
   State state;
   QuasistaticModel model;
 };

@@ -26,7 +26,7 @@ namespace {
 
 constexpr int done = 0, bad_input = 2, numerics_failed = 3, interrupted = 130;
 
-constexpr std::int64_t steps_between_copies = 20;  // without inertia every step is a state to go on from
+constexpr std::int64_t steps_between_copies = 50;  // of a run without inertia, whose steps are long
 
 constexpr double seconds_between_checkpoints = 60.0;  // what a crash costs at most, and rare enough to cost nothing
 
@@ -163,6 +163,7 @@ Outcome march(Run& run, Progress& progress) {
     }
     const std::int64_t sound_steps = run.statics ? steps_between_copies : steps_between_rebuilds;
     if (run.state.step % sound_steps == 0 && run.state.step > run.good.step) {
+      if (run.statics) start_quasistatic(run.scene, run.rocks, run.state, *run.statics);  // as a resumed run does
       run.good = run.state;
       const bool stop = asked_to_stop != 0;
       if (stop || seconds_since(last_checkpoint) > seconds_between_checkpoints) {

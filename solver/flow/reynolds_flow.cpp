@@ -122,7 +122,7 @@ void add_inlet(const Step& step, const Trial& trial, Balance& b) {
   const Index vertex = static_cast<Index>(step.line.inlet);
   const Index l = vertex - 1, r = vertex < trial.P.size() ? vertex : -1;
   const Index cells[2] = {l, r};
-  Place at[2];
+  Place at[2] = {{Dual(0.0), Dual(0.0)}, {Dual(0.0), Dual(0.0)}};
   Dual c[2] = {Dual(0.0), Dual(0.0)};
   for (int s = 0; s < 2; ++s) {
     if (cells[s] < 0) continue;

@@ -32,7 +32,7 @@ struct HistoryRow {
   double kink_deg = 0.0;
   double at_interface = 0.0;  // 1 where J and K are not to be trusted, 0 elsewhere
   double ring_m = 0.0;
-  double G_N_m = 0.0;                 // energy released over the last increment that was tried, by its length
+  double G_N_m = 0.0;                 // energy released by the tip's last increment, by its length
   double G_by_J_N_m = 0.0;            // the same from J along the increment; 0 where the tip all but closes on it
   double fluid_volume_balance = 0.0;  // fluid missing over what was injected (law = "reynolds")
 };

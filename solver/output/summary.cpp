@@ -44,7 +44,7 @@ Json tips_json(const State& state) {
                     {"K_II_Pa_sqrt_m", tip.K_II},
                     {"J_N_m", tip.J},
                     {"J_spread", tip.J_spread},
-                    {"G_N_m", tip.G},
+                    {"G_N_m", tip.criterion == "energy" ? tip.G_trial : tip.G},
                     {"kink_deg", tip.kink * (180.0 / std::numbers::pi)},
                     {"at_interface", tip.at_interface},
                     {"growing", tip.growing},

@@ -37,7 +37,8 @@ struct Tip {
   double last_growth_Pa = 0.0;   // inlet pressure then
   double J_at_growth = 0.0;
   double J_spread_at_growth = 0.0;
-  double G = 0.0;               // energy released over the last increment that was tried, by its length (N/m)
+  double G_trial = 0.0;         // what growth by energy would release now, by the increment's length (N/m)
+  double G = 0.0;               // what its last increment released, by its length (N/m)
   double G_by_J = 0.0;          // the same from J along it (N/m); 0 where that does not tell
   std::string criterion = "J";  // what decides its growth where it stands: "J" or "energy"
   bool has_grown = false;

@@ -119,7 +119,7 @@ TEST_CASE("without a fracture what belongs to a tip is nan, volume and opening a
   const HistoryRow row = history_row(made_scene(), state);
   const std::set<std::string> absent = {"tip_x_m",       "tip_y_m",        "height_m", "J_N_m",
                                         "K_I_Pa_sqrt_m", "K_II_Pa_sqrt_m", "J_spread", "kink_deg",
-                                        "at_interface",  "ring_m",         "G_N_m"};
+                                        "at_interface",  "ring_m",         "G_N_m",    "G_by_J_N_m"};
   for (const HistoryColumn& column : history_columns()) {
     INFO(column.name);
     CHECK(std::isnan(row.*column.value) == absent.contains(column.name));
