@@ -262,7 +262,7 @@ bool iterate(const State& state, const Condensed& condensed, const std::vector<C
   constexpr int plain_iterations = 15;  // without line search it ends within some 5 where it does
   // Of the load: on pieces that stay as they are round-off leaves some 1e-12. A load on a motion that only the
   // stiffening holds is not balanced.
-  constexpr double not_solved = 1e-8;
+  constexpr double not_solved = 1e-9;
   bool singular = false, stays = false;
   evaluate(state, condensed, places, at);
   if (bounds_held && at.residual < balanced) return true;

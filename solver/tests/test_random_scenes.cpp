@@ -112,7 +112,7 @@ std::string check(const Run& run, const QuasistaticModel& model, const Equilibri
     check_place(run.state, model.places[k], at.answers[k], at.w[k], worst);
   const auto [off, largest] = balance(run, model, at);
   if (!(off <= 1e-8 * std::max(largest, 1.0)))
-    return "out of balance by " + std::to_string(off / std::max(largest, 1.0)) + " of the load";
+    return "out of balance by 1e" + std::to_string(std::log10(off / std::max(largest, 1.0))) + " of the load";
   return worst.by <= 1e-8 * load ? "" : worst.what + " by " + std::to_string(worst.by) + " Pa";
 }
 

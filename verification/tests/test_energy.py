@@ -28,9 +28,9 @@ def closure(run: Run) -> float:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("experiment, variant", smoke.cases())
-def test_the_ledger_closes_over_a_whole_run(experiment: str, variant: str) -> None:
-    run = completed(smoke.EXPERIMENTS / f"{experiment}.toml", variant, smoke.SETTINGS)
+@pytest.mark.parametrize("mechanics, experiment, variant", smoke.cases())
+def test_the_ledger_closes_over_a_whole_run(mechanics: str, experiment: str, variant: str) -> None:
+    run = completed(smoke.EXPERIMENTS / f"{experiment}.toml", variant, smoke.settings_of(mechanics))
     assert run.history["fluid_work_J"].max() > 1.0, "a run in which nothing happens closes too"
     unknown = {name for name in run.history if name.endswith("_J")} - {*STORED, *DISSIPATED, *SUPPLIED}
     assert not unknown, f"where do {unknown} belong?"
