@@ -1,0 +1,97 @@
+"""What a rung of the accuracy ladder is: a scene at several sizes, and what of its runs is held against which reference.
+
+A case only describes; running, judging and reporting are elsewhere. `verification/ladder/cases/FAMILY.py` lists the cases
+of a family as CASES, `verification/ladder/gates/FAMILY.json` holds what each may be off by.
+"""
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from verification.harness.load import Run
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Values of a run beside the exact ones, same shape and unit; a single number is an array of one.
+
+    weights (of the norm, such as volumes) default to 1. scale (same unit, > 0) replaces the size of the exact values
+    where these are zero. reference_error is the reference's own relative error.
+    """
+
+    values: Array
+    exact: Array
+    weights: Array | None = None
+    scale: float | None = None
+    reference_error: float = 0.0
+
+    @staticmethod
+    def of(value: float, exact: float, scale: float | None = None, reference_error: float = 0.0) -> Sample:
+        """The sample of a single number."""
+        return Sample(np.array([value]), np.array([exact]), None, scale, reference_error)
+
+    def error(self) -> float:
+        """Relative error: signed for a single number, else sqrt(sum w (value - exact)^2 / sum w exact^2)."""
+        off = self.values - self.exact
+        size = self._norm(self.exact) if self.scale is None else self.scale
+        if not size > 0.0:
+            raise ValueError("the exact values are zero: a sample of them needs a scale")
+        return float(off[0]) / size if off.size == 1 else self._norm(off) / size
+
+    def _norm(self, values: Array) -> float:
+        """Weighted root mean square; for one value its size."""
+        weights = np.ones(values.shape) if self.weights is None else self.weights
+        return math.sqrt(float(np.sum(weights * values**2)) / float(np.sum(weights)))
+
+    def mutants(self) -> dict[str, float]:
+        """Errors that this sample would have had if the solver had been wrong in a plain way; a gate must refuse each."""
+        if self.scale is not None and not np.any(self.exact):
+            return {"off by its scale": Sample(self.values + self.scale, self.exact, self.weights, self.scale).error()}
+        wrong = {"zero": 0.0 * self.values, "twice": 2.0 * self.values, "flipped sign": -self.values}
+        return {name: Sample(values, self.exact, self.weights, self.scale).error() for name, values in wrong.items()}
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Something measured on every run of a case: name, unit, and how to get its sample (raises LoadError if it cannot)."""
+
+    name: str
+    unit: str
+    sample: Callable[[Run], Sample]
+    # Why no order is to be expected (round-off, a sign change, an error that is the model's); empty where one is.
+    no_order: str = ""
+
+
+@dataclass(frozen=True)
+class Level:
+    """One resolution: its label ("0.5 m"), the size that the order refers to (m, or s), and the scene keys that make it."""
+
+    label: str
+    size: float
+    settings: tuple[str, ...] = ()
+    variant: str = ""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scene run at levels from coarse to fine, with the quantities to judge; the first `smoke` levels run in ci/test."""
+
+    name: str  # unique, as in a file name
+    says: str  # what it shows, a sentence
+    scene: Path
+    mechanics: str  # "explicit" or "quasistatic", as the runs have it
+    levels: tuple[Level, ...]
+    quantities: tuple[Quantity, ...]
+    smoke: int = 2
+    threads: int = 1
+
+
+def cell_levels(*cells_m: float, settings: tuple[str, ...] = (), variant: str = "") -> tuple[Level, ...]:
+    """Levels of cell sizes (m), coarse to fine, all with the same further settings."""
+    return tuple(Level(f"{cell:g} m", cell, (f"numerics.cell_m={cell!r}", *settings), variant) for cell in cells_m)
