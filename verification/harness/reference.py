@@ -6,6 +6,8 @@ import subprocess
 from dataclasses import dataclass
 from functools import lru_cache
 
+import numpy as np
+
 from verification.harness.paths import reference_program
 
 
@@ -33,15 +35,29 @@ def _ask(name: str, settings: tuple[str, ...]) -> str:
     return done.stdout
 
 
-def reference(name: str, **settings: float | str) -> dict[str, Value]:
-    """The values of a named reference solution for its settings, in the units they state."""
-    answer = json.loads(_ask(name, tuple(f"{key}={value!r}" if isinstance(value, float) else f"{key}={value}" for key, value in settings.items())))
-    return {key: Value(float(item["value"]), str(item.get("unit", ""))) for key, item in answer["values"].items()}
+def _settings(settings: dict[str, float | str | list[float]]) -> tuple[str, ...]:
+    """Settings as the program takes them, numbers with all their digits."""
+    return tuple(f"{key}={given!r}" if isinstance(given, (float, list)) else f"{key}={given}" for key, given in settings.items())
 
 
-def value(name: str, quantity: str, **settings: float | str) -> float:
+def reference(name: str, **settings: float | str | list[float]) -> dict[str, Value]:
+    """The values of a named reference solution for its settings, in the units they state; those that are lists left out."""
+    answer = json.loads(_ask(name, _settings(settings)))["values"]
+    numbers = {key: item for key, item in answer.items() if not isinstance(item["value"], list)}
+    return {key: Value(float(item["value"]), str(item.get("unit", ""))) for key, item in numbers.items()}
+
+
+def values(name: str, quantity: str, **settings: float | str | list[float]) -> np.ndarray:
+    """One quantity of a named reference solution at each of the places or times that a setting lists, SI."""
+    answer = json.loads(_ask(name, _settings(settings)))["values"]
+    if quantity not in answer:
+        raise NoReference(f"{name} has no {quantity}; it has {', '.join(sorted(answer))}")
+    return np.atleast_1d(np.array(answer[quantity]["value"], dtype=float))
+
+
+def value(name: str, quantity: str, **settings: float | str | list[float]) -> float:
     """One value of a named reference solution, SI."""
-    values = reference(name, **settings)
-    if quantity not in values:
-        raise NoReference(f"{name} has no {quantity}; it has {', '.join(sorted(values))}")
-    return values[quantity].value
+    found = reference(name, **settings)
+    if quantity not in found:
+        raise NoReference(f"{name} has no {quantity}; it has {', '.join(sorted(found))}")
+    return found[quantity].value
