@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -70,12 +71,44 @@ double read_number(const Input& input, const std::string& text) {
   return number;
 }
 
+// The numbers of a file, one a line; blank lines and what follows a '#' do not count.
+// Throws std::invalid_argument for a file that cannot be read or holds none, with every bad line.
+std::vector<double> read_number_file(const Input& input, const std::string& path) {
+  constexpr int kProblemsShown = 5;
+  std::ifstream file(path);
+  // A folder opens like a file but holds no line.
+  if (!file || file.peek() == std::ifstream::traits_type::eof())
+    throw std::invalid_argument("cannot read numbers from file \"" + path + "\" (missing, empty or not a file).");
+  std::vector<double> numbers;
+  std::string problems;
+  int bad = 0, at = 0;
+  for (std::string line; std::getline(file, line);) {
+    ++at;
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    const std::string word = trimmed(line.substr(0, line.find('#')));
+    if (word.empty()) continue;
+    try {
+      numbers.push_back(read_number(input, word));
+    } catch (const std::invalid_argument& problem) {
+      if (++bad <= kProblemsShown) problems += "\n  " + path + ":" + std::to_string(at) + ": " + problem.what();
+    }
+  }
+  if (bad > kProblemsShown) problems += "\n  and " + std::to_string(bad - kProblemsShown) + " lines more.";
+  if (bad > 0) throw std::invalid_argument("the file needs one number a line:" + problems);
+  if (numbers.empty()) throw std::invalid_argument("file \"" + path + "\" holds no number.");
+  return numbers;
+}
+
 InputValue read_value(const Input& input, const std::string& text) {
   if (std::holds_alternative<std::string>(input.standard)) {
     const std::string word = trimmed(text);
     if (std::find(input.choices.begin(), input.choices.end(), word) == input.choices.end())
       throw std::invalid_argument("\"" + word + "\" is not a choice." + suggestion(word, input.choices));
     return word;
+  }
+  if (const std::string word = trimmed(text); !word.empty() && word.front() == '@') {
+    if (!input.takes_list) throw std::invalid_argument("takes one number, not a file of them.");
+    return read_number_file(input, word.substr(1));
   }
   const bool many = text.find_first_of(",[") != std::string::npos;
   if (!input.takes_list || !many) return read_number(input, text);

@@ -71,7 +71,8 @@ std::vector<Entry> catalogue();
 // The entry called `name`. Throws std::invalid_argument, with the nearest name, if there is none.
 Entry find_entry(const std::string& name);
 
-// The entry's defaults changed by settings "key=value"; a list is written 1,2,3 or [1, 2, 3].
+// The entry's defaults changed by settings "key=value"; a list is written 1,2,3 or [1, 2, 3], or @path for the numbers
+// of a file, one a line, where '#' begins a comment (such a list's answers are a list even if it holds one number).
 // Throws std::invalid_argument whose text lists every problem of every setting, a line each.
 Inputs read_inputs(const Entry& entry, const std::vector<std::string>& settings);
 

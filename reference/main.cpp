@@ -57,7 +57,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> settings;
   app.add_option("NAME", name, "which solution");
   // Each --set takes one value as it stands, so that lists may hold commas.
-  app.add_option("--set", settings, "key=value, any number of times; a list as 1,2,3")
+  app.add_option("--set", settings, "key=value, any number of times; a list as 1,2,3 or @file with a number a line")
       ->expected(1)
       ->take_all()
       ->allow_extra_args(false)

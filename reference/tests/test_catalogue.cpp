@@ -1,6 +1,8 @@
 // What the command line offers: every entry answers with its defaults, and bad input is refused with all its problems.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "catalogue.hpp"
@@ -92,4 +94,35 @@ TEST_CASE("bad input is refused, every problem on a line") {
   CHECK_THAT(refusal("block_crack", {"pressure=profile", "profile_Pa=0,1,2"}), Contains("symmetric"));
   CHECK_THAT(refusal("channel_no_flux", {"x_m=9"}), Contains("outside"));
   CHECK_THAT(refusal("channel_no_flux", {"viscosity_Pa_s=nan"}), Contains("not a number"));
+}
+
+TEST_CASE("a list may come from a file, one number a line") {
+  const auto folder = std::filesystem::temp_directory_path() / "strata_reference_lists";
+  std::filesystem::create_directories(folder);
+  const auto file = [&](const std::string& name, const std::string& content) {
+    std::ofstream(folder / name, std::ios::binary) << content;
+    return (folder / name).string();
+  };
+  const auto opening = [](const Answer& answer) {
+    for (const Value& value : answer.values)
+      if (value.name == "opening_m") return std::get<std::vector<double>>(value.value);
+    return std::vector<double>{};
+  };
+  const std::string three = file("three.csv", "# x in m\n0\n\n  3.0 # off the middle\r\n-4e0");
+  const auto w = opening(solve("pressurised_crack", {"x_m=@" + three}));
+  REQUIRE(w.size() == 3);
+  CHECK(w == opening(solve("pressurised_crack", {"x_m=0,3,-4"})));
+  CHECK(opening(solve("pressurised_crack", {"x_m=@" + file("one.csv", "3\n")})).size() == 1);
+  CHECK(value_of(solve("pressurised_crack", {"pressure=profile", "profile_x_m=@" + file("x.csv", "-5\n5\n"),
+                                             "profile_Pa=@" + file("p.csv", "1e6\n1e6\n")}),
+                 "K_I") == Approx(2 * 1.981664e6).epsilon(1e-6));
+
+  const std::string bad = refusal("pressurised_crack", {"x_m=@" + file("bad.csv", "1\n1,2\nx\n")});
+  CHECK_THAT(bad, Contains("bad.csv:2: \"1,2\" is not a number."));
+  CHECK_THAT(bad, Contains("bad.csv:3: \"x\" is not a number."));
+  CHECK_THAT(refusal("pressurised_crack", {"x_m=@" + (folder / "none.csv").string()}), Contains("cannot read"));
+  CHECK_THAT(refusal("pressurised_crack", {"x_m=@" + folder.string()}), Contains("cannot read"));
+  CHECK_THAT(refusal("pressurised_crack", {"x_m=@" + file("empty.csv", "# nothing\n")}), Contains("holds no number"));
+  CHECK_THAT(refusal("pressurised_crack", {"half_length_m=@" + three}), Contains("takes one number"));
+  std::filesystem::remove_all(folder);
 }
