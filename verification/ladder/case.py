@@ -6,8 +6,8 @@ of a family as CASES, `verification/ladder/gates/FAMILY.json` holds what each ma
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -64,8 +64,15 @@ class Quantity:
     name: str
     unit: str
     sample: Callable[[Run], Sample]
-    # Why no order is to be expected (round-off, a sign change, an error that is the model's); empty where one is.
+    # Why no order is to be expected at any level (an error that is the model's); empty where one is. One that begins with
+    # "round-off" lets the gate be that of round-off (verification/ladder/gates.py), whatever was measured.
     no_order: str = ""
+    # The same for single levels, by their labels: {"1 m": "the error changes its sign"} is of the order from the level before to 1 m.
+    no_order_at: Mapping[str, str] = field(default_factory=dict)
+
+    def reason(self, level: str) -> str:
+        """Why no order is to be expected from the level before to this one; empty where one is."""
+        return self.no_order or self.no_order_at.get(level, "")
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,97 @@
+"""The accuracy ladder: runs scenes with known answers at several sizes, prints error and order, and judges them by gates.
+
+usage: python3 -m verification.ladder [--family a,b] [--case x] [--smoke] [--jobs 2] [--accept] [--out FILE]
+
+Cases are in verification/ladder/cases/FAMILY.py, gates in verification/ladder/gates/FAMILY.json. A row is a quantity of a case at
+a level: value and reference (of many values their rms), relative error, observed order from the level before (in brackets where
+none is to be expected), cost, gate (largest error / smallest order), verdict. --accept writes gates anew from what was measured
+(1.5 times the error, order less 0.3) and prints what changed: say in CHANGELOG.md why a gate became wider.
+Exit status: 0 all pass, 1 a gate does not hold, is missing, belongs to nothing or lets wrong results pass, 3 a run failed.
+"""
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from verification.ladder import gates as book
+from verification.ladder.catalogue import BadCase, Families, choose, families
+from verification.ladder.judge import accepted, judged, tally
+from verification.ladder.measure import Row, rows_of
+from verification.ladder.runner import RUNS, make_all, rungs_of
+from verification.ladder.table import text, write_json
+
+
+def parser() -> argparse.ArgumentParser:
+    """The options."""
+    options = argparse.ArgumentParser("verification.ladder", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options.add_argument("--family", default="", help="families, comma-separated (default: all)")
+    options.add_argument("--case", default="", help="cases, comma-separated (default: all)")
+    options.add_argument("--smoke", action="store_true", help="only the levels that ci/test runs")
+    options.add_argument("--jobs", type=int, default=2, help="threads for runs side by side")
+    options.add_argument("--accept", action="store_true", help="write the gates of what was measured, print what changed")
+    options.add_argument("--out", type=Path, help="what the page is made from (default: runs/ladder/ladder.json, of a part ladder_part.json)")
+    options.add_argument("--runs", type=Path, default=RUNS, help="the folder of runs")
+    options.add_argument("--list", action="store_true", help="list the cases with what they show, run nothing")
+    return options
+
+
+def accept(rows: list[Row], known: Families, chosen: Families) -> None:
+    """Write the gates of the rows' families anew, without those of cases that there are no more; print what changed."""
+    before = {family: book.read(family) for family in chosen}
+    now, refused = accepted(rows, before)
+    for family in chosen:
+        order = book.keys_of(known, family)
+        kept = {key: now.get(family, {})[key] for key in order if key in now.get(family, {})}
+        for line in book.changes(before[family], kept):
+            print(f"gate {family}/{line}")
+        book.write(family, kept)
+    for line in refused:
+        print(f"no gate accepted: {line}")
+    if len(chosen) == len(known):
+        for path in sorted(book.FOLDER.glob("*.json")):
+            if path.stem not in known:
+                path.unlink()
+                print(f"gates of no family removed: {path.name}")
+
+
+def show(chosen: Families) -> None:
+    """Print what cases there are."""
+    for family, members in chosen.items():
+        print(family)
+        for case in members:
+            print(f"  {case.name} ({case.mechanics}): {case.says}")
+            print(f"    {', '.join(quantity.name for quantity in case.quantities)} at {', '.join(level.label for level in case.levels)}")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run, judge, print and write; the exit status says what came of it."""
+    command = parser()
+    options = command.parse_args(arguments)
+    try:
+        known = families()
+        chosen = choose(known, filter(None, options.family.split(",")), filter(None, options.case.split(",")))
+    except BadCase as error:
+        command.error(str(error))
+    if options.list:
+        show(chosen)
+        return 0
+    made = make_all(rungs_of(chosen, options.smoke, options.runs), options.jobs, tell=lambda line: print(line, file=sys.stderr, flush=True))
+    measured = rows_of(made)
+    if options.accept:
+        accept(measured, known, chosen)
+    rows = judged(measured, {family: book.read(family) for family in chosen})
+    part = bool(options.smoke or options.family or options.case)
+    stale = [line for line in book.stale(known) if not part or line.split("/")[0] in chosen]
+    count = tally(rows)
+    out = options.out or options.runs / ("ladder_part.json" if part else "ladder.json")
+    write_json(out, rows, chosen, count, stale, part)
+    print(text(rows))
+    for line in stale:
+        print(f"gate of nothing: {line}")
+    print(f"ladder: {count.words()}{f'; {len(stale)} gates of nothing' if stale else ''}; written to {out}")
+    return 3 if count.failed else 1 if count.wrong or stale else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,172 @@
+"""What each quantity may be off by: verification/ladder/gates/FAMILY.json, written from measured errors, never by hand.
+
+A gate belongs to a case, a quantity and a level: the largest error, and the smallest order from the level before. It holds
+what was measured when it was accepted, so that it can be checked to be no wider than the rules below.
+"""
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+from verification.ladder.catalogue import Families
+
+FOLDER = Path(__file__).resolve().parent / "gates"
+
+SHARE = 1.5  # an error may be this many times the measured one
+ORDER_LOSS = 0.3  # an order may be this much below the measured one; half an order lost is refused
+# A quantity whose `no_order` begins so holds to rounding: another machine rounds otherwise, so it may be ten times as large,
+# up to the next power of ten, never more than ROUND_OFF_MOST, and need not be less than ROUND_OFF_FLOOR.
+ROUND_OFF = "round-off"
+ROUND_OFF_FLOOR = 1e-12
+ROUND_OFF_MOST = 1e-6
+FALLEN = 0.9  # an error that fell below this share of the accepted one asks for a tighter gate
+
+
+class CannotAccept(Exception):
+    """A measured error or order that no gate may be made of; the message says why."""
+
+
+@dataclass(frozen=True)
+class Gate:
+    """The largest error (relative, without sign) and smallest order that pass, with the measured ones they come from."""
+
+    error: float
+    measured: float
+    order: float | None = None
+    measured_order: float | None = None
+
+
+Key = tuple[str, str, str]  # case, quantity, level
+Gates = dict[Key, Gate]
+
+
+def down(value: float, digits: int = 2) -> float:
+    """A positive number rounded down to so many significant digits."""
+    if value <= 0.0:
+        return 0.0
+    unit = 10.0 ** (math.floor(math.log10(value)) - digits + 1)
+    rounded = float(f"{math.floor(value / unit * (1.0 + 1e-12)) * unit:.{digits}g}")
+    return rounded if rounded <= value else float(f"{(math.floor(value / unit) - 1) * unit:.{digits}g}")
+
+
+def is_round_off(no_order: str) -> bool:
+    """Whether the reason why a quantity has no order says that it holds to rounding."""
+    return no_order.startswith(ROUND_OFF)
+
+
+def gate_of(no_order: str, error: float, order: float | None, mutants: dict[str, float]) -> Gate:
+    """The gate that a measured error and order ask for; raises CannotAccept where it would let something plainly wrong pass."""
+    if not math.isfinite(error):
+        raise CannotAccept(f"the error is {error}")
+    size = down(abs(error), 4)
+    if is_round_off(no_order):
+        allowed = max(ROUND_OFF_FLOOR, 10.0 ** math.ceil(math.log10(10.0 * size))) if size > 0.0 else ROUND_OFF_FLOOR
+        if allowed > ROUND_OFF_MOST:
+            raise CannotAccept(f"an error of {size:.2g} is no round-off")
+    else:
+        allowed = down(SHARE * size)
+        if allowed < ROUND_OFF_FLOOR:
+            raise CannotAccept(f"an error of {size:.2g} is round-off: let no_order begin with {ROUND_OFF!r}")
+    survivors = [name for name, wrong in mutants.items() if abs(wrong) <= allowed]
+    if survivors:
+        raise CannotAccept(f"an error of {size:.2g} is so large that {', '.join(survivors)} would pass")
+    if order is None:
+        return Gate(allowed, size)
+    return Gate(allowed, size, order_gate(order), math.floor(1000.0 * order) / 1000.0)
+
+
+def order_gate(order: float) -> float:
+    """The smallest order that passes, to two decimals upwards; raises CannotAccept where nothing converges."""
+    if not math.isfinite(order) or order <= ORDER_LOSS:
+        raise CannotAccept(f"an order of {order:.2f} is no convergence: find out why, or say it in no_order")
+    return math.ceil(100.0 * (order - ORDER_LOSS) - 1e-9) / 100.0
+
+
+def path_of(family: str, folder: Path = FOLDER) -> Path:
+    """The file with a family's gates."""
+    return folder / f"{family}.json"
+
+
+def read(family: str, folder: Path = FOLDER) -> Gates:
+    """The gates of a family, none where it has no file; raises ValueError for a file that is not as `write` leaves it."""
+    path = path_of(family, folder)
+    if not path.is_file():
+        return {}
+    try:
+        cases = json.loads(path.read_text(encoding="utf-8"))["cases"]
+        return {
+            (case, quantity, level): Gate(**gate)
+            for case, quantities in cases.items()
+            for quantity, levels in quantities.items()
+            for level, gate in levels.items()
+        }
+    except (KeyError, TypeError, AttributeError, json.JSONDecodeError) as error:
+        raise ValueError(f"{path}: {error}") from error
+
+
+def write(family: str, gates: Gates, folder: Path = FOLDER) -> None:
+    """Write the gates of a family, in their order."""
+    cases: dict[str, dict[str, dict[str, dict[str, float]]]] = {}
+    for (case, quantity, level), gate in gates.items():
+        content = {name: value for name, value in asdict(gate).items() if value is not None}
+        cases.setdefault(case, {}).setdefault(quantity, {})[level] = content
+    folder.mkdir(parents=True, exist_ok=True)
+    text = json.dumps({"family": family, "cases": cases}, indent=1, allow_nan=False)
+    path_of(family, folder).write_text(text + "\n", encoding="utf-8")
+
+
+def keys_of(families: Families, family: str) -> list[Key]:
+    """The keys that a family's gates should have, in its order."""
+    return [
+        (case.name, quantity.name, level.label)
+        for case in families.get(family, ())
+        for quantity in case.quantities
+        for level in case.levels
+    ]
+
+
+def stale(families: Families, folder: Path = FOLDER) -> list[str]:
+    """Gates of cases, quantities, levels or families that there are no more, a line each."""
+    lines = []
+    for path in sorted(folder.glob("*.json")):
+        known = set(keys_of(families, path.stem))
+        lines += [f"{path.stem}/{' / '.join(key)}" for key in read(path.stem, folder) if key not in known]
+    return lines
+
+
+def too_wide(gate: Gate, round_off: bool) -> str:
+    """Why a gate is wider than what was measured allows, or nothing."""
+    if round_off and gate.error > ROUND_OFF_MOST:
+        return f"{gate.error:g} is no gate of round-off"
+    if not round_off and gate.error > SHARE * gate.measured * (1.0 + 1e-9):
+        return f"{gate.error:g} is more than {SHARE:g} times the measured {gate.measured:g}"
+    if (gate.order is None) != (gate.measured_order is None):
+        return "an order without a gate, or a gate without an order"
+    if gate.order is not None and gate.order < gate.measured_order - ORDER_LOSS - 1e-9:
+        return f"order {gate.order:g} is more than {ORDER_LOSS:g} below the measured {gate.measured_order:g}"
+    return ""
+
+
+def fallen(gate: Gate, error: float) -> bool:
+    """Whether an error is so much smaller than when its gate was accepted that the gate is no longer tight."""
+    return abs(error) < FALLEN * gate.measured
+
+
+def changes(before: Gates, now: Gates) -> list[str]:
+    """A line for each gate that is new, gone or changed."""
+    lines = []
+    for key in dict.fromkeys([*before, *now]):
+        old, new = before.get(key), now.get(key)
+        if old is None or new is None or replace(old, measured=0.0, measured_order=None) != replace(new, measured=0.0, measured_order=None):
+            wider = old is not None and new is not None and (new.error > old.error or (new.order or 0.0) < (old.order or 0.0))
+            lines.append(f"{' / '.join(key)}: {_words(old)} -> {_words(new)}{'  WIDER' if wider else ''}")
+    return lines
+
+
+def _words(gate: Gate | None) -> str:
+    """A gate in a few words."""
+    if gate is None:
+        return "none"
+    return f"error {gate.error:g}" + (f" order {gate.order:g}" if gate.order is not None else "")
