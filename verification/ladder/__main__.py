@@ -24,13 +24,14 @@ from verification.ladder.table import text, write_json
 
 def parser() -> argparse.ArgumentParser:
     """The options."""
-    options = argparse.ArgumentParser("verification.ladder", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    raw = argparse.RawDescriptionHelpFormatter
+    options = argparse.ArgumentParser("verification.ladder", description=__doc__, formatter_class=raw)
     options.add_argument("--family", default="", help="families, comma-separated (default: all)")
     options.add_argument("--case", default="", help="cases, comma-separated (default: all)")
     options.add_argument("--smoke", action="store_true", help="only the levels that ci/test runs")
     options.add_argument("--jobs", type=int, default=2, help="threads for runs side by side")
     options.add_argument("--accept", action="store_true", help="write the gates of what was measured, print what changed")
-    options.add_argument("--out", type=Path, help="what the page is made from (default: runs/ladder/ladder.json, of a part ladder_part.json)")
+    options.add_argument("--out", type=Path, help="for the page (default: runs/ladder/ladder.json, of a part ladder_part.json)")
     options.add_argument("--runs", type=Path, default=RUNS, help="the folder of runs")
     options.add_argument("--list", action="store_true", help="list the cases with what they show, run nothing")
     return options
@@ -61,7 +62,7 @@ def show(chosen: Families) -> None:
         print(family)
         for case in members:
             print(f"  {case.name} ({case.mechanics}): {case.says}")
-            print(f"    {', '.join(quantity.name for quantity in case.quantities)} at {', '.join(level.label for level in case.levels)}")
+            print(f"    {', '.join(item.name for item in case.quantities)} at {', '.join(level.label for level in case.levels)}")
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -76,8 +77,8 @@ def main(arguments: list[str] | None = None) -> int:
     if options.list:
         show(chosen)
         return 0
-    made = make_all(rungs_of(chosen, options.smoke, options.runs), options.jobs, tell=lambda line: print(line, file=sys.stderr, flush=True))
-    measured = rows_of(made)
+    rungs = rungs_of(chosen, options.smoke, options.runs)
+    measured = rows_of(make_all(rungs, options.jobs, tell=lambda line: print(line, file=sys.stderr, flush=True)))
     if options.accept:
         accept(measured, known, chosen)
     rows = judged(measured, {family: book.read(family) for family in chosen})

@@ -67,7 +67,7 @@ class Quantity:
     # Why no order is to be expected at any level (an error that is the model's); empty where one is. One that begins with
     # "round-off" lets the gate be that of round-off (verification/ladder/gates.py), whatever was measured.
     no_order: str = ""
-    # The same for single levels, by their labels: {"1 m": "the error changes its sign"} is of the order from the level before to 1 m.
+    # The same for single levels, by their labels: {"1 m": "the error changes its sign"} is of the order from the level before.
     no_order_at: Mapping[str, str] = field(default_factory=dict)
 
     def reason(self, level: str) -> str:

@@ -32,7 +32,8 @@ def check(family: str, members: Iterable[Case]) -> None:
         where = f"{family}/{case.name}"
         _unique(f"{where}: levels", [folder_name(level.label) for level in case.levels])
         _unique(f"{where}: quantities", [quantity.name for quantity in case.quantities])
-        strangers = {label for quantity in case.quantities for label in quantity.no_order_at} - {level.label for level in case.levels}
+        labels = {level.label for level in case.levels}
+        strangers = {label for quantity in case.quantities for label in quantity.no_order_at} - labels
         if strangers:
             raise BadCase(f"{where}: no_order_at names no level: {', '.join(sorted(strangers))}")
         if not case.levels or not case.quantities:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from verification.ladder.catalogue import Families
@@ -84,12 +84,12 @@ def order_gate(order: float) -> float:
     return math.ceil(100.0 * (order - ORDER_LOSS) - 1e-9) / 100.0
 
 
-def path_of(family: str, folder: Path = FOLDER) -> Path:
-    """The file with a family's gates."""
-    return folder / f"{family}.json"
+def path_of(family: str, folder: Path | None = None) -> Path:
+    """The file with a family's gates, in a folder (FOLDER where none is given)."""
+    return (folder or FOLDER) / f"{family}.json"
 
 
-def read(family: str, folder: Path = FOLDER) -> Gates:
+def read(family: str, folder: Path | None = None) -> Gates:
     """The gates of a family, none where it has no file; raises ValueError for a file that is not as `write` leaves it."""
     path = path_of(family, folder)
     if not path.is_file():
@@ -106,15 +106,15 @@ def read(family: str, folder: Path = FOLDER) -> Gates:
         raise ValueError(f"{path}: {error}") from error
 
 
-def write(family: str, gates: Gates, folder: Path = FOLDER) -> None:
+def write(family: str, gates: Gates, folder: Path | None = None) -> None:
     """Write the gates of a family, in their order."""
     cases: dict[str, dict[str, dict[str, dict[str, float]]]] = {}
     for (case, quantity, level), gate in gates.items():
         content = {name: value for name, value in asdict(gate).items() if value is not None}
         cases.setdefault(case, {}).setdefault(quantity, {})[level] = content
-    folder.mkdir(parents=True, exist_ok=True)
-    text = json.dumps({"family": family, "cases": cases}, indent=1, allow_nan=False)
-    path_of(family, folder).write_text(text + "\n", encoding="utf-8")
+    path = path_of(family, folder)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps({"family": family, "cases": cases}, indent=1, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def keys_of(families: Families, family: str) -> list[Key]:
@@ -127,10 +127,10 @@ def keys_of(families: Families, family: str) -> list[Key]:
     ]
 
 
-def stale(families: Families, folder: Path = FOLDER) -> list[str]:
+def stale(families: Families, folder: Path | None = None) -> list[str]:
     """Gates of cases, quantities, levels or families that there are no more, a line each."""
     lines = []
-    for path in sorted(folder.glob("*.json")):
+    for path in sorted((folder or FOLDER).glob("*.json")):
         known = set(keys_of(families, path.stem))
         lines += [f"{path.stem}/{' / '.join(key)}" for key in read(path.stem, folder) if key not in known]
     return lines
@@ -159,8 +159,9 @@ def changes(before: Gates, now: Gates) -> list[str]:
     lines = []
     for key in dict.fromkeys([*before, *now]):
         old, new = before.get(key), now.get(key)
-        if old is None or new is None or replace(old, measured=0.0, measured_order=None) != replace(new, measured=0.0, measured_order=None):
-            wider = old is not None and new is not None and (new.error > old.error or (new.order or 0.0) < (old.order or 0.0))
+        if _words(old) != _words(new):
+            both = old is not None and new is not None
+            wider = both and (new.error > old.error or (new.order or 0.0) < (old.order or 0.0))
             lines.append(f"{' / '.join(key)}: {_words(old)} -> {_words(new)}{'  WIDER' if wider else ''}")
     return lines
 

@@ -25,8 +25,10 @@ class Tally:
     def words(self) -> str:
         """The tally as a line."""
         said = "all refused" if self.refused == self.mutants else f"{self.mutants - self.refused} NOT REFUSED"
-        bad = "".join(f", {count} {word}" for count, word in ((self.wrong, "not as their gates ask"), (self.failed, "failed")) if count)
-        return f"{self.rows} comparisons: {self.rows - self.wrong - self.failed} pass{bad}; {self.gates} gates, {self.mutants} mutants, {said}"
+        kinds = ((self.wrong, "not as their gates ask"), (self.failed, "failed"))
+        bad = "".join(f", {count} {word}" for count, word in kinds if count)
+        passed = self.rows - self.wrong - self.failed
+        return f"{self.rows} comparisons: {passed} pass{bad}; {self.gates} gates, {self.mutants} mutants, {said}"
 
 
 def judged(rows: list[Row], gates: dict[str, Gates]) -> list[Row]:

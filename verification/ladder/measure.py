@@ -104,7 +104,8 @@ def row_of(made: Made, run: Run | str, quantity: Quantity) -> Row:
     """One quantity of one run; whatever keeps it from being measured is the row's failure."""
     rung = made.rung
     case, level = rung.case, rung.level
-    head = (rung.family, case.name, case.mechanics, quantity.name, quantity.unit, level.label, level.size, quantity.reason(level.label))
+    reason = quantity.reason(level.label)
+    head = (rung.family, case.name, case.mechanics, quantity.name, quantity.unit, level.label, level.size, reason)
     if isinstance(run, str):
         return Row(*head, failure=run)
     summary = run.summary
@@ -131,7 +132,11 @@ def summarised(sample: Sample) -> tuple[float, float]:
     if values.size == 1:
         return float(values.flat[0]), float(exact.flat[0])
     weights = np.ones(values.shape) if sample.weights is None else sample.weights
-    return tuple(math.sqrt(float(np.sum(weights * field**2)) / float(np.sum(weights))) for field in (values, exact))  # type: ignore[return-value]
+
+    def rms(field: np.ndarray) -> float:
+        return math.sqrt(float(np.sum(weights * field**2)) / float(np.sum(weights)))
+
+    return rms(values), rms(exact)
 
 
 def _ladder(rows: list[Row]) -> list[Row]:

@@ -65,7 +65,8 @@ def text(rows: list[Row]) -> str:
         for row, _ in own:
             if row.no_order:
                 reasons.setdefault((row.case, row.quantity, row.no_order), []).append(row.level)
-        lines += [f"  no order for {case} {quantity} at {', '.join(at)}: {reason}" for (case, quantity, reason), at in reasons.items()]
+        for (case, quantity, reason), levels in reasons.items():
+            lines.append(f"  no order for {case} {quantity} at {', '.join(levels)}: {reason}")
     return "\n".join(lines)
 
 

@@ -1,0 +1,52 @@
+"""The accuracy ladder at smoke size: every case against its reference, judged by the gates of the full ladder."""
+from __future__ import annotations
+
+import pytest
+
+from verification.ladder import gates
+from verification.ladder.case import Case
+from verification.ladder.catalogue import families
+from verification.ladder.judge import judged, tally
+from verification.ladder.measure import rows_of
+from verification.ladder.runner import make_one, rungs_of
+from verification.ladder.table import text
+
+FAMILIES = families()
+CASES = [pytest.param(family, case, id=f"{family}-{case.name}") for family, members in FAMILIES.items() for case in members]
+
+
+@pytest.mark.parametrize(("family", "case"), CASES)
+def test_errors_and_orders_are_as_their_gates_ask(family: str, case: Case) -> None:
+    """Smoke levels of a case; the gates must refuse zero, twice, the flipped sign and half an order lost."""
+    made = [make_one(rung) for rung in rungs_of({family: (case,)}, smoke=True)]
+    rows = judged(rows_of(made), {family: gates.read(family)})
+    print(text(rows))
+    found = tally(rows)
+    assert len(rows) == case.smoke * len(case.quantities)
+    assert found.mutants >= len(rows) and found.refused == found.mutants, found.words()
+    assert not [f"{row.name}: {row.failure or '; '.join(row.problems)}" for row in rows if row.verdict != "pass"]
+
+
+def test_every_gate_belongs_to_something() -> None:
+    """No gate is left over from a case, quantity or level that is gone."""
+    assert gates.stale(FAMILIES) == []
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_every_level_has_a_gate_no_wider_than_measured(family: str) -> None:
+    """Each quantity at each level of the full ladder has a gate within the rules, with an order where one is due."""
+    known = gates.read(family)
+    wrong = [f"{' / '.join(key)}: no gate" for key in gates.keys_of(FAMILIES, family) if key not in known]
+    for case in FAMILIES[family]:
+        for quantity in case.quantities:
+            for index, level in enumerate(case.levels):
+                gate = known.get((case.name, quantity.name, level.label))
+                if gate is None:
+                    continue
+                where = f"{case.name} / {quantity.name} / {level.label}"
+                reason = quantity.reason(level.label)
+                wide = gates.too_wide(gate, gates.is_round_off(reason))
+                wrong += [f"{where}: {wide}"] if wide else []
+                if (gate.order is not None) != (index > 0 and not reason):
+                    wrong.append(f"{where}: {'no' if gate.order is None else 'an'} order gate")
+    assert wrong == []
