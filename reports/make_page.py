@@ -13,6 +13,7 @@ sys.path.insert(0, str(ROOT))
 from reports.figures import catalogue, make  # noqa: E402  (after the path to the project is known)
 from reports.page import write_page  # noqa: E402
 from reports.runs import add_missing, declared_runs, load_runs  # noqa: E402
+from reports.verification import write_verification  # noqa: E402
 from verification.harness.choices import read_points  # noqa: E402
 from verification.harness.claim_data import read_claims  # noqa: E402
 
@@ -29,12 +30,17 @@ def main(arguments: list[str] | None = None) -> int:
     points = read_points(options.experiments)
     runs = add_missing(load_runs(options.runs), declared_runs(options.experiments), options.runs)
     figures = [make(spec, options.out / "figures") for spec in catalogue(runs, points)]
-    page = write_page(options.out, runs, read_claims(options.runs / "claims.json"), figures, points)
+    verified = write_verification(options.runs, options.out, with_index=True)
+    said = verified.headline if verified else ""
+    page = write_page(options.out, runs, read_claims(options.runs / "claims.json"), figures, points, said)
+    for defect in verified.defects if verified else []:
+        print(defect, file=sys.stderr)
     for made in figures:
         if made.reason:
             print(f"{made.label}: {made.reason}\n{made.defect}", file=sys.stderr)
     print(f"{page}: {sum(made.ok for made in figures)} of {len(figures)} figures, {len(runs)} runs")
-    return 1 if options.strict and any(made.defect for made in figures) else 0
+    broken = any(made.defect for made in figures) or bool(verified and verified.defects)
+    return 1 if options.strict and broken else 0
 
 
 if __name__ == "__main__":

@@ -44,16 +44,22 @@ class Section:
 
 
 def write_page(
-    out: Path, runs: list[Run], claims: list[ClaimResult], figures: list[Made], points: Sequence[Point] = ()
+    out: Path,
+    runs: list[Run],
+    claims: list[ClaimResult],
+    figures: list[Made],
+    points: Sequence[Point] = (),
+    verified: str = "",
 ) -> Path:
-    """Write index.html and copies of each run's small files; returns the page's path."""
+    """Write index.html and copies of each run's small files; `verified`: what verification.html beside it says, if it is there."""
     out.mkdir(parents=True, exist_ok=True)
     for run in runs:
         _copy_sources(run, out)
     loader = jinja2.FileSystemLoader(Path(__file__).parent / "templates")
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
     page = out / "index.html"
-    page.write_text(environment.get_template("page.html").render(context(runs, claims, figures, points)), encoding="utf-8")
+    content = {**context(runs, claims, figures, points), "verified": verified}
+    page.write_text(environment.get_template("page.html").render(content), encoding="utf-8")
     return page
 
 

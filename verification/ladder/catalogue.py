@@ -24,6 +24,15 @@ def families() -> Families:
     return found
 
 
+def about(family: str) -> str:
+    """What a family's module says of itself in its first sentences; nothing for one that is not there."""
+    try:
+        module = importlib.import_module(f"{package.__name__}.{family}")
+    except ModuleNotFoundError:
+        return ""
+    return " ".join((module.__doc__ or "").strip().split("\n\n")[0].split())
+
+
 def check(family: str, members: Iterable[Case]) -> None:
     """Names are unique, sizes fall from level to level, something is measured; raises BadCase otherwise."""
     members = tuple(members)

@@ -43,6 +43,7 @@ class Row:
     value: float = math.nan
     reference: float = math.nan
     reference_error: float = 0.0
+    scale: float | None = None  # what errors are relative to where it is not the reference
     error: float = math.nan
     order: float | None = None
     cost: Cost | None = None
@@ -120,7 +121,7 @@ def row_of(made: Made, run: Run | str, quantity: Quantity) -> Row:
         return Row(*head, cost=cost, failure=f"not measured: the error is {error}")
     return Row(
         *head, values=int(np.size(sample.values)), value=value, reference=reference, reference_error=sample.reference_error,
-        error=error, cost=cost, mutants=mutants,
+        scale=sample.scale, error=error, cost=cost, mutants=mutants,
     )  # fmt: skip
 
 

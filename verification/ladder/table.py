@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from verification.ladder.case import Case
-from verification.ladder.catalogue import Families
+from verification.ladder.catalogue import Families, about
 from verification.ladder.judge import Tally
 from verification.ladder.measure import Row
 
@@ -77,7 +77,10 @@ def write_json(path: Path, rows: list[Row], families: Families, count: Tally, st
         "machine": f"{platform.machine()}, {platform.system()} {platform.release()}",
         "tally": {**asdict(count), "words": count.words()},
         "stale": stale,
-        "families": {family: [_case(case) for case in members] for family, members in families.items()},
+        "families": [
+            {"name": family, "says": about(family), "cases": [_case(case) for case in members]}
+            for family, members in families.items()
+        ],
         "rows": [_plain({**asdict(row), "verdict": row.verdict}) for row in rows],
     }
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -303,6 +303,13 @@ def ladder(tmp_path: Path, solver: Path, a_case: Case, monkeypatch: pytest.Monke
     return known
 
 
+# The keys of a row that reports/ladder.py reads, and what its tests make up.
+READ_BY_THE_PAGE = {
+    "family", "case", "mechanics", "quantity", "unit", "level", "size", "no_order", "values", "value", "reference",
+    "reference_error", "scale", "error", "order", "cost", "mutants", "failure", "gate", "problems", "refused", "verdict",
+}  # fmt: skip
+
+
 def asked(tmp_path: Path, *options: str) -> int:
     """The command's exit status."""
     return command.main(["--runs", str(tmp_path / "ladder"), *options])
@@ -316,6 +323,7 @@ def test_the_command_from_no_gates_to_a_pass(tmp_path: Path, ladder: Families, c
     assert asked(tmp_path) == 0 and "2 comparisons: 2 pass; 3 gates, 7 mutants, all refused" in capsys.readouterr().out
     content = json.loads((tmp_path / "ladder" / "ladder.json").read_text())
     assert [row["verdict"] for row in content["rows"]] == ["pass", "pass"] and not content["part"]
+    assert set(content["rows"][0]) == READ_BY_THE_PAGE
 
 
 def test_the_command_at_smoke_size_keeps_the_other_gates(tmp_path: Path, ladder: Families) -> None:

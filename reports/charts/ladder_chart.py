@@ -1,0 +1,155 @@
+"""Draws the accuracy ladder: error against size, a panel a case, and error against cost."""
+
+from __future__ import annotations
+
+import math
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
+
+from reports.charts.style import FLAG, INK, PALE, new_figure, put_legend, put_title
+from reports.ladder import ConvergenceFigure, CostFigure, Curve, Panel, order_words
+
+# Wong's palette again, with two more, each with its own mark for those who see no colours.
+_LOOKS: tuple[tuple[str, str], ...] = (
+    ("#0067a5", "o"), ("#d04a00", "s"), ("#00845f", "^"), ("#a3397f", "D"), ("#8a6a00", "v"), ("#222222", "P"),
+    ("#5b8fd9", "X"), ("#7a5230", "<"), ("#6b6b6b", ">"), ("#b8860b", "h"),
+)
+_COLUMNS = 3
+_LABEL_GAP = 0.055  # of the axes' height, between order labels
+
+
+def draw_convergence(data: ConvergenceFigure) -> Figure:
+    """A panel a case on common scales of error; lines to orders 1 and 2 in a corner, the finest order beside each curve."""
+    columns = min(_COLUMNS, len(data.panels))
+    rows = -(-len(data.panels) // columns)
+    width = max(8.2, 3.9 * columns)
+    figure = new_figure(width, 1.0 + 3.4 * rows)
+    put_title(figure, data.title, int(10.4 * width))
+    every = [axes for line in figure.subplots(rows, columns, squeeze=False, sharey=True) for axes in line]
+    low, high = _decades([error for panel in data.panels for curve in panel.curves for error in (*curve.errors, *curve.gates)])
+    looks = {name: _LOOKS[k % len(_LOOKS)] for k, name in enumerate(data.quantities)}
+    for axes in every[len(data.panels):]:
+        axes.set_axis_off()
+    for k, (axes, panel) in enumerate(zip(every, data.panels)):
+        _size_axes(axes, panel, low, high, data.unit)
+        for curve in panel.curves:
+            _draw_curve(axes, curve, *looks[curve.quantity])
+        _order_labels(axes, panel, low, high, {name: colour for name, (colour, _) in looks.items()})
+        _slopes(axes)
+        if k % columns == 0:
+            axes.set_ylabel("relative error")
+    handles = [Line2D([], [], color=colour, marker=mark, markersize=5, label=name) for name, (colour, mark) in looks.items()]
+    handles.append(Line2D([], [], color=PALE, marker="_", markersize=11, linestyle="none", label="gate"))
+    handles.append(Line2D([], [], color=FLAG, marker="X", markersize=8, linestyle="none", label="not as its gate asks"))
+    put_legend(figure, handles, 4 if columns > 2 else 3)
+    return figure
+
+
+def draw_cost(data: CostFigure) -> Figure:
+    """Every quantity's way down in error with wall time, thin, one colour a family."""
+    figure = new_figure(max(8.2, 5.6 * len(data.panels)), 5.6)
+    put_title(figure, data.title, int(10.4 * figure.get_figwidth()))
+    every = figure.subplots(1, len(data.panels), squeeze=False, sharey=True, sharex=True)[0]
+    looks = {name: _LOOKS[k % len(_LOOKS)] for k, name in enumerate(data.families)}
+    for axes, panel in zip(every, data.panels):
+        axes.grid(True, which="major")
+        axes.set(xscale="log", yscale="log", xlabel="wall time of the run (s)")
+        axes.set_title(panel.heading)
+        _percent_axis(axes)
+        axes.axhline(0.01, color=PALE, linewidth=0.9, linestyle=(0, (4, 2)), zorder=1)
+        for curve in panel.curves:
+            colour, mark = looks[curve.family]
+            axes.plot(curve.walls_s, curve.errors, color=colour, linewidth=0.8, alpha=0.55, zorder=2)
+            axes.plot(curve.walls_s, curve.errors, linestyle="none", color=colour, marker=mark, markersize=3.6, alpha=0.85,
+                      zorder=3)
+            _crosses(axes, curve.walls_s, curve)
+    every[0].set_ylabel("relative error")
+    handles = [Line2D([], [], color=colour, marker=mark, markersize=5, label=name.replace("_", " "))
+               for name, (colour, mark) in looks.items()]
+    handles.append(Line2D([], [], color=FLAG, marker="X", markersize=8, linestyle="none", label="not as its gate asks"))
+    put_legend(figure, handles, 5)
+    return figure
+
+
+def _size_axes(axes: Axes, panel: Panel, low: float, high: float, unit: str) -> None:
+    """Logarithmic axes with the sizes of the levels as ticks; fine on the left, with room there for order labels."""
+    sizes = sorted({size for curve in panel.curves for size in curve.sizes})
+    axes.set(xscale="log", yscale="log", xlim=(sizes[0] / 1.9, sizes[-1] * 1.25), ylim=(low, high))
+    axes.xaxis.set_major_locator(NullLocator())
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.set_xticks(sizes, [f"{size:.3g}" for size in sizes])
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.set_title(panel.heading)
+    axes.set_xlabel({"m": "cell size (m)", "s": "step (s)"}.get(unit, "size"))
+    axes.grid(True, which="major")
+    _percent_axis(axes)
+
+
+def _percent_axis(axes: Axes) -> None:
+    """Errors as percentages on the decades."""
+    axes.yaxis.set_major_locator(LogLocator(base=10.0, numticks=20))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100.0 * value:g} %" if value >= 1e-7 else f"{value:.0e}"))
+    axes.yaxis.set_minor_formatter(NullFormatter())
+    axes.tick_params(labelleft=axes.get_subplotspec().is_first_col())
+
+
+def _decades(errors: list[float]) -> tuple[float, float]:
+    """A range of errors that holds all of them with some room."""
+    known = [error for error in errors if math.isfinite(error) and error > 0.0]
+    return min(known) / 1.8, max(known) * 1.8
+
+
+def _draw_curve(axes: Axes, curve: Curve, colour: str, mark: str) -> None:
+    """One quantity: its errors, its gates as dashes above, crosses where it falls short; dashed where no order is asked for."""
+    axes.plot(curve.sizes, curve.gates, linestyle="none", marker="_", markersize=11, color=colour, alpha=0.45, zorder=2)
+    axes.plot(curve.sizes, curve.errors, color=colour, marker=mark, markersize=4.6, linewidth=1.5,
+              linestyle="-" if curve.judged else (0, (2.5, 1.8)), zorder=3)
+    _crosses(axes, curve.sizes, curve)
+
+
+def _crosses(axes: Axes, places: tuple[float, ...], curve: Curve) -> None:
+    """A red cross on every point that is not as its gate asks."""
+    wrong = [(place, error) for place, error, passed in zip(places, curve.errors, curve.passed) if not passed]
+    if wrong:
+        axes.plot(*zip(*wrong), linestyle="none", marker="X", markersize=8, color=FLAG, zorder=5)
+
+
+def _order_labels(axes: Axes, panel: Panel, low: float, high: float, colours: dict[str, str]) -> None:
+    """The order of the finest pair beside the finest point of each curve, moved apart where they would overlap."""
+    height = math.log(high / low)
+    known = [(math.log(curve.errors[-1] / low) / height, curve) for curve in panel.curves if curve.order is not None]
+    wanted = sorted(known, key=lambda pair: pair[0])
+    places = spread_apart([place for place, _ in wanted], _LABEL_GAP)
+    for place, (_, curve) in zip(places, wanted):
+        words = order_words(curve.order) if curve.judged else f"({order_words(curve.order)})"
+        axes.annotate(words, (curve.sizes[-1], low * math.exp(place * height)), xytext=(-7, 0), textcoords="offset points",
+                      ha="right", va="center", fontsize=8.5, color=colours[curve.quantity], fontweight="bold", zorder=6)
+
+
+def spread_apart(places: list[float], gap: float) -> list[float]:
+    """Sorted places moved upwards as little as needed for a gap between neighbours, then down together to stay centred."""
+    moved: list[float] = []
+    for place in places:
+        moved.append(max(place, moved[-1] + gap) if moved else place)
+    if not moved:
+        return moved
+    shift = sum(after - before for after, before in zip(moved, places)) / len(moved)
+    return [place - shift for place in moved]
+
+
+def _slopes(axes: Axes) -> None:
+    """Triangles of order 1 and 2 in the lower right corner, in the scales of the axes."""
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    across = 0.16 * math.log(right / left)
+    x_end = right / math.exp(0.05 * math.log(right / left))
+    x_start = x_end / math.exp(across)
+    base = low * (high / low) ** 0.05
+    for order in (1, 2):
+        top = base * math.exp(order * across)
+        if top > high:
+            continue
+        axes.plot([x_start, x_end, x_end, x_start], [base, base, top, base], color=PALE, linewidth=0.8, zorder=1)
+        axes.annotate(f"{order}", (x_end, top), xytext=(2.5, 0), textcoords="offset points", fontsize=7.5, color=INK, va="center")

@@ -1,0 +1,214 @@
+"""The page of verification shows every comparison, says what was found, and survives what is broken or missing."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+import types
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from reports import verification
+from reports.charts.ladder_chart import spread_apart
+from reports.charts.style import new_figure
+from reports.ladder import convergence_figure, cost_figure, load_ladder
+from reports.make_page import main as make_page
+from reports.make_verification import main
+from reports.sections import put_figure
+from reports.tests.test_page import links_of
+from reports.verification import relative
+
+SIZES = (2.0, 1.0, 0.5)
+
+
+def a_row(case: str, quantity: str, level: int, error: float | None, **more: Any) -> dict[str, Any]:
+    """A comparison as ladder.json has it."""
+    size = SIZES[level]
+    row = {
+        "family": "cracks", "case": case, "mechanics": "explicit" if "moving" in case else "quasistatic", "quantity": quantity,
+        "unit": "m", "level": f"{size:g} m", "size": size, "no_order": "", "values": 1,
+        "value": None if error is None else 2.0 * (1.0 + error), "reference": 2.0, "reference_error": 1e-7, "error": error,
+        "order": 1.0 if level else None, "scale": None, "mutants": {"zero": -1.0}, "failure": "", "problems": [], "refused": 4,
+        "cost": {"wall_s": 0.5 * 8**level, "particles": 6400 * 4**level, "steps": 0, "peak_memory_MB": 40.5},
+        "gate": {"error": 0.06 / 2**level, "measured": 0.04 / 2**level, "order": 0.7 if level else None,
+                 "measured_order": 1.0 if level else None}, "verdict": "pass",
+    }  # fmt: skip
+    return {**row, **more}
+
+
+def write_ladder(root: Path, rows: list[dict[str, Any]], **more: Any) -> Path:
+    """A ladder.json below a folder of runs; returns that folder."""
+    cases = dict.fromkeys((row["family"], row["case"], row["mechanics"]) for row in rows)
+    families = [
+        {"name": name, "says": f"About {name}.", "cases": [
+            {"name": case, "says": f"It shows {case}.", "mechanics": mechanics, "scene": "a.toml"}
+            for family, case, mechanics in cases if family == name]}
+        for name in dict.fromkeys(row["family"] for row in rows)
+    ]  # fmt: skip
+    tally = {"rows": len(rows), "wrong": 0, "failed": 0, "gates": 7, "mutants": 31, "refused": 31, "words": ""}
+    content = {"part": False, "machine": "made up", "tally": tally, "stale": [], "families": families, "rows": rows, **more}
+    path = root / "runs" / "ladder" / "ladder.json"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps(content), encoding="utf-8")
+    return root / "runs"
+
+
+def some_rows() -> list[dict[str, Any]]:
+    """Two cases: one converges in one quantity and is exact in another, one falls short and fails."""
+    rows = [a_row("at_rest", "K_I", k, 0.04 / 2**k) for k in range(3)]
+    exact = {"no_order": "round-off: symmetric", "scale": 1234.5}
+    rows += [a_row("at_rest", "K_II", k, -2e-15, order=None if k == 0 else 0.3, **exact) for k in range(3)]
+    rows += [a_row("moving", "mouth", k, 0.03 / 2**k, no_order="" if k != 1 else "still <coarse>", values=50) for k in range(2)]
+    rows[-1] |= {"verdict": "FAIL", "problems": ["order 0.20 below 0.7"]}
+    rows.append(a_row("moving", "mouth", 2, None, failure="a mechanism", verdict="FAILED", values=0, cost=None, order=None))
+    return rows
+
+
+def page_of(runs: Path, out: Path, *options: str) -> str:
+    """The page made from runs."""
+    assert main(["--runs", str(runs), "--out", str(out), "--strict", *options]) == 0
+    return (out / "verification.html").read_text(encoding="utf-8")
+
+
+def test_every_comparison_is_listed_with_its_numbers(tmp_path: Path) -> None:
+    """A row each, with value, reference, error, order, cost and gate."""
+    page = page_of(write_ladder(tmp_path, some_rows()), tmp_path / "out")
+    table = page[page.index('class="ladder"') :].split("</table>")[0]
+    assert table.count('class="mark ') == 9
+    for words in ("2.04", "+2\u00a0%", "1.00", "≥ 0.7", "3\u00a0%", "4.0", "25\u202f600", "40", "−2.0×10⁻¹⁵", "(0.30)"):
+        assert words in table, words
+    assert "rms of 50 values" in table and "errors relative to 1\u202f234 m" in table
+    assert "no order: round-off: symmetric" in table and "no order: at 1 m: still &lt;coarse&gt;" in table
+    assert "It shows at_rest." in table and "About cracks." in page
+
+
+def test_what_falls_short_is_said_first_and_marked(tmp_path: Path) -> None:
+    """Failing and failed rows stand above everything else with their reasons, and are marked in the table."""
+    page = page_of(write_ladder(tmp_path, some_rows()), tmp_path / "out")
+    assert "Of 9 comparisons with references (2 cases in 1 family), 2 are not as their gates ask." in page
+    top = page[: page.index("<figure")]
+    assert "cracks / moving: mouth at 1 m" in top and "order 0.20 below 0.7" in top and "a mechanism" in top
+    table = page[page.index('class="ladder"') :]
+    assert table.count('class="mark no"') == 2 and ">FAILED<" in table
+    assert re.search(r'rowspan="5" class="quantity">mouth', table), "a quantity's cell spans its levels and their reasons"
+
+
+def test_all_well_is_said_as_such(tmp_path: Path) -> None:
+    """Without a failing row nothing is red, and the tally of mutants is told."""
+    page = page_of(write_ladder(tmp_path, some_rows()[:6]), tmp_path / "out")
+    assert "All 6 comparisons with references (1 case in 1 family) are within their gates." in page
+    assert 'class="failures"' not in page and 'class="mark no"' not in page
+    assert "Each of the 7 gates was tried" in page and "31 in all: all were refused" in page
+
+
+def test_gates_that_let_mutants_pass_and_stale_ones_are_told(tmp_path: Path) -> None:
+    """The page hides nothing of the gates' own trial."""
+    tally = {"gates": 7, "mutants": 31, "refused": 30}
+    page = page_of(write_ladder(tmp_path, some_rows(), tally=tally, stale=["cracks/gone / K / 1 m"], part=True), tmp_path / "out")
+    assert "1 passed, which makes" in page and "A gate of nothing: cracks/gone" in page and "a part of the ladder only" in page
+
+
+def test_figures_say_what_the_numbers_say(tmp_path: Path) -> None:
+    """Titles come from the rows: other errors, another title."""
+    titles = []
+    for factor in (1.0, 2.0):
+        rows = [row | {"error": row["error"] * factor} for row in some_rows()[:3]]
+        ladder = load_ladder(write_ladder(tmp_path, rows) / "ladder" / "ladder.json")
+        assert ladder is not None
+        titles.append((convergence_figure(ladder, "cracks").title, cost_figure(ladder).title))
+    assert titles[0][0] == "Errors of 1\u00a0% (K_I, at rest) at the finest level; orders 1.0 between the finest two levels"
+    assert titles[1][0].startswith("Errors of 2\u00a0%")
+    assert titles[0][1] == "Quasi-static runs bring 1 of 1 quantities within 1\u00a0% in 32\u00a0s (median)"
+    assert titles[1][1] == "Quasi-static runs bring 0 of 1 quantities within 1\u00a0%"
+
+
+def test_round_off_is_not_drawn_but_counted(tmp_path: Path) -> None:
+    """A curve at 1e-15 would leave no room for the others."""
+    ladder = load_ladder(write_ladder(tmp_path, some_rows()) / "ladder" / "ladder.json")
+    assert ladder is not None
+    figure = convergence_figure(ladder, "cracks")
+    assert [curve.quantity for panel in figure.panels for curve in panel.curves] == ["K_I", "mouth"] and figure.left_out == 1
+    assert "1 quantity that holds to round-off" in page_of(tmp_path / "runs", tmp_path / "out")
+    exact = load_ladder(write_ladder(tmp_path, some_rows()[3:6]) / "ladder" / "ladder.json")
+    assert exact is not None and convergence_figure(exact, "cracks") is None and cost_figure(exact) is None
+    assert "Everything holds to round-off" in page_of(tmp_path / "runs", tmp_path / "out2")
+
+
+def test_every_link_leads_somewhere(tmp_path: Path) -> None:
+    """Figures and anchors exist; the page of the experiments and this one link to each other."""
+    runs, out = write_ladder(tmp_path, some_rows()), tmp_path / "out"
+    assert make_page(["--runs", str(runs), "--out", str(out), "--experiments", str(tmp_path / "none"), "--strict"]) == 0
+    links = links_of(out / "verification.html")
+    assert "index.html" in links.targets and len(links.targets) > 6
+    for target in links.targets:
+        assert (target[1:] in links.anchors) if target[0] == "#" else (out / target).is_file(), target
+    assert "verification.html" in links_of(out / "index.html").targets
+    assert "Of 9 comparisons" in (out / "index.html").read_text(encoding="utf-8")
+
+
+def test_nothing_run_is_no_page(tmp_path: Path) -> None:
+    """Without a ladder and parts there is neither a page nor a link to it."""
+    assert main(["--runs", str(tmp_path), "--out", str(tmp_path / "out")]) == 1
+    assert not (tmp_path / "out" / "verification.html").exists()
+    assert make_page(["--runs", str(tmp_path), "--out", str(tmp_path / "out"), "--experiments", str(tmp_path / "none")]) == 0
+    assert "verification.html" not in (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("content", ['{"rows": [', '{"rows": [{}]}', "{}"])
+def test_a_torn_judgement_is_a_defect(tmp_path: Path, content: str) -> None:
+    """It is told on the page and by the exit status."""
+    runs = write_ladder(tmp_path, [])
+    (runs / "ladder" / "ladder.json").write_text(content, encoding="utf-8")
+    assert main(["--runs", str(runs), "--out", str(tmp_path / "out"), "--strict"]) == 1
+    assert "could not be made" in (tmp_path / "out" / "verification.html").read_text(encoding="utf-8")
+
+
+def a_part(name: str, monkeypatch: pytest.MonkeyPatch, section: Any) -> None:
+    """A module reports.NAME that fills a part of the page."""
+    module = types.ModuleType(f"reports.{name}")
+    module.section = section  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, f"reports.{name}", module)
+
+
+def test_parts_of_other_modules_are_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A part's intro, figures and tables stand on the page; one with nothing to show is left out, one that breaks is told."""
+
+    def found(runs: Path, out: Path) -> dict[str, Any]:
+        """A part with a figure and a table."""
+        rows = [["path <5>", "0.3"], ["path 6", "2.1"]]
+        table = {"title": "Largest", "header": ["what", "m"], "rows": rows, "marked": [1], "note": "In cells."}
+        picture = put_figure(new_figure(3.0, 2.0), out, "paths", "Paths agree", "Both.")
+        return {"title": "Paths", "intro": "They agree within a cell.", "figures": [picture], "tables": [table]}
+
+    def breaks(runs: Path, out: Path) -> None:
+        """A part with a defect."""
+        raise ValueError("no such run")
+
+    for name, section in (("one", found), ("two", lambda runs, out: None), ("three", breaks)):
+        a_part(name, monkeypatch, section)
+    monkeypatch.setattr(verification, "PARTS", ("one", "two", "three", "not_there"))
+    assert main(["--runs", str(tmp_path), "--out", str(tmp_path / "out"), "--strict"]) == 1
+    page = (tmp_path / "out" / "verification.html").read_text(encoding="utf-8")
+    for words in ("They agree within a cell.", 'src="figures/paths.svg"', "path &lt;5&gt;", "In cells."):
+        assert words in page, words
+    assert page.count('class="wrong"') == 1 and "ValueError: no such run" in page
+    assert (tmp_path / "out" / "figures" / "paths.png").is_file()
+
+
+def test_relative_errors_in_words() -> None:
+    """Per cent, and powers of ten where these would be all zeros."""
+    assert [relative(error) for error in (0.0123, -0.0123, 2.5e-5, 3.2e-9, -1e-15, 0.0)] == [
+        "1.2\u00a0%", "−1.2\u00a0%", "0.0025\u00a0%", "3.2×10⁻⁹", "−1.0×10⁻¹⁵", "0",
+    ]  # fmt: skip
+    assert relative(0.0123, signed=True) == "+1.2\u00a0%" and relative(float("nan")) == "–"
+
+
+def test_labels_that_would_overlap_are_moved_apart() -> None:
+    """By no more than a gap, and about where they were."""
+    assert spread_apart([0.1, 0.5], 0.05) == [0.1, 0.5] and spread_apart([], 0.05) == []
+    moved = spread_apart([0.30, 0.31, 0.31], 0.05)
+    assert moved[1] - moved[0] == pytest.approx(0.05) and moved[2] - moved[1] == pytest.approx(0.05)
+    assert sum(moved) == pytest.approx(0.92)
