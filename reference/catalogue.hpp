@@ -99,6 +99,7 @@ std::vector<Input> joined(std::vector<Input> first, const std::vector<Input>& se
 std::vector<Entry> crack_entries();
 std::vector<Entry> flow_entries();
 std::vector<Entry> interface_entries();
+std::vector<Entry> motion_entries();
 std::vector<Entry> wave_entries();
 
 }  // namespace strata::reference
