@@ -22,6 +22,9 @@ constexpr double kHighestGaussian = 60, kHighestCosine = 1200;
 constexpr std::size_t kPanelPoints = 16;
 constexpr double kPanelRadians = 6;
 
+// Five times what springs of 1 and 10 Pa/m show.
+constexpr double kRoundOff = 5e-15;
+
 constexpr double kBonded = 1e30;  // Pa/m
 
 // int_{from}^{to} sin(a + q y) dy, for q = 0 too.
@@ -98,6 +101,9 @@ LayeredWave::LayeredWave(std::vector<WaveLayer> layers, std::vector<double> spri
     for (std::size_t k = 0; k < mode.phi.size(); ++k) largest = std::max(largest, amplitude(mode, mode.first + k));
     if (mode.w > 0.5 * highest && pulse.velocity != 0) error_ += std::abs(mode.coefficient / pulse.velocity) * largest;
   }
+  // A weak spring's stress is the small rest of large ones: round-off of s is divided by D.
+  for (std::size_t j = 0; j + 1 < layers_.size(); ++j)
+    if (springs_[j] > 0) error_ += kRoundOff * layers_[j].modulus / (pulse.half_width * springs_[j]);
   std::sort(frequencies_.begin(), frequencies_.end());
   error_ = std::max(error_, 1e-12);
 }

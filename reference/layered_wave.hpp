@@ -56,7 +56,8 @@ class LayeredWave {
   double travel_time() const;                // of the first wave through all layers, s
   double energy() const { return energy_; }  // int rho v_0^2/2 dy, J/m^2
   const std::vector<double>& angular_frequencies() const { return frequencies_; }  // rigid modes as 0
-  // What the upper half of the frequencies adds to v or to stress/Z at most, as a share of V; never below 1e-12.
+  // What the upper half of the frequencies adds to v or to stress/Z at most, and round-off through weak springs, as a
+  // share of V; never below 1e-12.
   double error() const { return error_; }
 
  private:

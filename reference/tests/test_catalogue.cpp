@@ -74,6 +74,12 @@ TEST_CASE("settings reach the solution") {
   CHECK(value_of(solve("freund_step_pressure"), "K_I") == Approx(0.501643e6).epsilon(1e-6));
   CHECK(value_of(solve("wave_speeds"), "c_R_m_s") == Approx(1176.091).epsilon(1e-6));
   CHECK(value_of(solve("standing_wave"), "f_shear_Hz") == Approx(1825.742).epsilon(1e-6));
+  // u = A/sqrt(2) at an eighth of the side; the wave that has crossed from stiff to soft rock: 2 Z1/(Z1 + Z2) = 1.17157
+  CHECK(value_of(solve("manufactured_standing", {"y_m=0"}), "u_x_m") == Approx(1e-3 * std::sqrt(0.5)).epsilon(1e-9));
+  CHECK(value_of(solve("manufactured_finite", {"angular_frequency_1_s=1000", "time_s=0.0015707963267948966"}),
+                 "F_xx") == Approx(1 + 0.02 * std::acos(-1.0) * std::sqrt(0.5)).epsilon(1e-9));
+  CHECK(value_of(solve("layered_wave", {"time_s=0.0114516", "pulse_velocity_m_s=2"}), "v_m_s") ==
+        Approx(1.17157).epsilon(1e-4));
   const Answer list = solve("channel_no_flux", {"x_m=[0, 2.5]"});
   const auto pressures = std::get<std::vector<double>>(list.values.front().value);
   REQUIRE(pressures.size() == 2);
