@@ -177,6 +177,7 @@ std::vector<Input> column_inputs() {
       density,
       spring,
       word_input("lateral", "held: plane wave; free: thin bar, plane strain along its other side", {"held", "free"}),
+      number_input("width_m", "of a bar of one layer, for its lateral inertia; 0: thin", 0, 0, 1e9),
       word_input("bottom", "end at y = 0", {"held", "free"}),
       word_input("top", "the other end", {"held", "free"}),
       word_input("pulse", "V exp(-q^2), or V cos^2(pi q/2) for |q| < 1; q = (y - middle)/half_width",
@@ -194,11 +195,14 @@ LayeredWave column_of(const Inputs& in) {
   const std::vector<double> E = repeated(in, "youngs_modulus_Pa", n), nu = repeated(in, "poisson_ratio", n),
                             density = repeated(in, "density_kg_m3", n);
   const bool bar = in.word("lateral") == "free";
+  const double width = in.number("width_m");
+  if (width > 0 && !bar) throw std::invalid_argument("width_m is for lateral=free");
   std::vector<WaveLayer> layers;
   for (std::size_t j = 0; j < n; ++j) {
     const Rock rock{E[j], nu[j]};
     const double plane = E[j] * (1 - nu[j]) / ((1 + nu[j]) * (1 - 2 * nu[j]));
-    layers.push_back({thickness[j], bar ? rock.E_prime() : plane, density[j]});
+    layers.push_back(
+        {thickness[j], bar ? rock.E_prime() : plane, density[j], nu[j] / (1 - nu[j]) * width / std::sqrt(12.0)});
   }
   const auto end = [&](const char* key) { return in.word(key) == "held" ? WaveEnd::held : WaveEnd::free; };
   const VelocityPulse pulse{
@@ -209,28 +213,30 @@ LayeredWave column_of(const Inputs& in) {
 }
 
 Entry layered_wave_entry() {
-  return {"layered_wave",
-          "plane waves along a column of layers, bonded or on springs, from a pulse of velocity: u, v, stress",
-          column_inputs(),
-          "sum over normal modes, Courant & Hilbert 1953, chapters V and VI; Achenbach 1973, chapter 1",
-          "linear, undamped, at rest in u at t = 0; springs act alike in tension and compression; a thin bar is the "
-          "limit of wave lengths long against its width; a pulse that is not zero on a held end or a border converges "
-          "slowly (see the error estimate)",
-          [](const Inputs& in) {
-            const LayeredWave wave = column_of(in);
-            const double t = in.number("time_s");
-            Answer answer;
-            answer.values = {{"u_m", at_each(in, "y_m", [&](double y) { return wave.at(y, t).u; }), "m"},
-                             {"v_m_s", at_each(in, "y_m", [&](double y) { return wave.at(y, t).v; }), "m/s"},
-                             {"stress_Pa", at_each(in, "y_m", [&](double y) { return wave.at(y, t).stress; }), "Pa"},
-                             {"height_m", wave.height(), "m"},
-                             {"travel_time_s", wave.travel_time(), "s"},
-                             {"energy_J_m2", wave.energy(), "J/m^2"}};
-            answer.relative_error = wave.error();
-            answer.error_basis =
-                "of v, and of stress/impedance, to the pulse's V: what the upper half of all modes adds";
-            return answer;
-          }};
+  return {
+      "layered_wave",
+      "plane waves along a column of layers, bonded or on springs, from a pulse of velocity: u, v, stress",
+      column_inputs(),
+      "sum over normal modes, Courant & Hilbert 1953, chapters V and VI; Achenbach 1973, chapter 1; lateral inertia "
+      "Love 1927, article 278",
+      "linear, undamped, at rest in u at t = 0; springs act alike in tension and compression; a bar with "
+      "free sides is for wave lengths long against its width, beginning with v_x = -nu/(1-nu) x dv/dy (x from its "
+      "middle) where width_m is given; a pulse that is not zero on a held end or a border converges "
+      "slowly (see the error estimate)",
+      [](const Inputs& in) {
+        const LayeredWave wave = column_of(in);
+        const double t = in.number("time_s");
+        Answer answer;
+        answer.values = {{"u_m", at_each(in, "y_m", [&](double y) { return wave.at(y, t).u; }), "m"},
+                         {"v_m_s", at_each(in, "y_m", [&](double y) { return wave.at(y, t).v; }), "m/s"},
+                         {"stress_Pa", at_each(in, "y_m", [&](double y) { return wave.at(y, t).stress; }), "Pa"},
+                         {"height_m", wave.height(), "m"},
+                         {"travel_time_s", wave.travel_time(), "s"},
+                         {"energy_J_m2", wave.energy(), "J/m^2"}};
+        answer.relative_error = wave.error();
+        answer.error_basis = "of v, and of stress/impedance, to the pulse's V: what the upper half of all modes adds";
+        return answer;
+      }};
 }
 
 }  // namespace

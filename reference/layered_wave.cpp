@@ -43,9 +43,12 @@ double within_branch(double angle, Change change) {
 void require_layers(const std::vector<WaveLayer>& layers, const std::vector<double>& springs) {
   if (layers.empty() || springs.size() + 1 != layers.size())
     throw std::invalid_argument("one layer or more and one spring a border are needed");
-  for (const WaveLayer& layer : layers)
+  for (const WaveLayer& layer : layers) {
     if (!(layer.thickness > 0 && layer.modulus > 0 && layer.density > 0))
       throw std::invalid_argument("thickness, modulus and density must be positive");
+    if (!(layer.lateral_radius >= 0) || (layer.lateral_radius > 0 && layers.size() > 1))
+      throw std::invalid_argument("lateral inertia is for one layer, and not negative");
+  }
   for (const double spring : springs)
     if (!(spring >= 0)) throw std::invalid_argument("springs must not be negative");
 }
@@ -270,11 +273,13 @@ WaveAt LayeredWave::at(double y, double time) const {
     const std::size_t k = layer - mode.first;
     const double turn = mode.w * (y - bottoms_[layer]) / layers_[layer].speed();
     const double Zw = layers_[layer].impedance() * mode.w, c = std::cos(turn), s = std::sin(turn);
-    const double swing = mode.coefficient * std::sin(mode.w * time) / mode.w;
+    const double across = mode.w * layers_[layer].lateral_radius / layers_[layer].speed();
+    const double slower = 1 + across * across, w = mode.w / std::sqrt(slower);
+    const double swing = mode.coefficient * std::sin(w * time) / w;
     const double phi = c * mode.phi[k] + s / Zw * mode.stress[k];
     sum.u += swing * phi;
-    sum.v += mode.coefficient * std::cos(mode.w * time) * phi;
-    sum.stress += swing * (c * mode.stress[k] - s * Zw * mode.phi[k]);
+    sum.v += mode.coefficient * std::cos(w * time) * phi;
+    sum.stress += swing * (c * mode.stress[k] - s * Zw * mode.phi[k]) / slower;
   }
   return sum;
 }

@@ -10,6 +10,8 @@ struct WaveLayer {
   double thickness = 1;   // m
   double modulus = 1e9;   // M of stress = M du/dy, Pa: lambda + 2 mu of a plane wave, E' of a thin bar with free sides
   double density = 2500;  // kg/m^3
+  // Radius r of what moves across with u_y, m: 0 of a plane wave, nu/(1 - nu) width/sqrt(12) of a bar with free sides.
+  double lateral_radius = 0;
 
   double speed() const;      // sqrt(M/rho), m/s
   double impedance() const;  // sqrt(M rho), Pa s/m
@@ -38,6 +40,8 @@ struct WaveAt {
 
 // u(y, t) of rho u_tt = s_y, s = M u_y in layers from y = 0 upwards, u = 0 and u_t = v_0 at t = 0; across border j s is
 // continuous and the jump of u is s/D_j (Pa/m; 0: no bond at all; 1e30 and above: bonded).
+// A bar of one layer may have lateral inertia (Rayleigh; Love 1927, article 278): rho (u_tt - r^2 u_yytt) = M u_yy with
+// v_x = -nu/(1 - nu) x dv_0/dy at t = 0; then w_n = c k_n/sqrt(1 + r^2 k_n^2) and stress is the mean over the width.
 // Method: sum over normal modes, u = sum_n c_n sin(w_n t)/w_n phi_n, c_n = int rho v_0 phi_n dy/int rho phi_n^2 dy.
 // (Z w phi, s) turns with y by the angle w/c per metre and keeps its quadrant where Z changes and through a spring, so
 // the angle at the top grows with w and passes each multiple of pi/2 once: every mode is found and none is missed
@@ -45,7 +49,7 @@ struct WaveAt {
 class LayeredWave {
  public:
   // springs: one a border, Pa/m. Throws std::invalid_argument for no layers, values not positive, a negative spring,
-  // or a number of springs other than layers - 1.
+  // a number of springs other than layers - 1, or lateral inertia in more than one layer.
   LayeredWave(std::vector<WaveLayer> layers, std::vector<double> springs, WaveEnd bottom, WaveEnd top,
               const VelocityPulse& pulse);
 

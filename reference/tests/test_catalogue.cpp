@@ -71,6 +71,9 @@ TEST_CASE("settings reach the solution") {
   CHECK(value_of(solve("spring_interface", {"normal_stiffness_Pa_m=2083333333", "shear_stiffness_Pa_m=2083333333"}),
                  "F_near") == Approx(1.0704).epsilon(1e-4));
   CHECK(value_of(solve("coulomb_first_slip"), "ratio") == Approx(0.8122).epsilon(1e-4));
+  CHECK(value_of(solve("layered_wave", {"thickness_m=40", "youngs_modulus_Pa=10e9", "lateral=free", "width_m=1"}),
+                 "u_m") !=
+        value_of(solve("layered_wave", {"thickness_m=40", "youngs_modulus_Pa=10e9", "lateral=free"}), "u_m"));
   CHECK(value_of(solve("freund_step_pressure"), "K_I") == Approx(0.501643e6).epsilon(1e-6));
   CHECK(value_of(solve("wave_speeds"), "c_R_m_s") == Approx(1176.091).epsilon(1e-6));
   CHECK(value_of(solve("standing_wave"), "f_shear_Hz") == Approx(1825.742).epsilon(1e-6));
