@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import statistics
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,6 +16,7 @@ from reports.words import listed, mechanics_name, number, plain, share
 ROUND_OFF = "round-off"
 SAME_AS_ROUNDING = 1e-13  # errors below it are not drawn
 ONE_PERCENT = 0.01
+UNIT = re.compile(r"\d (m|s)\b")  # of a level's size, in its label
 
 
 @dataclass(frozen=True)
@@ -107,11 +109,11 @@ class ConvergenceFigure:
 
 @dataclass(frozen=True)
 class CostFigure:
-    """Error against wall time of every quantity, a panel a mechanics; `families` in the order of their colours."""
+    """Error against wall time of every quantity, a panel a family; `mechanics` in the order of their colours."""
 
     title: str
     panels: tuple[Panel, ...]
-    families: tuple[str, ...]
+    mechanics: tuple[str, ...]
 
 
 def load_ladder(path: Path) -> Ladder | None:
@@ -185,7 +187,7 @@ def convergence_figure(ladder: Ladder, family: str) -> ConvergenceFigure | None:
         for case, mechanics in cases
     )
     every = {(row.case, row.quantity) for row in rows}
-    units = {"s" if row.level.endswith(" s") else "m" if row.level.endswith(" m") else "" for row in rows}
+    units = {found[1] for row in rows if (found := UNIT.search(row.level))}
     return ConvergenceFigure(
         title=convergence_words(curves),
         panels=panels,
@@ -218,23 +220,22 @@ def order_words(order: float) -> str:
 def cost_figure(ladder: Ladder) -> CostFigure | None:
     """What the chart of error against cost shows; None where there is nothing to draw."""
     curves = [curve for curve in curves_of(ladder.rows) if all(wall > 0.0 for wall in curve.walls_s)]
-    mechanics = [name for name in ("quasistatic", "explicit") if any(curve.mechanics == name for curve in curves)]
+    mechanics = tuple(name for name in ("quasistatic", "explicit") if any(curve.mechanics == name for curve in curves))
     if not curves:
         return None
-    panels = tuple(
-        Panel(mechanics_name(name), tuple(curve for curve in curves if curve.mechanics == name)) for name in mechanics
-    )
-    return CostFigure(cost_words(panels), panels, tuple(dict.fromkeys(curve.family for curve in curves)))
+    families = dict.fromkeys(curve.family for curve in curves)
+    panels = tuple(Panel(plain(name), tuple(curve for curve in curves if curve.family == name)) for name in families)
+    return CostFigure(cost_words(curves, mechanics), panels, mechanics)
 
 
-def cost_words(panels: Sequence[Panel]) -> str:
+def cost_words(curves: Sequence[Curve], mechanics: Sequence[str]) -> str:
     """How long it takes each mechanics to come within a percent, in a sentence."""
     told = []
-    for panel in panels:
-        first = [time for curve in panel.curves if (time := first_within(curve, ONE_PERCENT)) is not None]
-        count = f"{len(first)} of {len(panel.curves)} quantities"
+    for name in mechanics:
+        own = [curve for curve in curves if curve.mechanics == name]
+        first = [time for curve in own if (time := first_within(curve, ONE_PERCENT)) is not None]
         time = f" in {number(statistics.median(first), 2)}\u00a0s (median)" if first else ""
-        told.append(f"{panel.heading} runs bring {count} within 1\u00a0%{time}")
+        told.append(f"{mechanics_name(name)} runs bring {len(first)} of {len(own)} quantities within 1\u00a0%{time}")
     return listed(told)[:1].upper() + listed(told)[1:]
 
 

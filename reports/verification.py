@@ -29,11 +29,19 @@ from reports.words import mechanics_name, number, plain, share
 PARTS: tuple[str, ...] = ("path_check", "refinement", "budget")
 NAME = "verification.html"
 LADDER = Path("ladder") / "ladder.json"
+_COST_CAPTION = (
+    "Relative error of every quantity against the wall time of its run, from its coarsest to its finest level, a panel a family."
+    " Dashed: 1\u00a0%. Quantities that hold to round-off are left out. Runs were made side by side, so that times tell sizes"
+    " rather than speeds."
+)
 
 
 @dataclass(frozen=True)
 class Family:
-    """A family on the page: what it says, its chart (None where all is round-off), a block of table rows a case."""
+    """A family on the page: what it says, its chart (None where all is round-off), a block of table rows a case.
+
+    exact: the blocks of cases of which everything holds to round-off as it should, which the page folds away.
+    """
 
     name: str
     title: str
@@ -41,6 +49,7 @@ class Family:
     finding: str
     figure: Picture | None
     blocks: list[dict[str, Any]]
+    exact: list[dict[str, Any]]
     comparisons: int
     wrong: int
 
@@ -123,7 +132,7 @@ def ladder_context(ladder: Ladder, out: Path) -> dict[str, Any]:
     """What the template shows of the ladder; its figures are written below `out`."""
     cost, picture = cost_figure(ladder), None
     if cost is not None:
-        picture = put_figure(draw_cost(cost), out, "ladder_cost", cost.title, _cost_caption(len(cost.panels)))
+        picture = put_figure(draw_cost(cost), out, "ladder_cost", cost.title, _COST_CAPTION)
     return {
         "ladder": ladder,
         "mutation": _mutation_words(ladder),
@@ -147,30 +156,25 @@ def _mutation_words(ladder: Ladder) -> str:
     )
 
 
-def _cost_caption(panels: int) -> str:
-    """Caption of the chart of error against cost."""
-    return (
-        "Relative error of every quantity against the wall time of its run, a line from its coarsest to its finest level"
-        f"{', in each mechanics' if panels > 1 else ''}; a colour and mark a family. Dashed: 1\u00a0%. Quantities that hold to"
-        " round-off are left out. Runs were made side by side; times tell sizes, not speeds."
-    )
-
-
 def _family(ladder: Ladder, name: str, out: Path) -> Family:
     """A family's figure and tables."""
     rows = [row for row in ladder.rows if row.family == name]
     data, picture = convergence_figure(ladder, name), None
     if data is not None:
         picture = put_figure(draw_convergence(data), out, f"ladder_{name}", data.title, _convergence_caption(data.left_out))
-    cases = dict.fromkeys((row.case, row.mechanics) for row in rows)
     curves = curves_of(rows)
+    blocks: dict[bool, list[dict[str, Any]]] = {True: [], False: []}
+    for case in dict.fromkeys(row.case for row in rows):
+        own = [row for row in rows if row.case == case]
+        blocks[all(row.round_off and row.passed for row in own)].append(_block(ladder, own))
     return Family(
         name=name,
         title=plain(name)[:1].upper() + plain(name)[1:],
         says=ladder.families[name],
         finding=convergence_words(curves) if curves else "Everything holds to round-off" if rows else "Nothing was run",
         figure=picture,
-        blocks=[_block(ladder, [row for row in rows if row.case == case], mechanics) for case, mechanics in cases],
+        blocks=blocks[False],
+        exact=blocks[True],
         comparisons=len(rows),
         wrong=sum(not row.passed for row in rows),
     )
@@ -189,7 +193,7 @@ def _convergence_caption(left_out: int) -> str:
     )
 
 
-def _block(ladder: Ladder, rows: list[Row], mechanics: str) -> dict[str, Any]:
+def _block(ladder: Ladder, rows: list[Row]) -> dict[str, Any]:
     """A case's part of the table: its quantities, each with its levels."""
     first = rows[0]
     quantities = []
@@ -206,7 +210,8 @@ def _block(ladder: Ladder, rows: list[Row], mechanics: str) -> dict[str, Any]:
     return {
         "name": plain(first.case),
         "says": ladder.cases[first.family, first.case],
-        "mechanics": mechanics_name(mechanics),
+        "mechanics": mechanics_name(first.mechanics),
+        "comparisons": len(rows),
         "quantities": quantities,
     }
 

@@ -1,4 +1,4 @@
-"""Draws the accuracy ladder: error against size, a panel a case, and error against cost."""
+"""Draws the accuracy ladder: error against size, a panel a case, and error against cost, a panel a family."""
 
 from __future__ import annotations
 
@@ -11,19 +11,20 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLoca
 
 from reports.charts.style import FLAG, INK, PALE, new_figure, put_legend, put_title
 from reports.ladder import ConvergenceFigure, CostFigure, Curve, Panel, order_words
+from reports.words import mechanics_name
 
 # Wong's palette again, with two more, each with its own mark for those who see no colours.
 _LOOKS: tuple[tuple[str, str], ...] = (
     ("#0067a5", "o"), ("#d04a00", "s"), ("#00845f", "^"), ("#a3397f", "D"), ("#8a6a00", "v"), ("#222222", "P"),
     ("#5b8fd9", "X"), ("#7a5230", "<"), ("#6b6b6b", ">"), ("#b8860b", "h"),
 )
-_COLUMNS = 3
+_COLUMNS, _MOST_COLUMNS = 3, 4  # of panels; the latter where there are more than twelve
 _LABEL_GAP = 0.055  # of the axes' height, between order labels
 
 
 def draw_convergence(data: ConvergenceFigure) -> Figure:
     """A panel a case on common scales of error; lines to orders 1 and 2 in a corner, the finest order beside each curve."""
-    columns = min(_COLUMNS, len(data.panels))
+    columns = min(_COLUMNS if len(data.panels) <= 12 else _MOST_COLUMNS, len(data.panels))
     rows = -(-len(data.panels) // columns)
     width = max(8.2, 3.9 * columns)
     figure = new_figure(width, 1.0 + 3.4 * rows)
@@ -44,34 +45,47 @@ def draw_convergence(data: ConvergenceFigure) -> Figure:
     handles = [Line2D([], [], color=colour, marker=mark, markersize=5, label=name) for name, (colour, mark) in looks.items()]
     handles.append(Line2D([], [], color=PALE, marker="_", markersize=11, linestyle="none", label="gate"))
     handles.append(Line2D([], [], color=FLAG, marker="X", markersize=8, linestyle="none", label="not as its gate asks"))
-    put_legend(figure, handles, 4 if columns > 2 else 3)
+    put_legend(figure, handles, _legend_columns(handles, width))
     return figure
 
 
 def draw_cost(data: CostFigure) -> Figure:
-    """Every quantity's way down in error with wall time, thin, one colour a family."""
-    figure = new_figure(max(8.2, 5.6 * len(data.panels)), 5.6)
-    put_title(figure, data.title, int(10.4 * figure.get_figwidth()))
-    every = figure.subplots(1, len(data.panels), squeeze=False, sharey=True, sharex=True)[0]
-    looks = {name: _LOOKS[k % len(_LOOKS)] for k, name in enumerate(data.families)}
-    for axes, panel in zip(every, data.panels):
+    """Every quantity's way down in error with wall time, thin, a panel a family and a colour a mechanics."""
+    columns = min(_COLUMNS, len(data.panels))
+    rows = -(-len(data.panels) // columns)
+    width = max(8.2, 3.9 * columns)
+    figure = new_figure(width, 1.0 + 3.1 * rows)
+    put_title(figure, data.title, int(10.4 * width))
+    every = [axes for line in figure.subplots(rows, columns, squeeze=False, sharey=True, sharex=True) for axes in line]
+    looks = {name: _LOOKS[k] for k, name in enumerate(data.mechanics)}
+    for axes in every[len(data.panels):]:
+        axes.set_axis_off()
+    for k, (axes, panel) in enumerate(zip(every, data.panels)):
         axes.grid(True, which="major")
-        axes.set(xscale="log", yscale="log", xlabel="wall time of the run (s)")
+        axes.set(xscale="log", yscale="log")
         axes.set_title(panel.heading)
         _percent_axis(axes)
         axes.axhline(0.01, color=PALE, linewidth=0.9, linestyle=(0, (4, 2)), zorder=1)
         for curve in panel.curves:
-            colour, mark = looks[curve.family]
-            axes.plot(curve.walls_s, curve.errors, color=colour, linewidth=0.8, alpha=0.55, zorder=2)
-            axes.plot(curve.walls_s, curve.errors, linestyle="none", color=colour, marker=mark, markersize=3.6, alpha=0.85,
-                      zorder=3)
+            colour, mark = looks[curve.mechanics]
+            axes.plot(curve.walls_s, curve.errors, color=colour, linewidth=0.9, marker=mark, markersize=3.4, alpha=0.75, zorder=3)
             _crosses(axes, curve.walls_s, curve)
-    every[0].set_ylabel("relative error")
-    handles = [Line2D([], [], color=colour, marker=mark, markersize=5, label=name.replace("_", " "))
+        if k % columns == 0:
+            axes.set_ylabel("relative error")
+        if k + columns >= len(data.panels):
+            axes.set_xlabel("wall time of the run (s)")
+            axes.tick_params(labelbottom=True)
+    handles = [Line2D([], [], color=colour, marker=mark, markersize=5, label=mechanics_name(name))
                for name, (colour, mark) in looks.items()]
     handles.append(Line2D([], [], color=FLAG, marker="X", markersize=8, linestyle="none", label="not as its gate asks"))
-    put_legend(figure, handles, 5)
+    put_legend(figure, handles, _legend_columns(handles, width))
     return figure
+
+
+def _legend_columns(handles: list[Line2D], width_in: float) -> int:
+    """As many columns as the longest label lets into a width."""
+    longest = max(len(str(handle.get_label())) for handle in handles)
+    return max(1, min(6, int(width_in / (0.075 * longest + 0.7))))
 
 
 def _size_axes(axes: Axes, panel: Panel, low: float, high: float, unit: str) -> None:

@@ -137,6 +137,17 @@ def test_round_off_is_not_drawn_but_counted(tmp_path: Path) -> None:
     assert "Everything holds to round-off" in page_of(tmp_path / "runs", tmp_path / "out2")
 
 
+def test_cases_that_hold_to_round_off_are_folded_while_they_do(tmp_path: Path) -> None:
+    """Their rows are all there, behind a line that counts them; one that falls short stands with the others."""
+    rows = [row | {"case": "flight"} for row in some_rows()[3:6]] + some_rows()[:3]
+    page = page_of(write_ladder(tmp_path, rows), tmp_path / "out")
+    fold = page.index("Cases that hold to round-off (1 with 3 comparisons, all within their gates)")
+    assert page.index("It shows at_rest.") < fold < page.index("It shows flight.") and page.count('class="mark yes"') == 6
+    rows[0] |= {"verdict": "FAIL", "problems": ["error above"]}
+    page = page_of(write_ladder(tmp_path, rows), tmp_path / "out")
+    assert "Cases that hold to round-off" not in page and page.count('class="mark ') == 6
+
+
 def test_every_link_leads_somewhere(tmp_path: Path) -> None:
     """Figures and anchors exist; the page of the experiments and this one link to each other."""
     runs, out = write_ladder(tmp_path, some_rows()), tmp_path / "out"

@@ -78,7 +78,8 @@ def main(arguments: list[str] | None = None) -> int:
         show(chosen)
         return 0
     rungs = rungs_of(chosen, options.smoke, options.runs)
-    measured = rows_of(make_all(rungs, options.jobs, tell=lambda line: print(line, file=sys.stderr, flush=True)))
+    made = make_all(rungs, options.jobs, tell=lambda line: print(line, file=sys.stderr, flush=True))
+    measured = rows_of(made)
     if options.accept:
         accept(measured, known, chosen)
     rows = judged(measured, {family: book.read(family) for family in chosen})
@@ -90,6 +91,9 @@ def main(arguments: list[str] | None = None) -> int:
     print(text(rows))
     for line in stale:
         print(f"gate of nothing: {line}")
+    minutes = sum(one.outcome.wall_s * min(one.rung.case.threads, options.jobs) for one in made) / 60.0
+    before = sum(one.outcome.skipped for one in made)
+    print(f"{len(made)} runs, {before} of them made before, {minutes:.1f} thread-minutes in all")
     print(f"ladder: {count.words()}{f'; {len(stale)} gates of nothing' if stale else ''}; written to {out}")
     return 3 if count.failed else 1 if count.wrong or stale else 0
 

@@ -16,8 +16,9 @@ FOLDER = Path(__file__).resolve().parent / "gates"
 
 SHARE = 1.5  # an error may be this many times the measured one
 ORDER_LOSS = 0.3  # an order may be this much below the measured one; half an order lost is refused
-# A quantity whose `no_order` begins so holds to rounding: another machine rounds otherwise, so it may be ten times as large,
-# up to the next power of ten, never more than ROUND_OFF_MOST, and need not be less than ROUND_OFF_FLOOR.
+# A quantity whose `no_order` begins so holds to rounding: another machine rounds otherwise, so its error may be ten times as
+# large, up to the next power of ten, but no more than ROUND_OFF_MOST (fields are stored in single precision), and need not be
+# less than ROUND_OFF_FLOOR.
 ROUND_OFF = "round-off"
 ROUND_OFF_FLOOR = 1e-12
 ROUND_OFF_MOST = 1e-6
@@ -62,8 +63,9 @@ def gate_of(no_order: str, error: float, order: float | None, mutants: dict[str,
         raise CannotAccept(f"the error is {error}")
     size = down(abs(error), 4)
     if is_round_off(no_order):
-        allowed = max(ROUND_OFF_FLOOR, 10.0 ** math.ceil(math.log10(10.0 * size))) if size > 0.0 else ROUND_OFF_FLOOR
-        if allowed > ROUND_OFF_MOST:
+        decade = 10.0 ** math.ceil(math.log10(10.0 * size)) if size > 0.0 else 0.0
+        allowed = min(max(decade, ROUND_OFF_FLOOR), ROUND_OFF_MOST)
+        if 3.0 * size > ROUND_OFF_MOST:
             raise CannotAccept(f"an error of {size:.2g} is no round-off")
     else:
         allowed = down(SHARE * size)
