@@ -1,4 +1,7 @@
 // The catalogue's entries for flow: a channel of given opening, and a fracture fed at a rate.
+#include <algorithm>
+#include <cmath>
+
 #include "catalogue.hpp"
 #include "channel_flow.hpp"
 #include "kgd.hpp"
@@ -94,23 +97,75 @@ Entry kgd_toughness_entry() {
           }};
 }
 
+// The shape of one toughness number, and how far its numbers, and its profiles at xi, move from half the knots.
+struct SettledShape {
+  explicit SettledShape(double toughness_number, const std::vector<double>& xi = {}) : shape(toughness_number) {
+    const KgdShape half(toughness_number, kKnots / 2);
+    const double w = shape.opening(0), p = shape.pressure(0);
+    error = std::abs(shape.length_factor() / half.length_factor() - 1);
+    error = std::max({error, std::abs(half.opening(0) / w - 1), std::abs(half.pressure(0) / p - 1), 1e-9});
+    for (double at : xi) {
+      const double p_at = shape.pressure(at);
+      error = std::max({error, std::abs(half.opening(at) - shape.opening(at)) / w,
+                        std::abs(half.pressure(at) - p_at) / std::max(p, std::abs(p_at))});
+    }
+  }
+
+  static constexpr int kKnots = 400;
+  KgdShape shape;
+  double error;
+};
+
+constexpr const char* kShapeError = "change of length, opening, pressure from half the knots, over the inlet's";
+
 Entry kgd_viscosity_entry() {
   return {"kgd_viscosity",
           "plane-strain hydraulic fracture at a constant rate, viscosity-dominated: length, opening, net pressure",
           kgd_inputs(),
           "self-similar equations of Adachi & Detournay 2002, own solution",
-          "no leak-off, incompressible fluid, infinite plane, no fluid lag, toughness_number below about 1; the mass "
-          "balance w_t + q_x = 0, not the study's law; net pressure",
+          "no leak-off, incompressible fluid, infinite plane, no fluid lag, toughness_number below about 1 (kgd takes "
+          "any); the mass balance w_t + q_x = 0, not the study's law; net pressure",
           [](const Inputs& in) {
-            const KgdViscosityShape shape;
-            const KgdState state = kgd_viscosity(shape, rock_of(in, "").E_prime(), in.number("rate_m2_s"),
-                                                 in.number("time_s"), in.number("viscosity_Pa_s"));
-            Answer answer = kgd_answer(in, state, 2e-4, "change of the shape's numbers from half the knots");
+            const SettledShape settled(0);
+            const KgdShape& shape = settled.shape;
+            const KgdState state = kgd_fracture(shape, rock_of(in, "").E_prime(), in.number("rate_m2_s"),
+                                                in.number("time_s"), in.number("viscosity_Pa_s"));
+            Answer answer = kgd_answer(in, state, settled.error, kShapeError);
             answer.values.push_back({"length_factor", shape.length_factor(), "1"});
             answer.values.push_back({"opening_factor", shape.opening(0), "1"});
             answer.values.push_back({"pressure_factor", shape.pressure(0), "1"});
             return answer;
           }};
+}
+
+Answer solve_kgd(const Inputs& in) {
+  const double E_prime = rock_of(in, "").E_prime();
+  const double rate = in.number("rate_m2_s"), mu = in.number("viscosity_Pa_s");
+  const double number = kgd_toughness_number(E_prime, rate, mu, in.number("toughness_Pa_sqrt_m"));
+  const SettledShape settled(number, in.numbers("xi"));
+  const KgdShape& shape = settled.shape;
+  const KgdState state = kgd_fracture(shape, E_prime, rate, in.number("time_s"), mu);
+  const auto opening = [&](double xi) { return state.mouth_opening * shape.opening(xi) / shape.opening(0); };
+  const auto pressure = [&](double xi) { return state.inlet_pressure * shape.pressure(xi) / shape.pressure(0); };
+  Answer answer = kgd_answer(in, state, settled.error, kShapeError);
+  answer.values.push_back({"opening_m", at_each(in, "xi", opening), "m"});
+  answer.values.push_back({"pressure_Pa", at_each(in, "xi", pressure), "Pa"});
+  return answer;
+}
+
+Entry kgd_entry() {
+  Input xi = list_input("xi", "x/l, where opening and pressure are wanted", 0.5);
+  xi.least = -1;
+  xi.most = 1;
+  xi.least_excluded = xi.most_excluded = true;
+  return {"kgd",
+          "plane-strain hydraulic fracture at a constant rate, any toughness and viscosity: length, opening, net "
+          "pressure, profiles",
+          joined(kgd_inputs(), {xi}),
+          "self-similar for every toughness number (Spence & Sharp 1985; Adachi & Detournay 2002), own solution",
+          "no leak-off, incompressible fluid, infinite plane, no fluid lag, tip at K_I = K_Ic; the mass balance "
+          "w_t + q_x = 0, not the study's law; net pressure, without lower bound at the tip",
+          solve_kgd};
 }
 
 }  // namespace
@@ -119,7 +174,10 @@ std::vector<Entry> flow_entries() {
   return {ramp_entry("channel_no_flux", "ramped inlet, constant opening, closed far end: pressure", FarEnd::no_flux),
           ramp_entry("channel_zero_pressure", "ramped inlet, constant opening, zero pressure at the far end: pressure",
                      FarEnd::zero_pressure),
-          channel_ellipse(), kgd_toughness_entry(), kgd_viscosity_entry()};
+          channel_ellipse(),
+          kgd_toughness_entry(),
+          kgd_viscosity_entry(),
+          kgd_entry()};
 }
 
 }  // namespace strata::reference

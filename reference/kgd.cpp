@@ -1,15 +1,25 @@
 #include "kgd.hpp"
 
-#include <Eigen/Dense>
+#include <gsl/gsl_integration.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <stdexcept>
 
 namespace strata::reference {
 namespace {
 
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 using std::numbers::pi;
+
+// Below this K_m the zone near the tip where toughness shows is smaller than round-off, and Newton's method would not
+// converge; the shape changes by 1e-8 from here to K_m = 0.
+constexpr double kLeastToughness = 0.01;
 
 void require_positive(std::initializer_list<double> values) {
   for (double value : values)
@@ -17,120 +27,197 @@ void require_positive(std::initializer_list<double> values) {
       throw std::invalid_argument("modulus, rate, time, viscosity and toughness must be positive and finite");
 }
 
-// The crack's pressure from its values at knots x_0 = 0 .. x_(N-1), linear between, and a mean over the last interval.
-PressureKnots mirrored(const Eigen::VectorXd& x, const Eigen::VectorXd& P) {
-  const Eigen::Index N = x.size() - 1;
-  PressureKnots knots;
-  const auto add = [&knots](double at, double value) {
-    knots.x.push_back(at);
-    knots.p.push_back(value);
-  };
-  add(-1, P(N));
-  add(-x(N - 1), P(N));
-  for (Eigen::Index i = N - 1; i > 0; --i) add(-x(i), P(i));
-  for (Eigen::Index i = 0; i < N; ++i) add(x(i), P(i));
-  add(x(N - 1), P(N));
-  add(1, P(N));
-  return knots;
-}
-
-struct Grid {
-  Eigen::VectorXd x;        // knots, xi
-  Eigen::VectorXd u;        // 1 - xi, exact near the tip
-  Eigen::MatrixXd opening;  // at knot i for unit pressure at knot j (j = N: the last interval), a = E' = 1
-  Eigen::VectorXd K;        // K_I for the same
-  int tip = 0;              // from this knot on the opening is the tip's own
+// Nodes and weights of the 10-point Gauss-Legendre rule on [0, 1].
+struct GaussPoint {
+  double at, weight;
 };
+const std::array<GaussPoint, 10>& gauss_rule() {
+  static const std::array<GaussPoint, 10> rule = [] {
+    std::array<GaussPoint, 10> points{};
+    const std::unique_ptr<gsl_integration_glfixed_table, void (*)(gsl_integration_glfixed_table*)> table(
+        gsl_integration_glfixed_table_alloc(points.size()), gsl_integration_glfixed_table_free);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      gsl_integration_glfixed_point(0, 1, i, &points[i].at, &points[i].weight, table.get());
+    return points;
+  }();
+  return rule;
+}
 
-Grid make_grid(int N) {
-  Grid grid{Eigen::VectorXd(N + 1), Eigen::VectorXd(N + 1), Eigen::MatrixXd(N, N + 1), Eigen::VectorXd(N + 1), 0};
-  // Fourth power: the tip's (1-xi)^(2/3) is then resolved to 1e-5 and 1 - xi stays above round-off.
-  for (int i = 0; i <= N; ++i) grid.u(i) = std::pow(1 - static_cast<double>(i) / N, 4);
-  grid.x = 1 - grid.u.array();
-  grid.tip = N - std::max(4, N / 25);
-  for (int j = 0; j <= N; ++j) {
-    // The hat of knot j alone, so that a row costs a few segments; the jump at the last knot is the interval's own.
-    PressureKnots hat;
-    if (j == N) {
-      hat = {{-1, -grid.x(N - 1), -grid.x(N - 1), grid.x(N - 1), grid.x(N - 1), 1}, {1, 1, 0, 0, 1, 1}};
-    } else {
-      const double to = j + 1 < N ? grid.x(j + 1) : grid.x(j);
-      const double from = j > 0 ? grid.x(j - 1) : 0;
-      const double foot = j > 0 ? 0.0 : 1.0;
-      hat = {{-to, -grid.x(j), -from, from, grid.x(j), to}, {0, 1, foot, foot, 1, 0}};
-    }
-    const LinearlyPressurisedCrack crack(1, 1, hat);
-    grid.K(j) = crack.K_I().plus;
-    for (int i = 0; i < N; ++i) grid.opening(i, j) = crack.opening(grid.x(i));
+// sqrt(1 - xi^2) of xi = 1 - u.
+double root_of(double u) {
+  return std::sqrt(u * (2 - u));
+}
+
+// ln|(r(u) + r(v))/(r(u) - r(v))| without cancellation near the tip: r(u)^2 - r(v)^2 = (u - v)(2 - u - v).
+double symmetric_kernel(double u, double v) {
+  const double r = root_of(u), s = root_of(v);
+  const double sum = r + s;
+  const double difference = std::abs((u - v) * (2 - u - v)) / sum;
+  return difference == 0 ? 0.0 : std::log1p(2 * std::min(r, s) / difference);
+}
+
+// int from v = low to v = high of weight(v) {1, (ln v - ln low)/(ln high - ln low)} dv by Gauss's rule; with v^4 in
+// place of v about `singular`, the place of a logarithm in the weight, if that lies in the interval or near it.
+template <typename Weight>
+std::array<double, 2> hat_moments(double low, double high, double singular, const Weight& weight) {
+  std::array<double, 2> moments{0, 0};
+  const double span = low > 0 ? std::log(high / low) : 1.0;
+  const auto add = [&](double v, double dv) {
+    const double value = weight(v) * dv;
+    moments[0] += value;
+    if (low > 0) moments[1] += value * std::log(v / low) / span;
+  };
+  const double width = high - low;
+  if (singular < low - 0.5 * width || singular > high + 0.5 * width) {
+    for (const GaussPoint& point : gauss_rule()) add(low + width * point.at, width * point.weight);
+    return moments;
   }
-  return grid;
+  const double pole = std::clamp(singular, low, high);
+  for (const double end : {low, high})
+    for (const GaussPoint& point : gauss_rule()) {
+      const double cube = point.at * point.at * point.at;
+      add(pole + (end - pole) * cube * point.at, 4 * cube * std::abs(end - pole) * point.weight);
+    }
+  return moments;
 }
 
-Eigen::VectorXd powers(const Eigen::VectorXd& values, double exponent) {
-  return values.unaryExpr([exponent](double value) { return std::pow(value, exponent); });
+// The functional int_0^1 P weight of P's values at the knots (linear in ln u) and of its mean beyond the last knot.
+template <typename Weight>
+VectorXd functional(const VectorXd& u, double singular, const Weight& weight) {
+  const Index N = u.size();
+  VectorXd row = VectorXd::Zero(N + 1);
+  for (Index j = 0; j + 1 < N; ++j) {
+    const auto moments = hat_moments(u(j + 1), u(j), singular, weight);
+    row(j) += moments[1];
+    row(j + 1) += moments[0] - moments[1];
+  }
+  row(N) = hat_moments(0, u(N - 1), singular, weight)[0];
+  return row;
 }
 
-// int from u = b to u = a of (linear between f_a at a and f_b at b) u^power du, for a > b.
-double weighted_integral(double a, double b, double f_a, double f_b, double power) {
-  const double zeroth = (std::pow(a, power + 1) - std::pow(b, power + 1)) / (power + 1);
-  const double first = (std::pow(a, power + 2) - std::pow(b, power + 2)) / (power + 2);
-  return f_a * zeroth + (f_b - f_a) * (a * zeroth - first) / (a - b);
+// V at xi = 1 - u as a functional of P.
+VectorXd opening_functional(const VectorXd& knots, double u) {
+  return 4 / pi * functional(knots, u, [u](double v) { return symmetric_kernel(u, v); });
 }
 
-// int_xi^1 V at every knot, V taken as u^(2/3) times a linear function between knots.
-Eigen::VectorXd fluid_ahead(const Grid& grid, const Eigen::VectorXd& V) {
-  const Eigen::Index N = V.size();
-  Eigen::VectorXd ahead = Eigen::VectorXd::Zero(N + 1);
-  const Eigen::VectorXd h = V.cwiseQuotient(powers(grid.u.head(N), 2.0 / 3));
-  for (Eigen::Index i = N - 1; i >= 0; --i)
-    ahead(i) = ahead(i + 1) + weighted_integral(grid.u(i), grid.u(i + 1), h(i), i + 1 < N ? h(i + 1) : h(i), 2.0 / 3);
+// K_I as a functional of P: (2/sqrt(pi)) int_0^1 P/sqrt(1 - s^2) ds.
+VectorXd toughness_functional(const VectorXd& knots) {
+  VectorXd row = 2 / std::sqrt(pi) * functional(knots, 2, [](double v) { return 1 / root_of(v); });
+  row(knots.size()) = 2 / std::sqrt(pi) * std::acos(1 - knots(knots.size() - 1));
+  return row;
+}
+
+// Knots u = 1 - xi from 1 down to e^-kDepth: ln u by a cubic of the index, evenly spaced xi at the inlet.
+VectorXd make_knots(int N) {
+  constexpr double kDepth = 46, kInlet = 2.5;
+  VectorXd u(N);
+  for (int i = 0; i < N; ++i) {
+    const double t = static_cast<double>(i) / (N - 1);
+    u(i) = std::exp(-kInlet * t - (kDepth - kInlet) * t * t * t);
+  }
+  return u;
+}
+
+// int from u = b to u = a of u^(1/2) times the linear function that is f_a at a and f_b at b, as weights of (f_a, f_b).
+std::array<double, 2> root_weights(double a, double b) {
+  const double zeroth = (a * std::sqrt(a) - b * std::sqrt(b)) / 1.5;
+  const double first = (a * a * std::sqrt(a) - b * b * std::sqrt(b)) / 2.5;
+  const double at_b = (a * zeroth - first) / (a - b);
+  return {zeroth - at_b, at_b};
+}
+
+// The matrix of int_xi^1 V at every knot, V taken as u^(1/2) times a linear function between knots.
+MatrixXd volume_matrix(const VectorXd& u) {
+  const Index N = u.size();
+  MatrixXd ahead = MatrixXd::Zero(N, N);
+  ahead(N - 1, N - 1) = u(N - 1) / 1.5;
+  for (Index i = N - 2; i >= 0; --i) {
+    const auto weights = root_weights(u(i), u(i + 1));
+    ahead.row(i) = ahead.row(i + 1);
+    ahead(i, i) += weights[0] / std::sqrt(u(i));
+    ahead(i, i + 1) += weights[1] / std::sqrt(u(i + 1));
+  }
   return ahead;
 }
 
-// P at the knots and its mean over the last interval from lubrication, with the constant that makes K_I vanish.
-Eigen::VectorXd lubrication_pressure(const Grid& grid, const Eigen::VectorXd& V, const Eigen::VectorXd& ahead) {
-  const Eigen::Index N = V.size();
-  // -P' = f u^(-4/3), f smooth.
-  const Eigen::VectorXd flux = ahead.head(N) + 2.0 / 3 * grid.x.head(N).cwiseProduct(V);
-  const Eigen::VectorXd f = flux.cwiseQuotient(powers(V, 3)).cwiseProduct(powers(grid.u.head(N), 4.0 / 3));
-  Eigen::VectorXd P = Eigen::VectorXd::Zero(N + 1);
-  for (Eigen::Index i = 0; i + 1 < N; ++i)
-    P(i + 1) = P(i) - weighted_integral(grid.u(i), grid.u(i + 1), f(i), f(i + 1), -4.0 / 3);
-  P(N) = P(N - 1) - 1.5 * f(N - 1) * std::pow(grid.u(N - 1), -1.0 / 3);
-  const double constant = grid.K.dot(P) / grid.K.sum();
-  return P.array() - constant;
-}
-
-struct Solution {
-  PressureKnots pressure;
-  double g = 0.0;
-};
-
-Solution solve_shape(int N) {
-  const Grid grid = make_grid(N);
-  const double tip_factor = std::cbrt(2.0 / 3) * std::cbrt(2.0) * std::pow(3.0, 5.0 / 6);
-  const Eigen::VectorXd tip = tip_factor * powers(grid.u.head(N), 2.0 / 3);
-  Eigen::VectorXd V = tip;
-  for (int step = 0; step < 300; ++step) {
-    const Eigen::VectorXd ahead = fluid_ahead(grid, V);
-    const Eigen::VectorXd P = lubrication_pressure(grid, V, ahead);
-    const Eigen::VectorXd opened = grid.opening * P;
-    double change = 0.0;
-    for (Eigen::Index i = 0; i < grid.tip; ++i) {
-      // Doubling V quarters the opening that it causes: the exponents 2/3 and 1/3 make the two cancel.
-      const double next = std::pow(V(i), 2.0 / 3) * std::cbrt(std::max(opened(i), 0.1 * V(i)));
-      change = std::max(change, std::abs(next / V(i) - 1));
-      V(i) = next;
-    }
-    if (change < 1e-12) return {mirrored(grid.x, P), std::sqrt(0.5 / ahead(0))};
+// The discrete equations of one toughness number, in v = V/s and q = P/s with s = (1 + c K_m)^(4/3), so that all is of
+// the order of one for any K_m:  -v^3 q' = s^-3 [int v + (2/3) xi v],  K_I[q] = c K_m (2 s int_0^1 v)^(1/4)/s.
+class ShapeEquations {
+ public:
+  ShapeEquations(const VectorXd& knots, double toughness_number)
+      : u_(knots),
+        N_(knots.size()),
+        factor_(toughness_number * std::sqrt(pi / 32)),
+        scale_(std::pow(1 + factor_, 4.0 / 3)),
+        opening_(N_, N_ + 1),
+        K_(toughness_functional(knots)),
+        ahead_(volume_matrix(knots)) {
+    for (Index i = 0; i < N_; ++i) opening_.row(i) = opening_functional(u_, u_(i));
+    flux_ = ahead_;
+    flux_.diagonal() += 2.0 / 3 * (1 - u_.array()).matrix();
   }
-  throw std::runtime_error("the self-similar fracture did not converge");
-}
 
-Solution checked_solution(int knots) {
-  if (knots < 60 || knots > 240) throw std::invalid_argument("knots is outside [60, 240]");
-  return solve_shape(knots);
-}
+  double scale() const { return scale_; }
+  // int_0^1 v.
+  double volume(const VectorXd& v) const { return ahead_.row(0).dot(v); }
+  // -dq/d ln u at the knots.
+  VectorXd slope(const VectorXd& v) const {
+    return (flux_ * v).cwiseProduct(u_).cwiseQuotient(v.array().cube().matrix()) / std::pow(scale_, 3);
+  }
+
+  // About the wider of an elliptic crack and one that is a viscous tip everywhere.
+  VectorXd guess() const {
+    const double ellipse = 4 / std::sqrt(pi) * factor_ / (1 + factor_);
+    const double tip = std::cbrt(4.0 / 3) * std::pow(3.0, 5.0 / 6) / scale_;
+    return u_.unaryExpr(
+        [&](double u) { return std::cbrt(std::pow(ellipse * root_of(u), 3) + std::pow(tip, 3) * u * u); });
+  }
+
+  // q from v; with `step` also Newton's step of ln v.
+  VectorXd pressure(const VectorXd& v, VectorXd* step = nullptr) const {
+    const VectorXd f = slope(v);
+    const double K = factor_ * std::pow(2 * scale_ * volume(v), 0.25) / scale_;
+    VectorXd q = integrated(f);
+    const double constant = (K - K_.dot(q)) / K_.sum();
+    q.array() += constant;
+    if (step == nullptr) return q;
+
+    // Derivatives with respect to ln v, column by column.
+    MatrixXd df = flux_ * v.asDiagonal();
+    df.array().colwise() *= u_.array() / v.array().cube() / std::pow(scale_, 3);
+    df.diagonal() -= 3 * f;
+    MatrixXd dq(N_ + 1, N_);
+    dq.row(0).setZero();
+    for (Index i = 0; i + 1 < N_; ++i)
+      dq.row(i + 1) = dq.row(i) - 0.5 * std::log(u_(i) / u_(i + 1)) * (df.row(i) + df.row(i + 1));
+    dq.row(N_) = dq.row(N_ - 1) - df.row(N_ - 1);
+    const Eigen::RowVectorXd dK = 0.25 * K / volume(v) * ahead_.row(0).cwiseProduct(v.transpose());
+    dq.rowwise() += (dK - K_.transpose() * dq) / K_.sum();
+
+    const VectorXd opened = opening_ * q;
+    MatrixXd jacobian = opening_ * dq;
+    jacobian.array().colwise() /= v.array();
+    jacobian.diagonal() -= VectorXd::Ones(N_);
+    *step = jacobian.partialPivLu().solve((v - opened).cwiseQuotient(v));
+    return q;
+  }
+
+ private:
+  // q from its slope, 0 at the inlet; the last value is the mean of q + f ln(u/u_last) beyond the last knot.
+  VectorXd integrated(const VectorXd& f) const {
+    VectorXd q = VectorXd::Zero(N_ + 1);
+    for (Index i = 0; i + 1 < N_; ++i) q(i + 1) = q(i) - 0.5 * std::log(u_(i) / u_(i + 1)) * (f(i) + f(i + 1));
+    q(N_) = q(N_ - 1) - f(N_ - 1);
+    return q;
+  }
+
+  VectorXd u_;
+  Index N_;
+  double factor_, scale_;
+  MatrixXd opening_;
+  VectorXd K_;
+  MatrixXd ahead_, flux_;
+};
 
 }  // namespace
 
@@ -148,22 +235,51 @@ double kgd_toughness_number(double E_prime, double rate, double viscosity, doubl
   return 4 * std::sqrt(2 / pi) * toughness / std::pow(12 * viscosity * rate * std::pow(E_prime, 3), 0.25);
 }
 
-KgdViscosityShape::KgdViscosityShape(int knots) : crack_(1, 1, {{-1, 1}, {0, 0}}) {
-  const Solution solution = checked_solution(knots);
-  pressure_ = solution.pressure;
-  crack_ = LinearlyPressurisedCrack(1, 1, pressure_);
-  g_ = solution.g;
+KgdShape::KgdShape(double toughness_number, int knots) {
+  if (knots < 50 || knots > 1000) throw std::invalid_argument("knots is outside [50, 1000]");
+  if (!(toughness_number >= 0) || !std::isfinite(toughness_number))
+    throw std::invalid_argument("the toughness number must not be negative, and finite");
+  u_ = make_knots(knots);
+  solve(toughness_number);
 }
 
-double KgdViscosityShape::opening(double xi) const {
-  return g_ * crack_.opening(xi);
+void KgdShape::solve(double toughness_number) {
+  constexpr int kSteps = 100;
+  constexpr double kLongest = 0.7;  // of a step in ln v
+  const ShapeEquations equations(u_, std::max(toughness_number, kLeastToughness));
+  VectorXd v = equations.guess();
+  for (int i = 0; i < kSteps; ++i) {
+    VectorXd step;
+    equations.pressure(v, &step);
+    if (!step.allFinite()) break;
+    const double size = step.cwiseAbs().maxCoeff();
+    v = v.cwiseProduct((step * std::min(1.0, kLongest / size)).array().exp().matrix());
+    if (size < 1e-10) {
+      P_ = equations.scale() * equations.pressure(v);
+      tip_slope_ = equations.scale() * equations.slope(v)(u_.size() - 1);
+      g_ = std::sqrt(0.5 / (equations.scale() * equations.volume(v)));
+      return;
+    }
+  }
+  throw std::runtime_error("the self-similar fracture did not converge");
 }
 
-double KgdViscosityShape::pressure(double xi) const {
-  return pressure_(xi);
+double KgdShape::opening(double xi) const {
+  const double u = 1 - std::abs(xi);
+  return u > 0 ? g_ * opening_functional(u_, u).dot(P_) : 0.0;
 }
 
-KgdState kgd_viscosity(const KgdViscosityShape& shape, double E_prime, double rate, double time, double viscosity) {
+double KgdShape::pressure(double xi) const {
+  const double u = 1 - std::abs(xi);
+  if (!(u > 0)) throw std::invalid_argument("the pressure is wanted at or beyond the tip");
+  const Index last = u_.size() - 1;
+  if (u < u_(last)) return P_(last) + tip_slope_ * std::log(u / u_(last));
+  Index j = 0;
+  while (j + 1 < last && u < u_(j + 1)) ++j;
+  return P_(j) + (P_(j + 1) - P_(j)) * std::log(u_(j) / u) / std::log(u_(j) / u_(j + 1));
+}
+
+KgdState kgd_fracture(const KgdShape& shape, double E_prime, double rate, double time, double viscosity) {
   require_positive({E_prime, rate, time, viscosity});
   const double mu = 12 * viscosity;
   const double Q_3 = rate * rate * rate;

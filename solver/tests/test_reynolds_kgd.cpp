@@ -119,8 +119,8 @@ TEST_CASE("a fracture dominated by toughness") {
 // of a wedge (mouth 70 %), cells born full.
 TEST_CASE("a fracture dominated by viscosity") {
   const double mu = 0.1;
-  const reference::KgdViscosityShape shape(120);
-  const auto limit = [&](double t) { return reference::kgd_viscosity(shape, E_prime, rate, t, mu); };
+  const reference::KgdShape shape(0, 120);
+  const auto limit = [&](double t) { return reference::kgd_fracture(shape, E_prime, rate, t, mu); };
   Off before{1.0, 1.0, 1.0};
   for (const int cells : {30, 60}) {
     const Off off = run({mu, 0.0, limit(100.0).half_length / cells}, limit);
