@@ -15,11 +15,11 @@ from typing import Any
 import h5py
 import numpy as np
 
-from verification.harness.scenes import MECHANICS, mechanics_of, scenes_of, variants_of
+from verification.harness.scenes import MECHANICS, STUDY_VARIANTS, mechanics_of, scenes_of, variants_of
 
 Arrays = dict[str, np.ndarray]
 
-MAIN_VARIANTS: tuple[str, ...] = ("perfect", "friction", "weak", "soft", "weak_soft", "soft_weak")
+MAIN_VARIANTS: tuple[str, ...] = STUDY_VARIANTS
 
 
 class NotAvailable(Exception):

@@ -1,1 +1,1 @@
-"""The harness: run scenes, load run folders, compare with references, sweep, evaluate claims."""
+"""The harness: run scenes, load run folders, compare with references, refine meshes, budget errors, evaluate claims."""

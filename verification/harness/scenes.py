@@ -9,6 +9,9 @@ from typing import Any
 # The two models of the rock, in the order in which they are run and shown.
 MECHANICS: tuple[str, ...] = ("explicit", "quasistatic")
 
+# The interface types of the study itself, as variants; two unlike interfaces are named from below.
+STUDY_VARIANTS: tuple[str, ...] = ("perfect", "friction", "weak", "soft", "weak_soft", "soft_weak")
+
 # Keys with values, as (table, key, value), that only quasi-static runs have.
 QUASISTATIC_ONLY = (("fluid", "law", "reynolds"), ("fracture", "crossing", "energy"))
 

@@ -1,0 +1,144 @@
+"""What an error budget varies: for each factor, the other settings of a scene that differ from it in this alone."""
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import Any
+
+from verification.harness.quantities import turns
+
+# Radii of the widest J ring, in cells, beside the default of 4.
+RINGS = (3.0, 5.0)
+
+# numerics.flow_change by default: what a step of the flow may change of an event's margin.
+FLOW_CHANGE = 0.15
+
+# Beyond the fine cells a straight fracture's larger block is graded up to so many cells, which leaves results as they are.
+FAR_CELLS = 4.0
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """Another value of a factor: what stands in a folder's name, in words, and as settings KEY=VALUE."""
+
+    id: str
+    label: str
+    settings: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Factor:
+    """A factor; group 'numerical' (the method's), 'model' (a choice of the scene's) or 'beside' (shown, not summed)."""
+
+    id: str
+    label: str
+    group: str
+    alternatives: tuple[Alternative, ...]
+    why_not: str = ""
+
+
+def toml(value: Any) -> str:
+    """A value as TOML on one line."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key} = {toml(item)}" for key, item in value.items()) + "}"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(toml(item) for item in value) + "]"
+    return json.dumps(value) if isinstance(value, (str, bool)) else repr(value)
+
+
+def factors_of(content: dict[str, Any], mechanics: str) -> list[Factor]:
+    """All factors of a scene (its keys as used) in a mechanics; each alternative differs from it in that factor alone."""
+    return [
+        _mesh(content),
+        *_mesh_and_increment(content),
+        _step(content, mechanics),
+        Factor("ring", "J ring", "numerical",
+               tuple(_one(f"{r:g}", f"{r:g} cells", f"numerics.ring_cells={r!r}") for r in RINGS)),
+        _particles(content),
+        _increment(content),
+        _block(content, mechanics),
+        _rate(content),
+    ]  # fmt: skip
+
+
+def _one(id_: str, label: str, *settings: str) -> Alternative:
+    """An alternative."""
+    return Alternative(id_, label, settings)
+
+
+def _mesh(content: dict[str, Any]) -> Factor:
+    """Cells of half the size, the increment fixed."""
+    half = float(content["numerics"]["cell_m"]) / 2.0
+    return Factor("mesh", "mesh", "numerical", (_one("half", f"cells of {half:g} m", f"numerics.cell_m={half!r}"),))
+
+
+def _mesh_and_increment(content: dict[str, Any]) -> list[Factor]:
+    """For a path that turns: cells and increment of half the size; the direction of growth looks at both."""
+    if not turns(content):
+        return []
+    half, step = float(content["numerics"]["cell_m"]) / 2.0, float(content["fracture"].get("increment_m", 1.0)) / 2.0
+    both = _one("half", f"cells {half:g} m, increment {step:g} m", f"numerics.cell_m={half!r}", f"fracture.increment_m={step!r}")
+    return [Factor("mesh_increment", "mesh and increment", "beside", (both,))]
+
+
+def _step(content: dict[str, Any], mechanics: str) -> Factor:
+    """Half the time step, or half of what a step of the flow may change."""
+    if mechanics == "explicit":
+        half = float(content["numerics"].get("courant", 0.5)) / 2.0
+        return Factor("step", "time step", "numerical", (_one("half", f"Courant number {half:g}", f"numerics.courant={half!r}"),))
+    if content.get("fluid", {}).get("law", "paper") == "uniform":
+        return Factor("step", "flow step", "numerical", (), "no flow")
+    half = float(content["numerics"].get("flow_change", FLOW_CHANGE)) / 2.0
+    return Factor("step", "flow step", "numerical", (_one("half", f"flow change {half:g}", f"numerics.flow_change={half!r}"),))
+
+
+def _particles(content: dict[str, Any]) -> Factor:
+    """More particles a cell."""
+    own = int(content["numerics"].get("particles_per_cell", 4))
+    more = tuple(_one(str(n), f"{n} a cell", f"numerics.particles_per_cell={n}") for n in (4, 9, 16) if n > own)
+    return Factor("particles", "particles", "numerical", more, "" if more else "as many as there may be")
+
+
+def _increment(content: dict[str, Any]) -> Factor:
+    """Half and twice the increment of growth."""
+    own = float(content["fracture"].get("increment_m", 1.0))
+    both = tuple(_one(name, f"{own * k:g} m", f"fracture.increment_m={own * k!r}") for name, k in (("half", 0.5), ("double", 2.0)))
+    return Factor("increment", "increment", "model", both)
+
+
+def _rate(content: dict[str, Any]) -> Factor:
+    """Half and twice the rate of loading."""
+    own = float(content.get("fluid", {}).get("inlet", {}).get("rate_Pa_s", 0.0))
+    if own <= 0.0:
+        return Factor("rate", "loading rate", "model", (), "the inlet's pressure does not rise")
+    both = tuple(_one(name, f"{own * k / 1e6:g} MPa/s", f"fluid.inlet.rate_Pa_s={own * k!r}")
+                 for name, k in (("half", 0.5), ("double", 2.0)))  # fmt: skip
+    return Factor("rate", "loading rate", "model", both)
+
+
+def _block(content: dict[str, Any], mechanics: str) -> Factor:
+    """A block 1.5 and 2 times as wide and high."""
+    return Factor("block", "block", "model", tuple(_larger(content, mechanics, k) for k in (1.5, 2.0)))
+
+
+def _larger(content: dict[str, Any], mechanics: str, factor: float) -> Alternative:
+    """A block wider on both sides and higher at the top; the fracture and the layers beside it stay in its middle.
+
+    Where the path is straight and there is no inertia the cells beyond are graded; a path that turns would meet them.
+    """
+    domain, strata = content["domain"], content["strata"]
+    width, height = (factor * float(domain[key]) for key in ("width_m", "height_m"))
+    shift = (width - float(domain["width_m"])) / 2.0
+    path = [[float(x) + shift, float(y)] for x, y in content["fracture"]["path_m"]]
+    settings = [f"domain.width_m={width!r}", f"domain.height_m={height!r}", f"fracture.path_m={toml(path)}"]
+    layers = [dict(layer) for layer in strata["layers"]]
+    along_x = strata.get("along", "y") == "x"
+    if along_x and "thickness_m" in layers[0]:
+        layers[0]["thickness_m"] = float(layers[0]["thickness_m"]) + shift
+    if "thickness_m" in layers[-1]:
+        layers[-1].pop("thickness_m")  # takes what remains
+    if layers != list(strata["layers"]):
+        settings.append(f"strata.layers={toml(layers)}")
+    if mechanics == "quasistatic" and not turns(content):
+        settings.append(f"numerics.far_cell_m={FAR_CELLS * float(content['numerics']['cell_m'])!r}")
+    return _one(f"{factor:g}", f"{width:g} m x {height:g} m", *settings)

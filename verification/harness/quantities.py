@@ -1,0 +1,176 @@
+"""What of an experiment is followed as mesh, steps or block change: the same numbers of every run, with what they resolve.
+
+Pressures are inlet pressures (Pa), heights those of the tip above the symmetry line (m). Nothing here is counted in cells, so that
+the numbers mean the same on every mesh.
+"""
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from verification.harness.load import GROWTH_M, Array, Run
+from verification.harness.observables import (
+    SLACK_M, Measured, distances_to, exactly, final_angle_deg, final_height_m, grew, interface_height, lateral_deflection_m,
+    nothing, path_length, pressure_at_height, resample, start_Pa,
+)  # fmt: skip
+
+# A pause over which the inlet rises by this is an arrest (the solver's own word for it), Pa.
+ARREST_PA = 0.05e6
+
+# Above an interface, m, up to which a pause counts as one at it: the 4 cells of 1 m within which claims look for arrests.
+ABOVE_M = 4.0
+
+# Share of the margin in K to which a quasi-static run finds an event (event_tolerance in solver/advance_quasistatic.cpp).
+EVENT_SHARE = 1e-4
+
+HEIGHTS_M = (10.0, 15.0, 20.0, 40.0, 60.0)
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number that every run of an experiment has: its name (with the unit), what it is in words, and how to get it."""
+
+    name: str
+    label: str
+    unit: str
+    measure: Callable[[Run], Measured]
+
+
+@dataclass(frozen=True)
+class Pause:
+    """A stay of the tip at a height, m, while the inlet rises from one pressure to another, Pa; infinite where the run ends first."""
+
+    height_m: float
+    from_Pa: float
+    to_Pa: float
+
+    @property
+    def rise_Pa(self) -> float:
+        """Rise of the inlet pressure."""
+        return self.to_Pa - self.from_Pa
+
+
+def pauses(run: Run) -> list[Pause]:
+    """Every stay of the leading tip between two growth events, after the first one."""
+    x, y, inlet = (run.history[name] for name in ("tip_x_m", "tip_y_m", "inlet_Pa"))
+    starts = [0]
+    for k in range(1, len(x)):
+        if math.hypot(x[k] - x[starts[-1]], y[k] - y[starts[-1]]) > GROWTH_M:
+            starts.append(k)
+    ends = [float(inlet[k]) for k in starts[1:]] + [math.inf]
+    return [Pause(float(y[k]), float(inlet[k]), end) for k, end in zip(starts[1:], ends[1:])]
+
+
+def pause_at(run: Run, interface: int) -> Pause | Measured:
+    """The longest pause at an interface (counted from 1 below), or why there is none.
+
+    It counts from 1.5 increments below, where growth would meet the interface, to 4 m above, as in observables.arrests_at.
+    """
+    height = interface_height(run, interface)
+    low, high = height - 1.5 * run.increment_m - SLACK_M, height + ABOVE_M + SLACK_M
+    found = [pause for pause in pauses(run) if low <= pause.height_m <= high]
+    if not found:
+        return nothing(f"does not reach the interface at {height:g} m")
+    last_Pa = float(run.history["inlet_Pa"][-1])
+    return max(found, key=lambda pause: min(pause.to_Pa, last_Pa) - pause.from_Pa)
+
+
+def _of_pause(interface: int, number: Callable[[Pause, float], Measured]) -> Callable[[Run], Measured]:
+    """Something of the longest pause at an interface, given the last pressure of the run; flagged where it is no arrest."""
+
+    def measure(run: Run) -> Measured:
+        found = pause_at(run, interface)
+        if isinstance(found, Measured):
+            return found
+        last_Pa = float(run.history["inlet_Pa"][-1])
+        value = number(found, last_Pa)
+        if min(found.to_Pa, last_Pa) - found.from_Pa >= ARREST_PA:
+            return value
+        return Measured(value.low, value.high, value.note, (*value.flags, "no arrest"))
+
+    return measure
+
+
+def _bounded(value_Pa: float, least_Pa: float) -> Measured:
+    """A pressure, or the bound of it that the end of the run leaves."""
+    return exactly(value_Pa) if math.isfinite(value_Pa) else Measured(least_Pa, math.inf, "does not grow on")
+
+
+def interface_quantities(number: int, of: int) -> list[Quantity]:
+    """Arrest height, restart pressure and rise between them at one of so many interfaces across the fracture."""
+    where = f" at interface {number}" if of > 1 else ""
+    return [
+        Quantity(f"arrest_{number}_m", f"arrest height{where}", "m", _of_pause(number, lambda p, _: exactly(p.height_m))),
+        Quantity(f"restart_{number}_Pa", f"restart pressure{where}", "Pa",
+                 _of_pause(number, lambda p, last: _bounded(p.to_Pa, last))),
+        Quantity(f"plateau_{number}_Pa", f"rise while arrested{where}", "Pa",
+                 _of_pause(number, lambda p, last: _bounded(p.rise_Pa, last - p.from_Pa))),
+    ]  # fmt: skip
+
+
+def quantities_of(content: dict[str, Any], heights_m: Sequence[float] = HEIGHTS_M) -> list[Quantity]:
+    """What is followed of a scene (its keys with a variant's in place); heights above the tip's first and below its last only."""
+    found = [Quantity("start_Pa", "start of growth", "Pa", lambda run: start_Pa(run, None, {}))]
+    strata = content.get("strata", {})
+    if strata.get("along", "y") == "y":
+        across = [k for k, name in enumerate(strata.get("interfaces", []), 1) if name != "perfect"]
+        for number in across:
+            found += interface_quantities(number, len(across))
+    tip = max(float(point[1]) for point in content["fracture"]["path_m"])
+    top = float(content.get("stop", {}).get("tip_y_m", content["domain"]["height_m"]))
+    for height in heights_m:
+        if tip < height <= top:
+            found.append(Quantity(f"pressure_at_{height:g}_Pa", f"pressure at {height:g} m", "Pa", _at(height)))
+    found.append(Quantity("final_height_m", "final height", "m", lambda run: final_height_m(run, None, {})))
+    found.append(Quantity("final_Pa", "final pressure", "Pa", lambda run: exactly(run.summary.inlet_Pa)))
+    if turns(content):
+        found.append(Quantity("deflection_m", "farthest deflection", "m", lambda run: lateral_deflection_m(run, None, {})))
+        found.append(Quantity("final_angle_deg", "final angle", "degrees", lambda run: final_angle_deg(run, None, {})))
+    return found
+
+
+def _at(height_m: float) -> Callable[[Run], Measured]:
+    """Pressure at a height."""
+    return lambda run: pressure_at_height(run, height_m)
+
+
+def turns(content: dict[str, Any]) -> bool:
+    """Whether the fracture of a scene may leave its straight way."""
+    return content["fracture"].get("direction", "straight") != "straight"
+
+
+def noise_of(quantity: Quantity, run: Run, value: float) -> float:
+    """Differences of a quantity below this are not seen by the solver.
+
+    Pressures: without inertia an event is found to 1e-4 of its margin in K, that is of the net pressure; with inertia to a time
+    step. Others: round-off.
+    """
+    if quantity.unit != "Pa":
+        return 1e-6
+    if run.summary.mechanics == "quasistatic":
+        return EVENT_SHARE * abs(value - float(run.scene.get("in_situ", {}).get("horizontal_Pa", 0.0)))
+    rate = float(run.scene.get("fluid", {}).get("inlet", {}).get("rate_Pa_s", 0.0))
+    return rate * run.summary.time_s / max(run.summary.steps, 1)
+
+
+def path_gap(run: Run, against: Run, length_m: float = math.inf) -> tuple[float, float] | None:
+    """Root mean square and largest distance of a path from another's, m, over the length both have (no more than length_m).
+
+    Both are counted from their first points, so that blocks of different width compare; None where one does not grow.
+    """
+    if not (grew(run) and grew(against)):
+        return None
+    own, other = run.path - run.path[0], against.path - against.path[0]
+    step = 0.25
+    common = min(path_length(own), path_length(other), length_m)
+    far = distances_to(_first(resample(own, step), common, step), other)
+    return float(np.sqrt(np.mean(far**2))), float(np.max(far))
+
+
+def _first(points: Array, length_m: float, step_m: float) -> Array:
+    """The points of a resampled path up to a length."""
+    return points[: int(length_m / step_m + 1e-9) + 1]

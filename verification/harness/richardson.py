@@ -1,0 +1,184 @@
+"""What a number does as the mesh is refined: observed order, Richardson's extrapolate and its uncertainty, or why there is none.
+
+Sources: Roache, J. Fluids Eng. 116 (1994) 405; Celik et al., J. Fluids Eng. 130 (2008) 078001; for the factor of safety where
+the order is not confirmed, Oberkampf & Roy, Verification and Validation in Scientific Computing (2010), section 8.7.
+"""
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+# Orders outside this range are no order of a scheme whose terms are of first and second order.
+CLEAN_ORDERS = (0.5, 3.0)
+
+# Factors of safety of the grid convergence index: three sizes and an order that nothing speaks against; and where the
+# coarser sizes do not show the same order.
+SAFETY, SAFETY_UNCONFIRMED = 1.25, 3.0
+
+# Orders of two successive triples within this are the same order.
+SAME_ORDER = 0.5
+
+
+@dataclass(frozen=True)
+class Triple:
+    """Three sizes from coarse to fine: kind 'converges', 'oscillates', 'diverges' or 'still'; the order where there is one.
+
+    'still': no two values differ by more than the noise. 'settled': the last two do not, the first two do.
+    """
+
+    sizes: tuple[float, float, float]
+    kind: str
+    order: float | None
+
+    @property
+    def clean(self) -> bool:
+        """Whether the order is one of a converging scheme."""
+        return self.kind == "converges" and self.order is not None and CLEAN_ORDERS[0] <= self.order <= CLEAN_ORDERS[1]
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What refinement says of a number; `says` in words, the unit is that of the values.
+
+    kind: 'clean' (order, extrapolate and uncertainty are given), 'still' (the same at all sizes but for the noise), 'settled' (the
+    last refinement moved it by no more than the noise), else 'oscillates', 'diverges', 'odd order', 'too few'. spread is the
+    largest difference among the finest three values.
+    """
+
+    kind: str
+    says: str
+    triples: tuple[Triple, ...] = ()
+    order: float | None = None
+    extrapolate: float | None = None
+    uncertainty: float | None = None
+    spread: float | None = None
+
+
+def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float:
+    """Order p for which three values lie on f + C h^p, of any three sizes; NaN where the differences differ in sign.
+
+    (f1 - f2)/(f2 - f3) = (h1^p - h2^p)/(h2^p - h3^p), whose right side grows with p (Celik et al. 2008, eq. 3, solved by
+    bisection). Sizes coarse to fine. Infinite where f2 = f3; raises ValueError for sizes that do not fall.
+    """
+    h1, h2, h3 = sizes
+    if not h1 > h2 > h3 > 0.0:
+        raise ValueError(f"sizes {h1:g}, {h2:g}, {h3:g} do not fall")
+    coarse, fine = values[0] - values[1], values[1] - values[2]
+    if fine == 0.0:
+        return math.inf if coarse != 0.0 else math.nan
+    if coarse / fine <= 0.0:
+        return -math.inf if coarse == 0.0 else math.nan
+    a, b, wanted = math.log(h1 / h2), math.log(h2 / h3), math.log(coarse / fine)
+
+    def off(p: float) -> float:
+        return b * p + _log_expm1_ratio(a * p, b * p, a / b) - wanted
+
+    low, high = -60.0, 60.0
+    if off(low) > 0.0 or off(high) < 0.0:
+        return -math.inf if off(low) > 0.0 else math.inf
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if off(middle) < 0.0 else (low, middle)
+    return 0.5 * (low + high)
+
+
+def _log_expm1_ratio(x: float, y: float, limit: float) -> float:
+    """log((e^x - 1)/(e^y - 1)), whose limit for x, y -> 0 at x/y = limit is log(limit)."""
+    if abs(x) < 1e-9 and abs(y) < 1e-9:
+        return math.log(limit)
+    return math.log(math.expm1(x) / math.expm1(y))
+
+
+def triple(sizes: Sequence[float], values: Sequence[float], noise: float) -> Triple:
+    """What three successive values say; differences up to `noise` (unit of the values) mean nothing."""
+    three = (float(sizes[0]), float(sizes[1]), float(sizes[2]))
+    coarse, fine = values[0] - values[1], values[1] - values[2]
+    if abs(fine) <= noise:
+        return Triple(three, "still" if abs(coarse) <= noise else "settled", None)
+    if abs(coarse) <= noise:
+        return Triple(three, "diverges", None)
+    if coarse * fine < 0.0:
+        return Triple(three, "oscillates", None)
+    order = observed_order(three, values)
+    return Triple(three, "converges" if order > 0.0 else "diverges", order if math.isfinite(order) else None)
+
+
+def told(value: float, unit: str) -> str:
+    """A difference with its unit, pressures in kPa."""
+    return f"{value / 1e3:.3g} kPa" if unit == "Pa" else f"{value:.3g} {unit}".rstrip()
+
+
+def estimate(sizes: Sequence[float], values: Sequence[float], noise: float = 0.0, unit: str = "") -> Estimate:
+    """Order, extrapolate and uncertainty of values at sizes (coarse to fine), judged by the finest three.
+
+    Extrapolate f3 + (f3 - f2)/(r^p - 1), uncertainty F_s |f3 - f2|/(r^p - 1) with r = h2/h3 (Roache 1994). F_s is 1.25, and 3 where
+    the three sizes before show another order or none. The unit is for the words.
+    """
+    if len(sizes) != len(values):
+        raise ValueError(f"{len(sizes)} sizes and {len(values)} values")
+    if len(sizes) < 3:
+        spread = abs(values[1] - values[0]) if len(values) == 2 else None
+        return Estimate("too few", _few_words(sizes, values, unit), spread=spread)
+    triples = tuple(triple(sizes[k : k + 3], values[k : k + 3], noise) for k in range(len(sizes) - 2))
+    spread = max(values[-3:]) - min(values[-3:])
+    last = triples[-1]
+    if not last.clean:
+        kind = last.kind if last.kind != "converges" else "odd order"
+        return Estimate(kind, _why_not(last, spread, noise, unit), triples, last.order, spread=spread)
+    assert last.order is not None
+    agrees = len(triples) == 1 or _agree(triples[-2], last)
+    beyond = (values[-1] - values[-2]) / ((sizes[-2] / sizes[-1]) ** last.order - 1.0)
+    safety = SAFETY if agrees else SAFETY_UNCONFIRMED
+    doubt = "" if agrees else f"; {_triple_words(triples[-2])} with {triples[-2].sizes[0]:g} m, so the factor of safety is {safety:g}"
+    says = f"order {last.order:.2f}{doubt}"
+    return Estimate("clean", says, triples, last.order, values[-1] + beyond, safety * abs(beyond), spread)
+
+
+def estimate_of_changes(sizes: Sequence[float], changes: Sequence[float], noise: float = 0.0, unit: str = "") -> Estimate:
+    """The same for something of which only the distances between successive sizes are known, such as a path.
+
+    The extrapolate is left out; the uncertainty is that of the finest, F_s d/(r^p - 1) with d the last distance.
+    """
+    if len(changes) != max(len(sizes) - 1, 0):
+        raise ValueError(f"{len(sizes)} sizes have {len(sizes) - 1} changes, not {len(changes)}")
+    values = [math.fsum(changes[k:]) for k in range(len(sizes))]
+    found = estimate(sizes, values, noise, unit)
+    return Estimate(found.kind, found.says, found.triples, found.order, None, found.uncertainty, found.spread)
+
+
+def _agree(before: Triple, last: Triple) -> bool:
+    """Whether two successive triples show the same clean order."""
+    return before.clean and abs((before.order or 0.0) - (last.order or 0.0)) <= SAME_ORDER
+
+
+def _triple_words(item: Triple) -> str:
+    """What a triple shows, in words."""
+    if item.kind == "converges" and item.order is not None:
+        return f"order {item.order:.2f}"
+    words = {"converges": "too fast for an order", "still": "no change beyond the noise", "settled": "no change beyond the noise"}
+    order = f" (order {item.order:.2f})" if item.order is not None else ""
+    return words.get(item.kind, item.kind) + order
+
+
+def _why_not(last: Triple, spread: float, noise: float, unit: str) -> str:
+    """Why the finest three values show no order."""
+    if last.kind == "still":
+        return f"the same at the finest three sizes to {told(noise, unit)}" if noise > 0.0 else "the same at the finest three sizes"
+    if last.kind == "settled":
+        return f"settled: the last refinement moves it by no more than {told(noise, unit)}"
+    range_words = f"spread {told(spread, unit)} over the finest three"
+    if last.kind == "oscillates":
+        return f"oscillates: {range_words}"
+    if last.kind == "diverges":
+        order = "" if last.order is None else f"order {last.order:.2f}: "
+        return f"{order}not converging, {range_words}"
+    shown = "above 60" if last.order is None else f"{last.order:.2f}"
+    return f"order {shown} is outside {CLEAN_ORDERS[0]:g} to {CLEAN_ORDERS[1]:g}: no extrapolate, {range_words}"
+
+
+def _few_words(sizes: Sequence[float], values: Sequence[float], unit: str) -> str:
+    """What fewer than three values can say."""
+    if len(values) == 2:
+        return f"two sizes only, {told(abs(values[1] - values[0]), unit)} apart"
+    return f"one size only ({sizes[0]:g} m)" if len(values) == 1 else "at no size"
