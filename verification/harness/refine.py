@@ -66,6 +66,7 @@ class Study:
     increment_m: float
     levels: tuple[Level, ...]
     rows: tuple[Row, ...]
+    notes: tuple[str, ...] = ()
 
 
 # --- jobs
@@ -236,7 +237,35 @@ def study_of(
     rows = [row for row in rows if not arrests_nowhere(row)]
     if turns(content):
         rows += path_rows(levels)
-    return Study(mechanics, variant, increment_of(content), tuple(levels), tuple(rows))
+    return Study(mechanics, variant, increment_of(content), tuple(levels), tuple(rows), unlike(content, [level.cell_m for level in levels]))
+
+
+def unlike(content: dict[str, Any], cells_m: Sequence[float]) -> tuple[str, ...]:
+    """Where the first tip or an interface lies in its cell otherwise than at the finest size: such sizes are of another family.
+
+    The solver's error depends on that place, so that values at these sizes and at the others need not lie on one line.
+    """
+    path, strata = content["fracture"]["path_m"], content["strata"]
+    axis = "x" if strata.get("along", "y") == "x" else "y"
+    thickness = [float(layer["thickness_m"]) for layer in strata["layers"][:-1]]
+    places = {"the first tip": ("y", max(float(y) for _, y in path)), "the fracture": ("x", float(path[0][0]))}
+    for k in range(len(thickness)):
+        name = "the interface" if len(thickness) == 1 else f"interface {k + 1}"
+        places[name] = (axis, sum(thickness[: k + 1]))
+
+    def within(place_m: float, cell_m: float) -> float:
+        return round(place_m / cell_m % 1.0, 6) % 1.0
+
+    def words(share: float) -> str:
+        return {0.0: "on a grid line", 0.5: "at mid-cell"}.get(share, f"at {share:g} of a cell")
+
+    notes, finest = [], min(cells_m)
+    for name, (along, place) in places.items():
+        for cell in cells_m:
+            if within(place, cell) != within(place, finest):
+                there, here = words(within(place, cell)), words(within(place, finest))
+                notes.append(f"at {cell:g} m {name} ({along} = {place:g} m) lies {there}, at {finest:g} m {here}")
+    return tuple(notes)
 
 
 # --- what is written
@@ -255,6 +284,7 @@ def as_json(scene: Path, settings: Sequence[str], studies: Sequence[Study]) -> d
                 "variant": study.variant,
                 "increment_m": study.increment_m,
                 "levels": [_level_json(level) for level in study.levels],
+                "notes": list(study.notes),
                 "rows": [asdict(row) for row in study.rows],
             }
             for study in studies
@@ -297,6 +327,7 @@ def table(study: Study) -> str:
     lines = [f"\n{study.mechanics} {study.variant}, increment {study.increment_m:g} m"]
     lines += [f"  {level.cell_m:g} m {_level_json(level)['status']}: {level.outcome.reason}" for level in study.levels if not level.outcome.ok]
     lines.append(f"  {'':38}" + "".join(f"{name:>11}" for name in head) + "   limit h -> 0, or why there is none")
+    lines += [f"  {note}" for note in study.notes]
     for row in study.rows:
         label = f"{row.label} ({'MPa' if row.unit == 'Pa' else row.unit})"
         lines.append(f"  {label:38}" + "".join(f"{value_words(value, row.unit):>11}" for value in row.values) + f"   {estimate_words(row)}")

@@ -122,6 +122,14 @@ def test_arrests_that_no_size_has_are_left_out_and_some_are_told(tmp_path: Path)
     assert row.notes == ("1 m: no arrest",)
 
 
+def test_sizes_at_which_tip_or_interface_lie_otherwise_in_their_cells_are_named() -> None:
+    content = {**CONTENT, "strata": {"layers": [{"rock": "a", "thickness_m": 10}, {"rock": "b"}]}}
+    assert refine.unlike(content, (1.0, 0.5, 0.25)) == ()
+    assert refine.unlike(content, (2.0, 1.0)) == ("at 2 m the first tip (y = 5 m) lies at mid-cell, at 1 m on a grid line",)
+    sideways = {**CONTENT, "strata": {"along": "x", "layers": [{"rock": "a", "thickness_m": 42.5}, {"rock": "b"}]}}
+    assert refine.unlike(sideways, (1.0, 0.5)) == ("at 1 m the interface (x = 42.5 m) lies at mid-cell, at 0.5 m on a grid line",)
+
+
 # --- jobs, their cost and the command line
 
 

@@ -1,0 +1,208 @@
+"""The part of the page of verification on mesh refinement of the experiments: what ci/refine found, as tables and charts."""
+
+from __future__ import annotations
+
+import json
+import re
+import statistics
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from reports.charts.refinement_chart import draw_refinement
+from reports.sections import Picture, Section, Table, put_figure
+from reports.words import listed, mechanics_name, metres, plain
+
+# Quantities that have a panel each, in this order; of the pressures at heights one in the middle and the last.
+_PANELS = ("start_Pa", "restart_1_Pa", "restart_2_Pa", "plateau_1_Pa", "deflection_m", "final_angle_deg", "path_to_next_m")
+
+# A row that has one of these needs no excuse: a limit, or nothing that refinement still moves.
+_GOOD = ("clean", "still", "settled")
+
+METHOD = (
+    "Runs at several cell sizes with the growth increment held fixed. The order is that of the finest three sizes (Celik et al. 2008); a"
+    " limit h → 0 is given where they change monotonically with an order of 0.5 to 3, as f3 + (f3 − f2)/(r^p − 1), and its uncertainty is"
+    " the grid convergence index of Roache (1994) with a factor of 1.25, or of 3 where the three sizes before show another order."
+)
+
+
+@dataclass(frozen=True)
+class RefinementLine:
+    """A quantity of a variant against (h/h of the coarsest)^order; limit and uncertainty at 0 where the order is clean."""
+
+    variant: str
+    x: tuple[float, ...]
+    y: tuple[float, ...]
+    limit: tuple[float, float] | None
+    order: float | None
+
+
+@dataclass(frozen=True)
+class RefinementPanel:
+    """One quantity with its unit, a line for each variant."""
+
+    heading: str
+    unit: str
+    lines: tuple[RefinementLine, ...]
+
+
+@dataclass(frozen=True)
+class RefinementFigure:
+    """The panels of an experiment in one mechanics; the title is the finding."""
+
+    title: str
+    variants: tuple[str, ...]
+    panels: tuple[RefinementPanel, ...]
+    sizes_m: tuple[float, ...]
+
+
+def section(runs: Path, out: Path) -> Section | None:
+    """The part of the page, from every refine.json below runs/refine; None where there is none."""
+    studies = [json.loads(path.read_text(encoding="utf-8")) for path in sorted((runs / "refine").glob("*/refine.json"))]
+    if not studies:
+        return None
+    figures, tables, counted = [], [], []
+    for content in studies:
+        for mechanics in dict.fromkeys(study["mechanics"] for study in content["studies"]):
+            own = [study for study in content["studies"] if study["mechanics"] == mechanics]
+            counted += [row for study in own for row in judged(study)]
+            figure = refinement_figure(content["experiment"], own)
+            if figure.panels:
+                figures.append(_picture(figure, content["experiment"], mechanics, out))
+            tables.append(refinement_table(content["experiment"], own, content.get("settings", [])))
+    return Section(title="Mesh refinement of the experiments", intro=f"{METHOD} {_intro(counted)}", figures=figures, tables=tables)
+
+
+def judged(study: dict[str, Any]) -> list[dict[str, Any]]:
+    """The rows of a study that ask for an order."""
+    return [row for row in study["rows"] if row["estimate"]["kind"] != "beside"]
+
+
+def _intro(rows: list[dict[str, Any]]) -> str:
+    """How many numbers have an order, and how many have none."""
+    kinds = [row["estimate"]["kind"] for row in rows]
+    orders = [row["estimate"]["order"] for row in rows if row["estimate"]["kind"] == "clean"]
+    middle = f" (median order {statistics.median(orders):.2g})" if orders else ""
+    same = sum(kind in ("still", "settled") for kind in kinds)
+    without = {word: kinds.count(kind) for kind, word in
+               (("oscillates", "oscillate"), ("diverges", "do not converge"), ("odd order", "have an order no scheme has"),
+                ("too few", "have values at fewer than three sizes"))}  # fmt: skip
+    rest = listed([f"{count} {word}" for word, count in without.items() if count])
+    return f"Of {len(rows)} numbers {len(orders)} have a limit{middle}, {same} stand still" + (f", {rest}." if rest else ".")
+
+
+def _number_of(experiment: str) -> str:
+    """'Experiment 1' from a scene's name, else the name."""
+    found = re.match(r"exp(\d+)", experiment)
+    return f"Experiment {found.group(1)}" if found else plain(experiment)
+
+
+def refinement_figure(experiment: str, studies: list[dict[str, Any]]) -> RefinementFigure:
+    """What is drawn of the studies of an experiment in one mechanics."""
+    known = {row["name"] for study in studies for row in study["rows"] if sum(value is not None for value in row["values"]) > 1}
+    heights = sorted((name for name in known if name.startswith("pressure_at")), key=lambda name: float(name.split("_")[2]))
+    some = dict.fromkeys([*heights[len(heights) // 2 : len(heights) // 2 + 1], *heights[-1:]])
+    panels = []
+    for name in [*(one for one in _PANELS[:4] if one in known), *some, *(one for one in _PANELS[4:] if one in known)]:
+        rows = [(study, row) for study in studies for row in study["rows"] if row["name"] == name]
+        lines = tuple(line for study, row in rows if (line := _line(study, row)) is not None)
+        unit = "MPa" if rows[0][1]["unit"] == "Pa" else {"degrees": "°"}.get(rows[0][1]["unit"], rows[0][1]["unit"])
+        panels.append(RefinementPanel(rows[0][1]["label"], unit, lines))
+    sizes = sorted({level["cell_m"] for study in studies for level in study["levels"]}, reverse=True)
+    variants = tuple(study["variant"] for study in studies)
+    return RefinementFigure(_finding(experiment, studies), variants, tuple(panels), tuple(sizes))
+
+
+def _line(study: dict[str, Any], row: dict[str, Any]) -> RefinementLine | None:
+    """One quantity of one variant, None where there are not two values."""
+    sizes = [level["cell_m"] for level in study["levels"]]
+    known = [(size, value) for size, value in zip(sizes, row["values"]) if value is not None]
+    if len(known) < 2:
+        return None
+    said, factor = row["estimate"], 1e-6 if row["unit"] == "Pa" else 1.0
+    order = said["order"] if said["kind"] == "clean" else None
+    x = tuple((size / max(sizes)) ** (order or 1.0) for size, _ in known)
+    limit = None
+    if order is not None and said["extrapolate"] is not None:
+        limit = (factor * said["extrapolate"], factor * said["uncertainty"])
+    return RefinementLine(study["variant"], x, tuple(factor * value for _, value in known), limit, order)
+
+
+def _finding(experiment: str, studies: list[dict[str, Any]]) -> str:
+    """How many numbers have a limit, and the pressure without one that the mesh still moves most."""
+    rows = [(study["variant"], row) for study in studies for row in judged(study)]
+    clean = sum(row["estimate"]["kind"] == "clean" for _, row in rows)
+    still = sum(row["estimate"]["kind"] in ("still", "settled") for _, row in rows)
+    head = f"{_number_of(experiment)}, {mechanics_name(studies[0]['mechanics'])}: of {len(rows)} numbers {clean} have a limit and {still} stand still"
+    failed = [f"{plain(study['variant'])} at {level['cell_m']:g} m" for study in studies for level in study["levels"] if level["status"] != "completed"]
+    lost = f"; no complete run of {listed(failed)}" if failed else ""
+    open_ = [(row["estimate"]["spread"], variant, row) for variant, row in rows
+             if row["unit"] == "Pa" and row["estimate"]["kind"] not in _GOOD and row["estimate"]["spread"] is not None]  # fmt: skip
+    if not open_:
+        return head + lost
+    spread, variant, row = max(open_, key=lambda item: item[0])
+    return f"{head}{lost}; without a limit the mesh moves the {row['label']} ({plain(variant)}) most, by {spread / 1e3:.3g} kPa"
+
+
+def _picture(figure: RefinementFigure, experiment: str, mechanics: str, out: Path) -> Picture:
+    """Draw an experiment's figure."""
+    sizes = listed([metres(size) if size >= 1.0 else f"{size:g}\u00a0m" for size in figure.sizes_m])
+    caption = (
+        f"Each number against its cell size to the power of its own observed order p, as a share of the coarsest size's: a number of"
+        f" clean order lies on a straight line to its limit, drawn at 0 with its uncertainty; dashed, against h itself, where there is"
+        f" no such order. Marks from right to left: cells of {sizes}. Each panel has its own scale."
+    )
+    return put_figure(draw_refinement(figure), out, f"refine_{experiment}_{mechanics}", figure.title, caption)
+
+
+def refinement_table(experiment: str, studies: list[dict[str, Any]], settings: list[str]) -> Table:
+    """Every number of an experiment in one mechanics at every size."""
+    sizes = sorted({level["cell_m"] for study in studies for level in study["levels"]}, reverse=True)
+    rows, marked = [], []
+    for study in studies:
+        at = {level["cell_m"]: k for k, level in enumerate(study["levels"])}
+        for row in study["rows"]:
+            if row["estimate"]["kind"] not in (*_GOOD, "beside"):
+                marked.append(len(rows))
+            values = [row["values"][at[size]] if size in at else None for size in sizes]
+            label = f"{row['label']} ({'MPa' if row['unit'] == 'Pa' else row['unit']})"
+            orders = ", ".join(_order_words(item) for item in row["estimate"]["triples"])
+            rows.append([plain(study["variant"]), label, *(_value(value, row["unit"]) for value in values), orders or "–",
+                         _limit_words(row), "; ".join(row["notes"])])  # fmt: skip
+    increments = listed(sorted({f"{study['increment_m']:g} m" for study in studies}))
+    title = f"{_number_of(experiment)}, {mechanics_name(studies[0]['mechanics'])}, increment {increments}"
+    header = ["variant", "number", *(f"{size:g} m" for size in sizes), "orders, coarse to fine", "limit, or why there is none", "notes"]
+    return Table(title=title, header=header, rows=rows, marked=marked, note=_failures(studies, settings))
+
+
+def _order_words(item: dict[str, Any]) -> str:
+    """The order of three sizes, or what they do instead."""
+    return f"{item['order']:.2f}" if item["order"] is not None else {"still": "0 = 0"}.get(item["kind"], item["kind"])
+
+
+def _value(value: float | None, unit: str) -> str:
+    """A value of the table."""
+    if value is None:
+        return "–"
+    return f"{value / 1e6:.4f}" if unit == "Pa" else f"{value:.4g}"
+
+
+def _limit_words(row: dict[str, Any]) -> str:
+    """The limit with its uncertainty, or the statement."""
+    said, factor, unit = row["estimate"], 1e-6 if row["unit"] == "Pa" else 1.0, "MPa" if row["unit"] == "Pa" else row["unit"]
+    if said["kind"] != "clean":
+        return str(said["says"])
+    uncertainty = f"{factor * said['uncertainty']:.2g} {unit}"
+    if said["extrapolate"] is None:
+        return f"finest within {uncertainty} of the limit"
+    doubt = f" ({said['says'].split('; ', 1)[1]})" if "; " in said["says"] else ""
+    return f"{_value(said['extrapolate'], row['unit'])} ± {uncertainty}{doubt}"
+
+
+def _failures(studies: list[dict[str, Any]], settings: list[str]) -> str:
+    """What is particular to a size, what was refused or failed, with its reason, and settings that all runs share."""
+    lost = [f"{plain(study['variant'])} at {level['cell_m']:g} m {level['status']}: {level['reason'].rstrip('.')}."
+            for study in studies for level in study["levels"] if level["status"] != "completed"]  # fmt: skip
+    common = [f"All with {listed(settings)}."] if settings else []
+    told = dict.fromkeys(note for study in studies for note in study.get("notes", ()))
+    return " ".join([*common, *(f"{note[0].upper()}{note[1:]}." for note in told), *lost])
