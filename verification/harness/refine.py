@@ -132,7 +132,7 @@ def cost_lines(jobs: Sequence[Job]) -> tuple[list[str], float]:
         cost = cost_of(content, mechanics, *(like or ()))
         total += cost.seconds
         basis = "as in a run of this variant" if cost.measured else "by experience"
-        lines.append(f"  {mechanics} {job.variant} {cell:g} m: {cost.particles:.3g} particles x {cost.steps:.3g} steps:"
+        lines.append(f"  {mechanics} {job.variant} {job.out.name}: {cost.particles:.3g} particles x {cost.steps:.3g} steps:"
                      f" {cost.seconds:.0f} s ({basis})")  # fmt: skip
     return lines, total
 
