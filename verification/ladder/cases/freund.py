@@ -1,0 +1,114 @@
+"""A suddenly pressurised crack: K_I(t) before any wave comes back, against a semi-infinite crack (Freund 1990, chapter 2)."""
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+
+import numpy as np
+
+from verification.harness.load import LoadError, Run
+from verification.harness.paths import ANALYTIC
+from verification.harness.reference import value, values
+from verification.ladder.case import Array, Case, Level, Quantity, Sample
+
+SCENE = ANALYTIC / "freund.toml"
+RETURN_M = 60.0  # the way of a P wave from the other tip, and to the top and back; to the sides and back it is 80 m
+SETTLED_CELLS = 10.0  # c_P t in cells from which on K_I is held against the exact one
+SETTLED_M = 20.0  # the same for all sizes, which an order needs: 10 of the coarsest cells
+COURANT = 0.5
+ROCK = {"youngs_modulus_Pa": 10e9, "poisson_ratio": 0.2, "density_kg_m3": 2500.0}
+
+
+@lru_cache(maxsize=None)
+def speed(name: str) -> float:
+    """Speed of a wave in the scene's rock, m/s: c_P, c_S or c_R."""
+    return value("wave_speeds", f"{name}_m_s", **ROCK)
+
+
+def by_interaction(run: Run) -> Array:
+    """K_I from the interaction integral at each row of the history, Pa sqrt(m)."""
+    return run.history["K_I_Pa_sqrt_m"]
+
+
+def by_J(run: Run) -> Array:
+    """K_I that J stands for at each row of the history, Pa sqrt(m)."""
+    E_prime = ROCK["youngs_modulus_Pa"] / (1.0 - ROCK["poisson_ratio"] ** 2)
+    return np.sqrt(np.maximum(run.history["J_N_m"], 0.0) * E_prime)
+
+
+def window(run: Run, K_of: Callable[[Run], Array], from_m: float) -> tuple[Array, Array, Array]:
+    """Times (s) with c_P t from `from_m` to the first wave's return, and K_I measured and exact at them (Pa sqrt(m))."""
+    time_s = run.history["time_s"]
+    way = speed("c_P") * time_s
+    inside = (way >= from_m) & (way <= RETURN_M)
+    if np.count_nonzero(inside) < 20:
+        raise LoadError(f"{run.folder}: fewer than 20 rows of history before a wave comes back")
+    net_Pa = float(run.scene["fluid"]["inlet"]["start_Pa"]) - float(run.scene["in_situ"]["horizontal_Pa"])
+    times = time_s[inside]
+    return times, K_of(run)[inside], values("freund_step_pressure", "K_I", pressure_Pa=net_Pa, time_s=times.tolist(), **ROCK)
+
+
+def settled_from(run: Run) -> float:
+    """c_P t from which on K_I is held against the exact one, m."""
+    return SETTLED_CELLS * float(run.scene["numerics"]["cell_m"])
+
+
+def course(K_of: Callable[[Run], Array]) -> Callable[[Run], Sample]:
+    """K_I(t) as a whole, over the same time at all sizes."""
+
+    def sample(run: Run) -> Sample:
+        _, K, exact = window(run, K_of, SETTLED_M)
+        return Sample(K, exact)
+
+    return sample
+
+
+def farthest(K: Array, exact: Array) -> Sample:
+    """The one of many values that is farthest off its own exact one."""
+    worst = int(np.argmax(np.abs(K / exact - 1.0)))
+    return Sample.of(float(K[worst]), float(exact[worst]))
+
+
+def farthest_off(run: Run) -> Sample:
+    """K_I where it is farthest off, from 10 cells to the first return."""
+    _, K, exact = window(run, by_interaction, settled_from(run))
+    return farthest(K, exact)
+
+
+def mean_farthest_off(run: Run) -> Sample:
+    """The running mean of K_I over the time a Rayleigh wave takes through a cell, h/c_R, where it is farthest off."""
+    times, K, exact = window(run, by_interaction, settled_from(run))
+    length = float(run.scene["numerics"]["cell_m"]) / speed("c_R")
+    starts = times[times <= times[-1] - length]
+
+    def means(series: Array) -> Array:
+        area = np.concatenate([[0.0], np.cumsum(0.5 * (series[1:] + series[:-1]) * np.diff(times))])
+        return (np.interp(starts + length, times, area) - np.interp(starts, times, area)) / length
+
+    return farthest(means(K), means(exact))
+
+
+NO_ORDER = "the grid answers a step with an overshoot at c_P t = 10 to 15 cells, the same at all sizes, only sooner"
+QUANTITIES = (
+    Quantity("K_I(t), c_P t = 20 to 60 m", "Pa sqrt(m)", course(by_interaction)),
+    Quantity("K_I(t) by J, c_P t = 20 to 60 m", "Pa sqrt(m)", course(by_J)),
+    Quantity("K_I(t) farthest off, c_P t = 10 cells to 60 m", "Pa sqrt(m)", farthest_off, NO_ORDER),
+    Quantity("mean over h/c_R farthest off, same time", "Pa sqrt(m)", mean_farthest_off, NO_ORDER),
+)
+
+
+def levels(*cells_m: float) -> tuple[Level, ...]:
+    """Levels that write history in each second step."""
+    return tuple(
+        Level(f"{h:g} m", h, (f"numerics.cell_m={h!r}", f"numerics.courant={COURANT}", f"output.fields_every_s={1.98 * COURANT * h / 2108.185:.6g}"))
+        for h in cells_m
+    )
+
+
+CASES = (
+    Case("freund", "K_I(t) of a suddenly pressurised crack until the first wave comes back", SCENE, "explicit", levels(2.0, 1.0, 0.5), QUANTITIES),
+    Case(
+        "freund_xpic", "the same with the transfer XPIC(2), which damps what a cell does not resolve", SCENE, "explicit",
+        tuple(Level(one.label, one.size, (*one.settings, "numerics.transfer=xpic2")) for one in levels(2.0, 1.0, 0.5)), QUANTITIES,
+    ),
+)  # fmt: skip
