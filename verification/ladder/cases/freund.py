@@ -97,18 +97,24 @@ QUANTITIES = (
 )
 
 
-def levels(*cells_m: float) -> tuple[Level, ...]:
-    """Levels that write history in each second step."""
-    return tuple(
-        Level(f"{h:g} m", h, (f"numerics.cell_m={h!r}", f"numerics.courant={COURANT}", f"output.fields_every_s={1.98 * COURANT * h / 2108.185:.6g}"))
-        for h in cells_m
-    )
+def levels(cells_m: tuple[float, ...], *further: str) -> tuple[Level, ...]:
+    """Levels that write history in each second step, with further settings."""
+    found = []
+    for h in cells_m:
+        every = 1.98 * COURANT * h / 2108.185  # a little less than two steps
+        settings = (f"numerics.cell_m={h!r}", f"numerics.courant={COURANT}", f"output.fields_every_s={every:.6g}")
+        found.append(Level(f"{h:g} m", h, (*settings, *further)))
+    return tuple(found)
 
 
+CELLS_M = (2.0, 1.0, 0.5)
 CASES = (
-    Case("freund", "K_I(t) of a suddenly pressurised crack until the first wave comes back", SCENE, "explicit", levels(2.0, 1.0, 0.5), QUANTITIES),
+    Case(
+        "freund", "K_I(t) of a suddenly pressurised crack until the first wave comes back", SCENE, "explicit",
+        levels(CELLS_M), QUANTITIES,
+    ),
     Case(
         "freund_xpic", "the same with the transfer XPIC(2), which damps what a cell does not resolve", SCENE, "explicit",
-        tuple(Level(one.label, one.size, (*one.settings, "numerics.transfer=xpic2")) for one in levels(2.0, 1.0, 0.5)), QUANTITIES,
+        levels(CELLS_M, "numerics.transfer=xpic2"), QUANTITIES,
     ),
 )  # fmt: skip
