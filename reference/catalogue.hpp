@@ -101,5 +101,6 @@ std::vector<Entry> flow_entries();
 std::vector<Entry> interface_entries();
 std::vector<Entry> motion_entries();
 std::vector<Entry> wave_entries();
+std::vector<Entry> laminate_entries();
 
 }  // namespace strata::reference
