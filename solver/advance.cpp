@@ -11,6 +11,7 @@
 #include "mechanics/surface_tractions.hpp"
 #include "mechanics/tip_ties.hpp"
 #include "mechanics/transfers.hpp"
+#include "state/body_force.hpp"
 #include "state/rebuild.hpp"
 
 namespace strata {
@@ -30,23 +31,25 @@ void close_ledger(const Scene& scene, const GridEnergy& grid, const GridEnergyAf
   }
   ledger.kinetic = particles.after;
   ledger.transfer += (after.kinetic - grid.mapped) - (particles.after - particles.before);
+  ledger.body_work += particles.body_work;
   ledger.integration += after.increment - particles.step_strain;
   ledger.interface_strain = spring_energy(scene, state);
   Monitors& monitors = state.monitors;
   monitors.largest_particle_velocity =
       std::max(monitors.largest_particle_velocity, std::sqrt(particles.largest_speed2));
-  ledger.largest =
-      std::max({ledger.largest, std::abs(ledger.fluid_work), std::abs(ledger.in_situ_work), ledger.kinetic});
+  ledger.largest = std::max({ledger.largest, std::abs(ledger.fluid_work), std::abs(ledger.in_situ_work),
+                             std::abs(ledger.body_work), ledger.kinetic});
 }
 
 }  // namespace
 
 void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
-  advance_pressure(scene, state);          // P(s) from the opening at the step's start
-  particles_to_grid(scene, rocks, state);  // m_i, mom_i, f_i
-  update_stencil_weights(scene, state);    // N_i(x_s) of D
-  add_net_tractions(state);                // f_i += D^T (P n - t_in_situ) A
-  fold_to_masters(state, state.sums);      // symmetric and fixed edges
+  advance_pressure(scene, state);  // P(s) from the opening at the step's start
+  set_body_acceleration(scene, state.time, state);
+  particles_to_grid(scene, rocks, state);                                       // m_i, mom_i, f_i
+  update_stencil_weights(scene, state);                                         // N_i(x_s) of D
+  add_net_tractions(state);                                                     // f_i += D^T (P n - t_in_situ) A
+  fold_to_masters(state, state.sums);                                           // symmetric and fixed edges
   const GridEnergy grid = advance_momentum(scene.numerics.damping_1_s, state);  // v_i = mom_i/m_i + dt f_i/m_i
   solve_reactions(scene, rocks, state);  // contact, friction, springs at the step's end
   const GridEnergyAfter after = grid_energy(state);

@@ -61,15 +61,16 @@ void add_place(const ContactPlace& place, const LawAnswer& r, double w, RockResp
   rock.dw_dP(k, k) += roughness / closing;
 }
 
-// The rock as the flow sees it: openings and their change with the pressures, in equilibrium with all surfaces.
-RockModel rock_of(State& state, QuasistaticModel& model) {
+// The rock at a time (s) as the flow sees it: openings and their change with the pressures, in equilibrium with all
+// surfaces.
+RockModel rock_of(const Scene& scene, double time, State& state, QuasistaticModel& model) {
   struct Known {  // the change is the same as long as no place opens or closes
     Pieces pieces;
     Eigen::MatrixXd dw_dP;
   };
-  return [&state, &model, known = Known{}](const Eigen::VectorXd& P) mutable {
+  return [&scene, time, &state, &model, known = Known{}](const Eigen::VectorXd& P) mutable {
     set_point_pressures(P, state);
-    const Equilibrium at = find_equilibrium(state, model);
+    const Equilibrium at = find_equilibrium(scene, time, state, model);
     if (known.pieces != at.pieces || known.dw_dP.size() == 0)
       known = {at.pieces, opening_per_pressure(state, model.condensed, model.places, at, model.factor)};
     RockResponse rock{Eigen::VectorXd::Zero(P.size()), known.dw_dP};
@@ -91,10 +92,11 @@ Inlet inlet_at(const Scene& scene, const State& state, double time) {
 FluidStep couple(const Scene& scene, double dt, State& state, QuasistaticModel& model) {
   // Of the largest opening, a step: some hundred of them add up to less than a per cent, since what one does wrong the
   // next ones heal.
-  constexpr double allowed = 1e-3;
+  const double allowed = scene.numerics.flow_error;
   const double step = std::max(dt, shortest_fluid_step);
-  const StepReport report = step_reynolds(scene.fluid, inlet_at(scene, state, state.time + step), step,
-                                          rock_of(state, model), state.reynolds, state.balance);
+  const double end = state.time + step;
+  const StepReport report = step_reynolds(scene.fluid, inlet_at(scene, state, end), step,
+                                          rock_of(scene, end, state, model), state.reynolds, state.balance);
   if (!report.converged) return {false, 0.0, report.reason};
   state.time += step;
   state.fluid.P = vertex_pressures(state.reynolds);
@@ -114,7 +116,7 @@ void fill_fracture(const Scene& scene, State& state, QuasistaticModel& model) {
   double P = scene.fluid.start_Pa;
   if (scene.fluid.rate_m2_s) P = points[std::min(state.fluid.inlet, points.size() - 1)].closing_stress();
   const RockResponse rock =
-      rock_of(state, model)(Eigen::VectorXd::Constant(static_cast<Eigen::Index>(points.size()), P));
+      rock_of(scene, state.time, state, model)(Eigen::VectorXd::Constant(static_cast<Eigen::Index>(points.size()), P));
   std::vector<double> length;
   for (const SurfacePoint& s : points) length.push_back(s.A);
   state.reynolds = full_line(scene.fluid, length, state.fluid.inlet, P, rock.w, state.balance);

@@ -14,7 +14,6 @@ namespace strata {
 namespace {
 
 constexpr double event_tolerance = 1e-4;  // of an event's margin: 0.01 % in K
-constexpr double largest_change = 0.15;   // of the margin in a step of the flow, whose permeability lags behind
 constexpr double first_flow_step = 1e-3;  // s, after each event; steps then grow as the margin's change allows
 
 constexpr double shortest_step = 1e-7;  // s, below which nothing is gained by halving
@@ -27,10 +26,21 @@ struct LoadPoint {
   FluidBalance balance;
   std::vector<Surface> surfaces;
   std::vector<Tip> tips;
+  std::vector<Vec2> u, body;  // displacement (m) and body force per mass (m/s^2) of particles by id; none without that
 };
 
 LoadPoint load_point(const State& state) {
-  return {state.time, state.fluid, state.reynolds, state.balance, state.surfaces, state.tips};
+  LoadPoint point{state.time, state.fluid, state.reynolds, state.balance, state.surfaces, state.tips, {}, {}};
+  if (state.body.empty()) return point;
+  const Particles& p = state.particles;
+  point.u.resize(static_cast<std::size_t>(p.next_id), Vec2::Zero());
+  point.body = point.u;
+  for (std::size_t q = 0; q < p.size(); ++q) {
+    const auto id = static_cast<std::size_t>(p.id[q]);
+    point.u[id] = {p.u_x[q], p.u_y[q]};
+    point.body[id] = state.body[q];
+  }
+  return point;
 }
 
 void return_to(const LoadPoint& from, State& state) {
@@ -83,10 +93,10 @@ void share_memory(const State& state, const std::vector<ContactPlace>& places, G
 }
 
 // Energy released per length (N/m) if a tip grew at the present load.
-double energy_released(const State& state, const Quasistatic& run, GrowthTrial& trial) {
+double energy_released(const Scene& scene, const State& state, const Quasistatic& run, GrowthTrial& trial) {
   load_trial(state, trial);
   share_memory(state, run.model.places, trial);
-  const Equilibrium longer = find_equilibrium(trial.state, trial.model);
+  const Equilibrium longer = find_equilibrium(scene, state.time, trial.state, trial.model);
   const double before = run.equilibrium.energy + dissipated_by_friction(run.model, run.equilibrium);
   return (before - longer.energy - dissipated_by_friction(trial.model, longer)) / trial.increment;
 }
@@ -118,7 +128,7 @@ double tip_margin(const Scene& scene, const std::vector<Elasticity>& rocks, cons
   if (tip.criterion == "energy") {
     const auto trial =
         std::find_if(run.trials.begin(), run.trials.end(), [k](const GrowthTrial& t) { return t.tip == k; });
-    tip.G_trial = energy_released(state, run, *trial);
+    tip.G_trial = energy_released(scene, state, run, *trial);
     return J_c > 0.0 ? std::sqrt(std::max(0.0, tip.G_trial) / J_c) : (tip.G_trial > 0.0 ? 2.0 : 0.0);
   }
   if (J_c == 0.0) return toughless_margin(state, rock.E_prime, tip);
@@ -164,7 +174,7 @@ void make_trials(const Scene& scene, const std::vector<Elasticity>& rocks, State
 
 // Equilibrium at the state's pressures, its fields, and how near the next event is.
 void equilibrate(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
-  run.equilibrium = find_equilibrium(state, run.model);
+  run.equilibrium = find_equilibrium(scene, state.time, state, run.model);
   set_fields(scene, state, run.model, run.equilibrium);
   if (state.dt <= 0.0) state.dt = 1.0;  // J's inertia divides by it; there is none
   measure_tips(scene, rocks, state);
@@ -200,19 +210,33 @@ double work_of_loads(const State& state, const LoadPoint& before, double& in_sit
   return fluid;
 }
 
+// Work of the body force from one state to the next, as if it had changed with the displacements (J/m).
+double work_of_body(const State& state, const LoadPoint& before) {
+  const Particles& p = state.particles;
+  double work = 0.0;
+  for (std::size_t q = 0; q < state.body.size(); ++q) {
+    const auto id = static_cast<std::size_t>(p.id[q]);
+    work += p.m[q] * 0.5 * (before.body[id] + state.body[q]).dot(Vec2{p.u_x[q], p.u_y[q]} - before.u[id]);
+  }
+  return work;
+}
+
 void close_ledger(const Quasistatic& run, const LoadPoint& before, Change change, State& state) {
   Ledger& ledger = state.ledger;
   double in_situ = 0.0;
   const double fluid = work_of_loads(state, before, in_situ), stored = ledger.strain + ledger.interface_strain;
   ledger.fluid_work += fluid;
   ledger.in_situ_work += in_situ;
+  const double body = work_of_body(state, before);
+  ledger.body_work += body;
   ledger.strain = run.equilibrium.strain;
   ledger.interface_strain = stored_in_surfaces(run.model, run.equilibrium);
-  const double released = fluid + in_situ - (ledger.strain + ledger.interface_strain - stored);
+  const double released = fluid + in_situ + body - (ledger.strain + ledger.interface_strain - stored);
   const double friction = dissipated_by_friction(run.model, run.equilibrium);
   ledger.friction += change == Change::failure ? released : friction;
   if (change == Change::growth) ledger.fracture += released - friction;
-  ledger.largest = std::max({ledger.largest, std::abs(ledger.fluid_work), std::abs(ledger.in_situ_work)});
+  ledger.largest = std::max(
+      {ledger.largest, std::abs(ledger.fluid_work), std::abs(ledger.in_situ_work), std::abs(ledger.body_work)});
 }
 
 void accept(const Scene& scene, const LoadPoint& before, Change change, State& state, Quasistatic& run) {
@@ -293,7 +317,7 @@ void lengthen(const Scene& scene, std::vector<Growing>& growing, State& state) {
 // mean.
 void measure_release(const Scene& scene, const std::vector<Elasticity>& rocks, double energy_before,
                      const std::vector<Growing>& growing, State& state, Quasistatic& run) {
-  run.equilibrium = find_equilibrium(state, run.model);
+  run.equilibrium = find_equilibrium(scene, state.time, state, run.model);
   set_fields(scene, state, run.model, run.equilibrium);
   measure_tips(scene, rocks, state);
   const double energy = run.equilibrium.energy + dissipated_by_friction(run.model, run.equilibrium);
@@ -319,7 +343,7 @@ void let_happen(const Scene& scene, const std::vector<Elasticity>& rocks, State&
     fail_worst(scene, places, worst, run, state);
   } else {
     growing = tips_that_grow(scene, rocks, state, run);
-    energy_before = find_equilibrium(state, run.model).energy;  // against friction's present memory
+    energy_before = find_equilibrium(scene, state.time, state, run.model).energy;  // against friction's present memory
     lengthen(scene, growing, state);
   }
   rebuild_all(scene, rocks, state, run);
@@ -390,6 +414,8 @@ void start_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks,
   state.ledger = Ledger{};
   const LoadPoint unloaded = [&] {
     LoadPoint point = load_point(state);
+    std::fill(point.u.begin(), point.u.end(), Vec2::Zero());
+    point.body = point.u;
     for (Surface& surface : point.surfaces) {
       for (SurfacePoint& s : surface.points) {
         s.w = Vec2::Zero();
@@ -409,7 +435,7 @@ void advance_quasistatic(const Scene& scene, const std::vector<Elasticity>& rock
     return;
   }
   const LoadPoint from = load_point(state);
-  const double margin = run.margin, left = until - from.time;
+  const double margin = run.margin, left = until - from.time, aim = scene.numerics.flow_change;
   const bool flows = scene.fluid.law != Fluid::Law::uniform && state.has_fracture;
   double dt = flows ? std::min(state.dt, left) : left;
   double change = 0.0;
@@ -420,12 +446,12 @@ void advance_quasistatic(const Scene& scene, const std::vector<Elasticity>& rock
     if (!fluid.found && dt < shortest_step)
       throw NumericalFailure("at t = " + std::to_string(from.time) + " s, in any step: " + fluid.reason);
     const bool event = run.margin >= 1.0;
-    good = fluid.found && (!flows || event || change < 2.0 * largest_change) && fluid.error < 4.0;
+    good = fluid.found && (!flows || event || change < 2.0 * aim) && fluid.error < 4.0;
     good = good || (fluid.found && dt < shortest_step);
   }
   if (run.margin > 1.0 + event_tolerance) locate_event(scene, rocks, from, margin, dt, state, run);
   accept(scene, from, Change::load, state, run);
-  const double by_margin = change > 0.0 ? largest_change / change : 2.0;
+  const double by_margin = change > 0.0 ? aim / change : 2.0;
   const double by_error = fluid.error > 0.0 ? 0.8 / std::sqrt(fluid.error) : 2.0;
   state.dt = dt * std::clamp(std::min(by_margin, by_error), 0.3, 2.0);
 }

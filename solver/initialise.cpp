@@ -8,6 +8,7 @@
 #include "mechanics/equilibrium.hpp"
 #include "mechanics/explicit_step.hpp"
 #include "mechanics/tip_ties.hpp"
+#include "state/body_force.hpp"
 #include "state/make_grid.hpp"
 #include "state/rebuild.hpp"
 
@@ -134,6 +135,7 @@ State initialise(const Scene& scene, const std::vector<Elasticity>& rocks) {
   for (std::size_t q = 0; q < p.size(); ++q) p.sides[q] = sides_at(state, {p.x[q], p.y[q]}, -1);
   for (Surface& surface : state.surfaces) place_points(scene, state, surface);
   set_start_reactions(state);
+  set_initial_velocity(scene, state);
   rebuild(scene, rocks, state);
   return state;
 }

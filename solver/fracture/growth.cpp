@@ -1,5 +1,7 @@
 #include "fracture/growth.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,10 +12,14 @@ namespace strata {
 
 namespace {
 
-constexpr double edge_cells = 3.0;  // a tip nearer than this to an edge has no ring left to measure J in
-constexpr double fine_cells = 5.0;  // around a tip: its rings reach 4 cells, and the functions there half a span more
+constexpr double edge_cells = 3.0;      // a tip nearer than this to an edge has no ring left to measure J in
 constexpr double arrest_rise_Pa = 5e4;  // the inlet's rise over which a tip that stays counts as arrested
 constexpr double sliver = 0.25;         // no growth step is shorter than this fraction of an increment
+
+// Cells that must be fine around a tip: its rings, and half a span more that functions there reach.
+double fine_cells(const Scene& scene) {
+  return scene.numerics.ring_cells + 1.0;
+}
 
 double stacking_coordinate(const Scene& scene, const Vec2& x) {
   return scene.strata.along == Strata::Along::y ? x.y() : x.x();
@@ -247,8 +253,8 @@ std::string what_stops(const Scene& scene, const State& state, const Tip& tip) {
   const double h = state.grid.h;
   if (tip.has_grown && near_edge(scene, at, tip_direction(state.fracture(), tip.at_back), h))
     return "within 3 cells of an edge of the block";
-  if (!state.grid.fine_around(at.x(), at.y(), fine_cells * h))
-    return "within 5 cells of coarser ones; leave out numerics.far_cell_m";
+  if (!state.grid.fine_around(at.x(), at.y(), fine_cells(scene) * h))
+    return fmt::format("within {} cells of coarser ones; leave out numerics.far_cell_m", fine_cells(scene));
   return "";
 }
 

@@ -13,9 +13,9 @@ namespace strata {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double widest_ring_cells = 4.0;  // rings of 3.2 to 4 cells: wide enough to leave the tip's own error inside
-// No ring is smaller, since the tip's own error would fill it. An interface that would ask for less flags the K; an
-// edge nearer than 3.5 cells, or a second tip nearer than 7, does not: the ring then reaches over it.
+// numerics.ring_cells is 4 by default: rings of 3.2 to 4 cells are wide enough to leave the tip's own error inside.
+// None is smaller than this, since the tip's own error would fill it. An interface that would ask for less flags the K;
+// an edge nearer than 3.5 cells, or a second tip nearer than 7, does not: the ring then reaches over it.
 constexpr double narrowest_ring_cells = 2.5;
 constexpr double trusted_cells = 4.0;  // distance to an interface below which K is flagged
 constexpr std::array<double, 3> ring_fractions{0.8, 0.9, 1.0};
@@ -80,7 +80,8 @@ struct LocalFields {
   Vec2 at;              // position relative to the tip
   double H[2][2] = {};  // displacement gradient, H[i][j] = u_i,j
   Stress s;             // change of stress
-  Vec2 v, a, v_1;       // velocity, acceleration that forces gave, derivative of velocity along the fracture
+  Vec2 v, a,
+      v_1;  // velocity, acceleration that forces gave but for the body force, derivative of velocity along the fracture
   double V = 0.0;
 };
 
@@ -169,6 +170,7 @@ LocalFields fields_at(const State& state, const Elasticity& rock, const Frame& f
     a += N * Vec2{node.dv_x, node.dv_y} / state.dt;
     v_1 += grad.dot(frame.e_1) * Vec2{node.v_x, node.v_y};
   }
+  if (!state.body.empty()) a -= state.body[q];
   f.a = frame.local(a);
   f.v_1 = frame.local(v_1);
   return f;
@@ -231,7 +233,7 @@ void add_faces(const Elasticity& rock, const Grid& grid, const Surface& fracture
 // The farthest a ring may reach from the tip, and whether an interface limits it.
 double ring_radius(const Scene& scene, const State& state, const Tip& tip, const Vec2& at, bool& near_interface) {
   const double h = state.grid.h;
-  double radius = widest_ring_cells * h;
+  double radius = scene.numerics.ring_cells * h;
   const auto keep_off = [&](double distance) {
     radius = std::min(radius, distance - h);
   };  // a node's function reaches on

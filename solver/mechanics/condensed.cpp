@@ -203,8 +203,7 @@ void condense_new(const std::vector<char>& is_new, int unknowns, Condensed& out)
 
 // Takes out the mean displacement and rotation that no edge holds.
 void remove_rigid_motion(const Scene& scene, const State& state, bool halved, std::vector<Vec2>& u) {
-  const bool x_held = halved || scene.domain.sides == Edge::fixed;
-  const bool y_held = scene.domain.bottom == Edge::symmetry || scene.domain.top == Edge::fixed;
+  const bool x_held = halved || scene.domain.holds_x(), y_held = scene.domain.holds_y();
   if (x_held && y_held) return;
   // Mean over the block's area: with 0.5 (u_y,x - u_x,y) as rotation, from the particles' own fields.
   const Particles& p = state.particles;
@@ -265,7 +264,8 @@ Condensed condense(const Scene& scene, const std::vector<Elasticity>& rocks, con
 
 std::vector<Vec2> displacements(const Scene& scene, const State& state, const IntactBody& body,
                                 const Condensed& condensed, const Eigen::VectorXd& j) {
-  Eigen::VectorXd load = Eigen::VectorXd::Zero(body.unknowns());
+  Eigen::VectorXd load = condensed.load.intact;
+  if (condensed.load.empty()) load.setZero(body.unknowns());
   for (std::size_t k = 0; k < condensed.columns.size(); ++k) {
     const SparseVector& G = condensed.columns[k]->G;
     for (std::size_t e = 0; e < G.index.size(); ++e) load[G.index[e]] -= G.value[e] * j[static_cast<Eigen::Index>(k)];

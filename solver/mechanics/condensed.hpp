@@ -2,8 +2,8 @@
 //
 // A copy c of a split node moves with u_c = u + j_c, where u is the motion that the uncut node would have and j_c a
 // jump of its own. With u as unknowns the stiffness of the cut block is that of the intact one, whatever is split, and
-// a jump adds a row: K_uj = G = sum_p V_p B^T C B over the particles that belong to the copy. Surfaces carry all loads,
-// so the rows of u have none, u = -K^-1 G j, and
+// a jump adds a row: K_uj = G = sum_p V_p B^T C B over the particles that belong to the copy. Where surfaces carry all
+// loads the rows of u have none (see body_load.hpp for those of a body force), u = -K^-1 G j, and
 //   S j = D^T t A,  S = K_jj - G^T K^-1 G = K_jj - Y^T Y,  Y = L^-1 P G.
 // The block is factored once; a fracture that grows, or an interface that fails, adds a few columns.
 #pragma once
@@ -32,12 +32,22 @@ struct JumpColumn {
   SparseVector Y;
 };
 
+// The load of a body force at one time (see body_load.hpp).
+struct BodyLoad {
+  double time = 0.0;       // s
+  Eigen::VectorXd intact;  // on the unknowns of the intact block (N/m); none where there is no body force
+  Eigen::VectorXd jumps;   // what the jumps feel of it (N/m)
+  double strain = 0.0;     // strain energy under it where no surface gives way (J/m)
+  bool empty() const { return intact.size() == 0; }
+};
+
 struct Condensed {
   std::vector<Master> masters;                             // of the state's records, the mirror's ties included
   std::vector<std::array<int, 2>> jump_of_record;          // a master record's own jump unknowns; -1: none
   std::vector<std::shared_ptr<const JumpColumn>> columns;  // one a jump unknown
   Eigen::MatrixXd K_jj;                                    // N/m per metre of thickness
   Eigen::MatrixXd S;                                       // the same
+  BodyLoad load;                                           // none until load_body()
   Eigen::Index size() const { return S.rows(); }
 };
 
@@ -50,8 +60,8 @@ Condensed condense(const Scene& scene, const std::vector<Elasticity>& rocks, con
 /// The jump unknown that a record's component is a multiple of; index -1: it moves with the uncut node.
 Unknown jump_unknown(const Condensed& condensed, int record, int component);
 
-/// Displacements (m) of all records for the jumps j (m): u = -K^-1 G j, and the copies' jumps on top; rigid motion that
-/// no edge holds is taken out (zero mean displacement and rotation of the particles).
+/// Displacements (m) of all records for the jumps j (m): u = K^-1 (f_u - G j), and the copies' jumps on top; rigid
+/// motion that no edge holds is taken out (zero mean displacement and rotation of the particles).
 std::vector<Vec2> displacements(const Scene& scene, const State& state, const IntactBody& body,
                                 const Condensed& condensed, const Eigen::VectorXd& j);
 

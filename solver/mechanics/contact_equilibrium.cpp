@@ -70,13 +70,19 @@ Vec2 net_load(const State& state, const ContactPlace& place) {
   return pressure(state, place) * place.n - place.in_situ;
 }
 
+// The body force's share of the loads on the jumps.
+Eigen::VectorXd body_load(const Condensed& condensed) {
+  return condensed.load.empty() ? Eigen::VectorXd::Zero(condensed.size()) : condensed.load.jumps;
+}
+
 void evaluate(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
               Equilibrium& at) {
   at.answers.resize(places.size());
   at.w.resize(places.size());
   at.pieces.resize(places.size());
-  Eigen::VectorXd load = Eigen::VectorXd::Zero(condensed.size()), reaction = load;
-  at.energy = 0.0;
+  Eigen::VectorXd load = body_load(condensed), reaction = Eigen::VectorXd::Zero(condensed.size());
+  at.energy =
+      -load.dot(at.j) - 2.0 * condensed.load.strain;  // strain of the intact block under the body force, less its work
   for (std::size_t k = 0; k < places.size(); ++k) {
     const ContactPlace& place = places[k];
     at.w[k] = Vec2{times(place.D[0], at.j), times(place.D[1], at.j)} - place.bonded;
@@ -87,7 +93,7 @@ void evaluate(const State& state, const Condensed& condensed, const std::vector<
     add_force(place, r.n * place.n + r.t * tangent_of(place.n), reaction);
   }
   const Eigen::VectorXd inner = condensed.S * at.j;
-  at.strain = 0.5 * at.j.dot(inner);
+  at.strain = 0.5 * at.j.dot(inner) + condensed.load.strain;
   at.energy += at.strain;
   const double scale = std::max(load.lpNorm<Eigen::Infinity>(), inner.lpNorm<Eigen::Infinity>());
   at.unbalanced = load + reaction - inner;
@@ -150,7 +156,7 @@ bool factorise(const Eigen::MatrixXd& T, bool symmetric, TangentFactor& factor) 
 // The solution as if all places stayed on the pieces that `answers` describe.
 Eigen::VectorXd solve_on_pieces(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
                                 const std::vector<LawAnswer>& answers, const TangentFactor& factor) {
-  Eigen::VectorXd f = Eigen::VectorXd::Zero(condensed.size());
+  Eigen::VectorXd f = body_load(condensed);
   for (std::size_t k = 0; k < places.size(); ++k) {
     const ContactPlace& place = places[k];
     const LawAnswer& r = answers[k];
@@ -221,7 +227,7 @@ bool factor_tangent(const Condensed& condensed, const std::vector<ContactPlace>&
 // for ever.
 constexpr double balanced = 1e-9;
 
-// Slope of the energy along d at j (N): strain and laws less the work of the loads.
+// Slope of the energy along d at j (N): laws less the work of the loads on surfaces, and `strain`, that of the rest.
 double slope(const State& state, const std::vector<ContactPlace>& places, double strain, const Eigen::VectorXd& j,
              const Eigen::VectorXd& d) {
   double sum = strain;
@@ -240,7 +246,7 @@ double step_length(const State& state, const Condensed& condensed, const std::ve
                    const Equilibrium& from, const Eigen::VectorXd& to) {
   constexpr double flat = 1e-3;  // of the slope at the start
   const Eigen::VectorXd d = to - from.j, S_d = condensed.S * d;
-  const double at_start = from.j.dot(S_d), rise = d.dot(S_d);
+  const double at_start = from.j.dot(S_d) - body_load(condensed).dot(d), rise = d.dot(S_d);
   const auto slope_at = [&](double length) {
     return slope(state, places, at_start + length * rise, from.j + length * d, d);
   };

@@ -12,7 +12,10 @@ struct GridEnergy {
 };
 
 /// Momentum balance at the masters: v_i = mom_i/m_i (1 - damping dt) + dt f_i/m_i, written to state.motion with the
-/// increment dt f_i/m_i beside it. Ghosts must be folded before. Adds to the ledger's damping.
+/// increment dt f_i/m_i beside it. Forces are those of the step's start, t, and places move with v_i at its end: v
+/// stands for the middle of the step, t + dt/2, and places are those of the central difference u(t + dt) - 2 u(t) + u(t
+/// - dt) = dt^2 f(t)/m, of second order in dt for any load that is taken at t. Ghosts must be folded before. Adds to
+/// the ledger's damping.
 GridEnergy advance_momentum(double damping, State& state);
 
 // Kinetic energy of the grid at the end of a step and that of the step's increments alone, sum m_i dv_i^2/2 (J/m).

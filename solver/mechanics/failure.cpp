@@ -85,6 +85,7 @@ ColumnWeights column_weights(const Builder& b, const Vec2& x, double half) {
 void add_particles(Builder& b) {
   const Particles& p = b.state.particles;
   const Grid& g = b.state.grid;
+  const bool has_body = b.scene.body.acceleration_m_s2.has_value();
   for (std::size_t q = 0; q < p.size(); ++q) {
     const Vec2 x{p.x[q], p.y[q]};
     const int across = b.band.along_x ? g.row_at(x.y()) : g.column_at(x.x());
@@ -92,8 +93,8 @@ void add_particles(Builder& b) {
     const ColumnWeights w = column_weights(b, x, p.half[q]);
     const bool plus = (p.sides[q] & b.surface.mask()) != 0;
     for (std::size_t a = 0; a < 3; ++a) {
-      if (w.grad[a].isZero()) continue;
-      b.samples[key_at(b, w.column[a], p.sides[q], plus)].particles.push_back({q, p.V[q] * w.grad[a]});
+      if (w.grad[a].isZero() && (!has_body || w.Phi[a] == 0.0)) continue;
+      b.samples[key_at(b, w.column[a], p.sides[q], plus)].particles.push_back({q, p.V[q] * w.grad[a], w.Phi[a]});
     }
   }
 }
@@ -114,7 +115,7 @@ void add_faces(Builder& b) {
       for (const double face : {1.0, -1.0}) {
         const SampleKey key = key_at(b, w.column[a], face > 0.0 ? fracture.mask() : SideWord{0}, plus);
         if (std::get<2>(key) < 0) continue;  // both faces in one column: no force
-        b.samples[key].faces.push_back({q, {face * s.A * w.Phi[a], 0.0}});
+        b.samples[key].faces.push_back({q, {face * s.A * w.Phi[a], 0.0}, 0.0});
       }
     }
   }
@@ -139,7 +140,7 @@ void add_lengths(Builder& b) {
         for (const bool plus : {false, true}) {
           BondSample& sample = b.samples[key_at(b, w.column[a], sides, plus)];
           if (s.split) {
-            sample.loose.push_back({q, {share, 0.0}});
+            sample.loose.push_back({q, {share, 0.0}, 0.0});
           } else {
             sample.length += share;
           }
@@ -157,6 +158,7 @@ Vec2 traction(const std::vector<Elasticity>& rocks, const State& state, const Su
   for (const BondSample::Share& share : sample.particles) {
     const std::size_t q = share.index;
     force += stress_of(rocks[p.rock[q]], p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]).on(share.weight);
+    if (!state.body.empty()) force -= p.m[q] * share.Phi * state.body[q];
   }
   for (const BondSample::Share& share : sample.faces) {
     const SurfacePoint& s = state.fracture().points[share.index];

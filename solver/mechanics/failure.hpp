@@ -10,7 +10,7 @@ namespace strata {
 
 // How the traction on a bonded place follows from the rock on one side of it. A column of the grid, moved with the
 // weight Phi = sum N_i over the nodes that the interface would split, is in balance:
-//   int t Phi ds = sum_p V_p sigma_p grad Phi - sum_faces A Phi t_face,
+//   int t Phi ds = sum_p (V_p sigma_p grad Phi - m_p b_p Phi) - sum_faces A Phi t_face,
 // the force that a split node's copy would need to stay where it is. Beside a fracture that ends on the interface the
 // rock on its two sides moves apart, and each has a column of its own: stress there rises as 1/sqrt(r) and changes sign
 // across the fracture, so that a mean over both sides, or of points above and below, sees next to nothing of it.
@@ -18,6 +18,7 @@ struct BondSample {
   struct Share {
     std::size_t index = 0;       // particle, or point of the fracture
     Vec2 weight = Vec2::Zero();  // V_p grad Phi (m); of a face: its A Phi (m) with the face's sign, in x
+    double Phi = 0.0;            // at the particle
   };
   std::vector<Share> particles, faces;
   std::vector<Share> loose;  // points of the interface that have let go already: A Phi (m) in x

@@ -45,8 +45,7 @@ std::vector<double> weights_of(const Scene& scene, const State& state, bool halv
 
 // Ties the corner unknowns that rigid motion needs held, so that K is regular.
 void hold_rigid_motion(const Scene& scene, const Grid& grid, bool halved, std::vector<Master>& masters) {
-  const bool x_held = halved || scene.domain.sides == Edge::fixed;
-  const bool y_held = scene.domain.bottom == Edge::symmetry || scene.domain.top == Edge::fixed;
+  const bool x_held = halved || scene.domain.holds_x(), y_held = scene.domain.holds_y();
   const auto hold = [&](int node, bool x) {
     for (Master& master : masters) {
       if (master.record == node) (x ? master.x : master.y) = 0.0;
@@ -61,6 +60,7 @@ void hold_rigid_motion(const Scene& scene, const Grid& grid, bool halved, std::v
 
 bool mirror_symmetric(const Scene& scene, const State& state) {
   if (!scene.fracture || scene.strata.along != Strata::Along::y) return false;
+  if (scene.body.acceleration_m_s2) return false;  // its formulas need not be symmetric
   if (scene.domain.sides != Edge::fixed || scene.fracture->direction != Fracture::Direction::straight) return false;
   const double middle = 0.5 * scene.domain.width_m, h = state.grid.h;
   const double halves = 2.0 * middle / h;

@@ -17,8 +17,8 @@ struct SparseVector {
 };
 
 /// Whether scene and state are mirror-symmetric about the vertical through the fracture: layers stacked upwards, a
-/// straight vertical fracture that stays so in the middle of the block, sides held. Such a state is solved on its left
-/// half. (With loaded sides parts may slide antisymmetrically, which half a block would not see.)
+/// straight vertical fracture that stays so in the middle of the block, sides held, no body force. Such a state is
+/// solved on its left half. (With loaded sides parts may slide antisymmetrically, which half a block would not see.)
 bool mirror_symmetric(const Scene& scene, const State& state);
 
 /// The ties of `masters` with the mirror's added: records on the right half and the right face of the fracture follow

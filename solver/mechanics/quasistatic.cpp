@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "mechanics/body_load.hpp"
 #include "mechanics/stiffness.hpp"
 #include "mechanics/surface_tractions.hpp"
 #include "mechanics/tip_ties.hpp"
@@ -34,8 +35,10 @@ void set_particles(const Scene& scene, const std::vector<Vec2>& u, const std::ve
   }
 }
 
-std::vector<char> watched_bins(const State& state, const Bonds& bonds) {
-  constexpr double around_tip_cells = 8.0;  // J's widest ring, 4 cells, and what its weight reaches beyond
+std::vector<char> watched_bins(const Scene& scene, const State& state, const Bonds& bonds) {
+  if (scene.body.acceleration_m_s2) return std::vector<char>(state.bins.size(), 1);  // its work needs them all
+  const double around_tip_cells =
+      2.0 * scene.numerics.ring_cells;  // J's widest ring, and what its weight reaches beyond
   const Particles& p = state.particles;
   std::vector<char> particle(p.size(), 0);
   for (const BondSample& sample : bonds.samples) {
@@ -75,11 +78,12 @@ void update_model(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
   model.places = contact_places(scene, rocks, state, model.condensed);
   model.factor = TangentFactor{};
   model.bonds = find_bonds(scene, state);
-  model.watched = watched_bins(state, model.bonds);
+  model.watched = watched_bins(scene, state, model.bonds);
   model.j.resize(0);
 }
 
-Equilibrium find_equilibrium(const State& state, QuasistaticModel& model) {
+Equilibrium find_equilibrium(const Scene& scene, double time, State& state, QuasistaticModel& model) {
+  load_body(scene, time, *model.body, state, model.condensed);
   Equilibrium found = solve_equilibrium(state, model.condensed, model.places, model.j, model.factor);
   model.j = found.j;
   return found;

@@ -17,7 +17,8 @@ struct QuasistaticModel {
   std::vector<ContactPlace> places;
   TangentFactor factor;
   Bonds bonds;
-  std::vector<char> watched;  // bins whose fields decide what happens next: around tips, beside bonded interfaces
+  std::vector<char> watched;  // bins whose fields decide what happens next: around tips, beside bonded interfaces; with
+                              // a body force all
   std::vector<Vec2> u;        // displacements of all records (m) as last found
   Eigen::VectorXd j;          // the last solution, as a first guess
 };
@@ -28,8 +29,9 @@ struct QuasistaticModel {
 void update_model(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, QuasistaticModel& model,
                   bool halve = true);
 
-/// Equilibrium under the pressures that the state's points hold; see solve_equilibrium().
-Equilibrium find_equilibrium(const State& state, QuasistaticModel& model);
+/// Equilibrium under the pressures that the state's points hold and the body force at a time (s); see
+/// solve_equilibrium() and load_body(), and what they throw. Sets state.body.
+Equilibrium find_equilibrium(const Scene& scene, double time, State& state, QuasistaticModel& model);
 
 /// Writes an equilibrium to the state: jumps (m) and reactions (Pa) to the surfaces, displacements and their gradients
 /// to the particles that decide what happens next. Friction's memory stays what it was.

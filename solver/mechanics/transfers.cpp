@@ -48,16 +48,18 @@ inline AxisWeights axis_weights(double inverse_h, const Bin& bin, const Particle
 
 // Both loops take the product of the two axes' functions one axis at a time: a row of nodes first, then its three
 // nodes.
-template <class Shape>
-void gather_bin(const std::vector<Elasticity>& rocks, const Grid& grid, const Particles& p, const Bin& bin,
-                std::vector<NodeSums>& sums) {
+// Bodies: whether there is a body force `body`, one a particle.
+template <class Shape, bool Bodies>
+void gather_bin(const std::vector<Elasticity>& rocks, const Grid& grid, const Particles& p, const Vec2* body,
+                const Bin& bin, std::vector<NodeSums>& sums) {
   const double inverse_h = 1.0 / grid.h;
   std::array<Eight, 9> acc{};
   for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
     const AxisWeights w = axis_weights<Shape>(inverse_h, bin, p, q);
     const Stress s = stress_of(rocks[p.rock[q]], p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]);
     const double m = p.m[q], V = p.V[q];
-    const Eight with_N = {m, m * p.v_x[q], m * p.v_y[q], 0.0, 0.0, 0.0, 0.0, 0.0};
+    Eight with_N = {m, m * p.v_x[q], m * p.v_y[q], 0.0, 0.0, 0.0, 0.0, 0.0};
+    if constexpr (Bodies) with_N[3] = m * body[q].x(), with_N[4] = m * body[q].y();
     const Eight with_N_x = {0.0, 0.0, 0.0, -V * s.xx, -V * s.xy, 0.0, 0.0, 0.0};
     const Eight with_N_y = {0.0, 0.0, 0.0, -V * s.xy, -V * s.yy, 0.0, 0.0, 0.0};
     for (std::size_t b = 0; b < 3; ++b) {
@@ -77,9 +79,9 @@ struct Advance {
   double dt_x;  // for positions: dt, or 0 where they stay
 };
 
-template <class Shape>
+template <class Shape, bool Bodies>
 void move_bin(const std::vector<Elasticity>& rocks, const Grid& grid, const Bin& bin, const Advance& by,
-              const std::vector<NodeMotion>& motion, Particles& p, ParticleReport& report) {
+              const std::vector<NodeMotion>& motion, const Vec2* body, Particles& p, ParticleReport& report) {
   const double inverse_h = 1.0 / grid.h, half_dt2 = 0.5 * by.dt * by.dt;
   std::array<Four, 9> record;
   for (std::size_t n = 0; n < 9; ++n) record[n] = load<Four>(motion[static_cast<std::size_t>(bin.record[n])]);
@@ -104,6 +106,7 @@ void move_bin(const std::vector<Elasticity>& rocks, const Grid& grid, const Bin&
     report.farthest_cells = std::max(report.farthest_cells, std::max(off_x, off_y));
     p.x[q] += by.dt_x * v[0], p.y[q] += by.dt_x * v[1];
     p.u_x[q] += by.dt * v[0], p.u_y[q] += by.dt * v[1];
+    if constexpr (Bodies) report.body_work += m * by.dt * (body[q].x() * v[0] + body[q].y() * v[1]);
     const Stress rate = stress_of(rocks[p.rock[q]], d_x[0], d_y[0], d_x[1], d_y[1]);
     report.step_strain += half_dt2 * p.V[q] * (rate.xx * d_x[0] + rate.yy * d_y[1] + rate.xy * (d_y[0] + d_x[1]));
     p.g_xx[q] += by.dt * d_x[0], p.g_yx[q] += by.dt * d_x[1];
@@ -135,8 +138,12 @@ void particles_to_grid(const Scene& scene, const std::vector<Elasticity>& rocks,
   with_shape(scene.numerics.shape, [&](auto shape) {
     for_each_strip(state, [&](std::size_t k) {
       for (int b = state.strips[k].first; b < state.strips[k].last; ++b) {
-        gather_bin<decltype(shape)>(rocks, state.grid, state.particles, state.bins[static_cast<std::size_t>(b)],
-                                    state.sums);
+        const Bin& bin = state.bins[static_cast<std::size_t>(b)];
+        if (state.body.empty()) {
+          gather_bin<decltype(shape), false>(rocks, state.grid, state.particles, nullptr, bin, state.sums);
+        } else {
+          gather_bin<decltype(shape), true>(rocks, state.grid, state.particles, state.body.data(), bin, state.sums);
+        }
       }
     });
   });
@@ -165,8 +172,14 @@ ParticleReport grid_to_particles(const Scene& scene, const std::vector<Elasticit
   with_shape(scene.numerics.shape, [&](auto shape) {
     for_each_strip(state, [&](std::size_t k) {
       for (int b = state.strips[k].first; b < state.strips[k].last; ++b) {
-        move_bin<decltype(shape)>(rocks, state.grid, state.bins[static_cast<std::size_t>(b)], by, state.motion,
-                                  state.particles, of_strip[k]);
+        const Bin& bin = state.bins[static_cast<std::size_t>(b)];
+        if (state.body.empty()) {
+          move_bin<decltype(shape), false>(rocks, state.grid, bin, by, state.motion, nullptr, state.particles,
+                                           of_strip[k]);
+        } else {
+          move_bin<decltype(shape), true>(rocks, state.grid, bin, by, state.motion, state.body.data(), state.particles,
+                                          of_strip[k]);
+        }
       }
     });
   });
@@ -174,6 +187,7 @@ ParticleReport grid_to_particles(const Scene& scene, const std::vector<Elasticit
   for (const ParticleReport& e : of_strip) {
     total.before += e.before;
     total.after += e.after;
+    total.body_work += e.body_work;
     total.step_strain += e.step_strain;
     total.largest_speed2 = std::max(total.largest_speed2, e.largest_speed2);
     total.farthest_cells = std::max(total.farthest_cells, e.farthest_cells);

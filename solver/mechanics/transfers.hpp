@@ -13,13 +13,15 @@ namespace strata {
 struct ParticleReport {
   double before = 0.0;
   double after = 0.0;
+  double body_work = 0.0;    // of the body force in the step, sum m b . du (J/m)
   double step_strain = 0.0;  // energy of the step's own strain, sum V dsigma : de/2 (J/m)
   double largest_speed2 = 0.0;
   double farthest_cells = 0.0;
 };
 
-/// Particles to grid: m_i = sum_p N_ip m_p, mom_i = sum_p N_ip m_p v_p, f_i = -sum_p V_p sigma_p grad N_ip, where
-/// sigma_p is the change of stress from the in-situ state. Overwrites state.sums; ghosts are not folded yet.
+/// Particles to grid: m_i = sum_p N_ip m_p, mom_i = sum_p N_ip m_p v_p, f_i = sum_p N_ip m_p b_p - V_p sigma_p grad
+/// N_ip, where sigma_p is the change of stress from the in-situ state and b_p the body force per mass of state.body, if
+/// any. Overwrites state.sums; ghosts are not folded yet.
 void particles_to_grid(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
 
 /// Second filter pass of XPIC(2) (Hammerquist & Nairn 2017): returns v**_i = (1/m_i) sum_p N_ip m_p sum_j N_jp v_j for

@@ -17,7 +17,7 @@ namespace strata {
 namespace {
 
 constexpr std::string_view magic = "strata-checkpoint\n";
-constexpr std::uint32_t format_version = 2;  // to be raised with every change of what is saved
+constexpr std::uint32_t format_version = 3;  // to be raised with every change of what is saved
 constexpr std::uint32_t byte_order = 0x01020304;
 
 std::uint64_t fnv1a(std::string_view bytes) {
@@ -100,10 +100,10 @@ void fields(Archive& ar, Is<Event> auto& event) {
 
 template <class Archive>
 void fields(Archive& ar, Is<Ledger> auto& ledger) {
-  auto& [kinetic, strain, interface_strain, fluid_work, in_situ_work, edge_work, damping, transfer, integration,
-         friction, fracture, largest] = ledger;
-  ar(kinetic, strain, interface_strain, fluid_work, in_situ_work, edge_work, damping, transfer, integration, friction,
-     fracture, largest);
+  auto& [kinetic, strain, interface_strain, fluid_work, in_situ_work, body_work, initial_kinetic, edge_work, damping,
+         transfer, integration, friction, fracture, largest] = ledger;
+  ar(kinetic, strain, interface_strain, fluid_work, in_situ_work, body_work, initial_kinetic, edge_work, damping,
+     transfer, integration, friction, fracture, largest);
 }
 
 template <class Archive>

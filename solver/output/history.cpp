@@ -45,6 +45,8 @@ constexpr HistoryColumn columns[] = {
     {"G_N_m", "N/m", &HistoryRow::G_N_m},
     {"G_by_J_N_m", "N/m", &HistoryRow::G_by_J_N_m},
     {"fluid_volume_balance", "1", &HistoryRow::fluid_volume_balance},
+    {"body_work_J", "J/m", &HistoryRow::body_work_J},
+    {"initial_kinetic_J", "J/m", &HistoryRow::initial_kinetic_J},
 };
 static_assert(sizeof(HistoryRow) == std::size(columns) * sizeof(double), "every member of HistoryRow is a column");
 
@@ -166,6 +168,8 @@ HistoryRow history_row(const Scene&, const State& state) {
   row.fluid_work_J = ledger.fluid_work;
   row.in_situ_work_J = ledger.in_situ_work;
   row.edge_work_J = ledger.edge_work;
+  row.body_work_J = ledger.body_work;
+  row.initial_kinetic_J = ledger.initial_kinetic;
   row.damping_J = ledger.damping;
   row.transfer_J = ledger.transfer;
   row.integration_J = ledger.integration;

@@ -35,6 +35,8 @@ struct HistoryRow {
   double G_N_m = 0.0;                 // energy released by the tip's last increment, by its length
   double G_by_J_N_m = 0.0;            // the same from J along the increment; 0 where the tip all but closes on it
   double fluid_volume_balance = 0.0;  // fluid missing over what was injected (law = "reynolds")
+  double body_work_J = 0.0;           // of the body force
+  double initial_kinetic_J = 0.0;     // of the velocities that particles start with
 };
 
 // A column: its name, which is that of the member, and its unit.

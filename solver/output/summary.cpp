@@ -22,6 +22,8 @@ Json energy_json(const Ledger& ledger) {
           {"fluid_work_J", ledger.fluid_work},
           {"in_situ_work_J", ledger.in_situ_work},
           {"edge_work_J", ledger.edge_work},
+          {"body_work_J", ledger.body_work},
+          {"initial_kinetic_J", ledger.initial_kinetic},
           {"damping_J", ledger.damping},
           {"transfer_J", ledger.transfer},
           {"integration_J", ledger.integration},

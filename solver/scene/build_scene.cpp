@@ -15,6 +15,11 @@ double as_number(const toml::node& node) {
   return node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
 }
 
+// A number stands for the formula that is it.
+std::string formula_text(const toml::node& node) {
+  return node.is_string() ? node.as_string()->get() : number_text(as_number(node));
+}
+
 // The second segment of every path that starts with `table`: the names of rocks or interfaces, in alphabetical order.
 std::vector<std::string> names_of(const Entries& entries, std::string_view table) {
   std::set<std::string> names;
@@ -44,6 +49,10 @@ void apply(const Given& given, std::size_t index, Scene& scene) {
     void operator()(OptionalPlace at) const { at(scene, index) = as_number(*given.value); }
     void operator()(IntegerPlace at) const { at(scene, index) = static_cast<int>(given.value->as_integer()->get()); }
     void operator()(TextPlace at) const { at(scene, index) = given.value->as_string()->get(); }
+    void operator()(FormulasPlace at) const {
+      const toml::array& both = *given.value->as_array();
+      at(scene, index) = Formulas{formula_text(both[0]), formula_text(both[1])};
+    }
     void operator()(const WordPlace& at) const {
       const auto word = std::ranges::find(given.key->words, given.value->as_string()->get(), &Word::text);
       at.set(scene, index, word->value);

@@ -49,6 +49,15 @@ void check_explicit(const Scene& scene, const Positions& positions, Faults& faul
   }
 }
 
+// What mechanics = "quasistatic" cannot do.
+void check_quasistatic(const Scene& scene, const Positions& positions, Faults& faults) {
+  if (!scene.initial.velocity_m_s || !positions.sound("initial.velocity_m_s")) return;
+  faults.add(
+      where_is(positions, "initial.velocity_m_s"),
+      "initial.velocity_m_s moves the block at time 0, which needs inertia, but mechanics = \"quasistatic\". Use "
+      "mechanics = \"explicit\", or leave it out.");
+}
+
 // uGIMP weights follow particles that move.
 void check_shape_functions(const Scene& scene, const Positions& positions, Faults& faults) {
   if (scene.numerics.shape != Numerics::Shape::gimp) return;
@@ -121,7 +130,8 @@ void check_numbers(const Scene& scene, const Positions& positions, Faults& fault
 
 void check_combinations(const Scene& scene, const Positions& positions, Faults& faults) {
   if (positions.sound("numerics.mechanics")) {
-    if (scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics) check_explicit(scene, positions, faults);
+    const bool quasistatic = scene.numerics.mechanics == Numerics::Mechanics::quasistatic;
+    (quasistatic ? check_quasistatic : check_explicit)(scene, positions, faults);
     check_shape_functions(scene, positions, faults);
   }
   check_far_cell(scene, positions, faults);

@@ -52,6 +52,15 @@ Word as(std::string text, Enumerator value) {
   return {std::move(text), static_cast<int>(value)};
 }
 
+// Formulas of a vector's two components. `variables`: what they may use.
+Key formulas(std::string path, std::string unit, std::vector<std::string> variables, FormulasPlace place,
+             std::string help) {
+  Key key = other(std::move(path), KeyType::formulas, place, std::move(help));
+  key.unit = std::move(unit);
+  key.variables = std::move(variables);
+  return key;
+}
+
 Key required(Key key) {
   key.required = true;
   return key;
@@ -106,6 +115,20 @@ std::vector<Key> domain_keys() {
           "in_situ.initialise", {as("uniform", InSitu::Initialise::uniform), as("loaded", InSitu::Initialise::loaded)},
           [](Scene& s, std::size_t) -> InSitu::Initialise& { return s.in_situ.initialise; },
           "The two stresses everywhere, or the static state of the bonded stack under them as edge tractions."),
+  };
+}
+
+std::vector<Key> load_keys() {
+  return {
+      formulas(
+          "body.acceleration_m_s2", "m/s^2", {"X", "Y", "t"},
+          +[](Scene& s, std::size_t) -> std::optional<Formulas>& { return s.body.acceleration_m_s2; },
+          "Body force per mass beyond what the in-situ state balances, [\"x component\", \"y component\"]: formulas of "
+          "the place X, Y (m) where a particle starts and the time t (s). Left out: none."),
+      formulas(
+          "initial.velocity_m_s", "m/s", {"X", "Y"},
+          +[](Scene& s, std::size_t) -> std::optional<Formulas>& { return s.initial.velocity_m_s; },
+          "Velocity at time 0, explicit only: formulas as for body. Left out: at rest."),
   };
 }
 
@@ -317,6 +340,25 @@ std::vector<Key> numerics_keys() {
           "numerics.damping_1_s", "1/s", not_negative,
           +[](Scene& s, std::size_t) -> double& { return s.numerics.damping_1_s; },
           "Damping of velocity: a = f/m - damping v."),
+      number(
+          "numerics.ring_cells", "cells", {2.5, 8.0, false, false},
+          +[](Scene& s, std::size_t) -> double& { return s.numerics.ring_cells; },
+          "Outer radius of the widest of three rings around a tip, by which J and K are measured; edges, interfaces "
+          "and "
+          "the other tip may leave less.",
+          "A smaller ring holds little but the tip's own error, a larger one leaves the fine cells of a graded grid."),
+      number(
+          "numerics.flow_change", "", {0.0, 1.0, true, false},
+          +[](Scene& s, std::size_t) -> double& { return s.numerics.flow_change; },
+          "Quasi-static only: change of the nearest event's margin (1: the event) aimed at in a step of a flow that "
+          "takes "
+          "time; steps that change it by twice as much are tried again with half the length."),
+      number(
+          "numerics.flow_error", "", {0.0, 1.0, true, false},
+          +[](Scene& s, std::size_t) -> double& { return s.numerics.flow_error; },
+          "Under fluid.law = \"reynolds\": error of the largest opening aimed at in a step; steps with four times as "
+          "much "
+          "are tried again with half the length."),
   };
 }
 
@@ -349,8 +391,8 @@ std::vector<Key> run_keys() {
 const std::vector<Key>& scene_keys() {
   static const std::vector<Key> keys = [] {
     std::vector<Key> all;
-    for (auto table : {heading_keys, domain_keys, rock_keys, interface_keys, strata_keys, fracture_keys, fluid_keys,
-                       numerics_keys, run_keys}) {
+    for (auto table : {heading_keys, domain_keys, load_keys, rock_keys, interface_keys, strata_keys, fracture_keys,
+                       fluid_keys, numerics_keys, run_keys}) {
       for (Key& key : table()) all.push_back(std::move(key));
     }
     return all;

@@ -62,6 +62,8 @@ std::string allowed_text(const Key& key) {
     }
     case KeyType::text:
       return "text";
+    case KeyType::formulas:
+      return fmt::format("formulas of {}", joined(key.variables));
     case KeyType::layers:
     case KeyType::names:
     case KeyType::points:
@@ -147,6 +149,7 @@ std::string default_text(const Key& key) {
     std::string operator()(OptionalPlace at) const { return at(scene, 0) ? number_text(*at(scene, 0)) : ""; }
     std::string operator()(IntegerPlace at) const { return fmt::format("{}", at(scene, 0)); }
     std::string operator()(TextPlace at) const { return '"' + at(scene, 0) + '"'; }
+    std::string operator()(FormulasPlace) const { return {}; }
     std::string operator()(const WordPlace& at) const {
       const int value = at.get(scene, 0);
       const auto word = std::ranges::find(key.words, value, &Word::value);

@@ -15,8 +15,8 @@
 namespace strata {
 
 // What a value must be. `layers`, `names` and `points` are strata.layers, strata.interfaces and fracture.path_m, which
-// lead to more than one member; `anything` is a key of which only the name matters.
-enum class KeyType { number, integer, word, text, layers, names, points, anything };
+// lead to more than one member; `formulas` are two, of x and y; `anything` is a key of which only the name matters.
+enum class KeyType { number, integer, word, text, layers, names, points, formulas, anything };
 
 struct Bounds {
   double low = 0.0;
@@ -36,11 +36,13 @@ using NumberPlace = double& (*)(Scene&, std::size_t);
 using OptionalPlace = std::optional<double>& (*)(Scene&, std::size_t);
 using IntegerPlace = int& (*)(Scene&, std::size_t);
 using TextPlace = std::string& (*)(Scene&, std::size_t);
+using FormulasPlace = std::optional<Formulas>& (*)(Scene&, std::size_t);
 struct WordPlace {
   int (*get)(Scene&, std::size_t) = nullptr;
   void (*set)(Scene&, std::size_t, int) = nullptr;
 };
-using Place = std::variant<std::monostate, NumberPlace, OptionalPlace, IntegerPlace, TextPlace, WordPlace>;
+using Place =
+    std::variant<std::monostate, NumberPlace, OptionalPlace, IntegerPlace, TextPlace, FormulasPlace, WordPlace>;
 
 struct Key {
   std::string path;  // "rock.NAME.poisson_ratio": NAME stands for any name, "strata.layers[].rock" is in each element
@@ -49,6 +51,7 @@ struct Key {
   Bounds bounds;             // of numbers
   std::vector<int> allowed;  // of integers
   std::vector<Word> words;
+  std::vector<std::string> variables;  // that formulas may use
   Place place;
   bool required = false;
   std::string law;     // the interface law that the key belongs to; empty: any

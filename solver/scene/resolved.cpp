@@ -35,6 +35,10 @@ std::string value_text(const Key& key, Scene& scene, std::size_t index) {
     }
     std::string operator()(IntegerPlace at) const { return fmt::format("{}", at(scene, index)); }
     std::string operator()(TextPlace at) const { return quoted(at(scene, index)); }
+    std::string operator()(FormulasPlace at) const {
+      const std::optional<Formulas>& both = at(scene, index);
+      return both ? fmt::format("[{}, {}]", quoted((*both)[0]), quoted((*both)[1])) : std::string();
+    }
     std::string operator()(const WordPlace& at) const {
       return quoted(std::ranges::find(key.words, at.get(scene, index), &Word::value)->text);
     }

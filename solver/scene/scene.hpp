@@ -13,12 +13,20 @@ namespace strata {
 
 enum class Edge { symmetry, fixed, traction };
 
+// A vector's x and y component as formulas (see formula.hpp) of X and Y (m), the place where a particle starts, and
+// where the key says so of the time t (s).
+using Formulas = std::array<std::string, 2>;
+
 struct Domain {
   double width_m = 0.0;
   double height_m = 0.0;
   Edge bottom = Edge::symmetry;
   Edge sides = Edge::fixed;
   Edge top = Edge::traction;
+
+  // Whether an edge holds the block's motion along x or y; what none holds is free as a whole.
+  bool holds_x() const { return sides == Edge::fixed; }
+  bool holds_y() const { return bottom == Edge::symmetry || top == Edge::fixed; }
 
   bool operator==(const Domain&) const = default;
 };
@@ -30,6 +38,20 @@ struct InSitu {
   Initialise initialise = Initialise::uniform;
 
   bool operator==(const InSitu&) const = default;
+};
+
+// What acts on the whole block beyond the in-situ state.
+struct Body {
+  std::optional<Formulas> acceleration_m_s2;  // body force per mass, of X, Y, t; absent: none
+
+  bool operator==(const Body&) const = default;
+};
+
+// How the block moves at time 0.
+struct Initial {
+  std::optional<Formulas> velocity_m_s;  // of X, Y; absent: at rest
+
+  bool operator==(const Initial&) const = default;
 };
 
 struct Rock {
@@ -133,6 +155,9 @@ struct Numerics {
   Transfer transfer = Transfer::flip;
   double courant = 0.5;  // c_P dt / h
   double damping_1_s = 0.0;
+  double ring_cells = 4.0;    // outer radius of the widest ring around a tip, in cells
+  double flow_change = 0.15;  // of the nearest event's margin in a step of the flow
+  double flow_error = 1e-3;   // of the largest opening in a step of flow and rock
 
   // Whether particles and surfaces stay in their reference places while displacements advance.
   bool keeps_places() const { return mechanics == Mechanics::quasistatic || kinematics == Kinematics::total; }
@@ -161,6 +186,8 @@ struct Scene {
   std::string variant;  // empty: none chosen
   Domain domain;
   InSitu in_situ;
+  Body body;
+  Initial initial;
   std::vector<Rock> rocks;
   std::vector<InterfaceLaw> laws;  // laws[0] is always "perfect"
   Strata strata;

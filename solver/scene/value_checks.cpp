@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scene/entries.hpp"
+#include "scene/formula.hpp"
 #include "scene/spelling.hpp"
 
 namespace strata {
@@ -159,6 +160,32 @@ bool check_points(const std::string& path, const Given& given, Faults& faults) {
   return sound;
 }
 
+bool check_formulas(const std::string& path, const Given& given, Faults& faults) {
+  const toml::array* both = given.value->as_array();
+  if (both == nullptr || both->size() != 2) {
+    return fault(faults, given.where,
+                 fmt::format("{} = {} is not a pair of formulas. Write [\"x component\", \"y component\"].", path,
+                             as_typed(*given.value)));
+  }
+  bool sound = true;
+  for (std::size_t k = 0; k < both->size(); ++k) {
+    const toml::node& formula = (*both)[k];
+    const Where where = where_of(given.origin, formula.source());
+    const std::string name = fmt::format("{}[{}]", path, k);
+    if (formula.is_number()) {
+      Key number;
+      number.type = KeyType::number;
+      number.bounds = {-HUGE_VAL, HUGE_VAL, true, true};
+      sound = check_number(name, number, formula, where, faults) && sound;
+    } else if (!formula.is_string()) {
+      sound = fault(faults, where, fmt::format("{} = {} is not a formula. Put it in quotes.", name, as_typed(formula)));
+    } else if (const auto wrong = fault_in_formula(formula.as_string()->get(), given.key->variables)) {
+      sound = fault(faults, where, fmt::format("{} = {}: {}", name, as_typed(formula), *wrong));
+    }
+  }
+  return sound;
+}
+
 }  // namespace
 
 bool check_value(const std::string& path, const Given& given, Faults& faults) {
@@ -178,6 +205,8 @@ bool check_value(const std::string& path, const Given& given, Faults& faults) {
       return check_names(path, given, faults);
     case KeyType::points:
       return check_points(path, given, faults);
+    case KeyType::formulas:
+      return check_formulas(path, given, faults);
     case KeyType::anything:
       break;
   }

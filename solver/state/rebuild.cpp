@@ -375,6 +375,7 @@ void rebuild_copies(const Scene& scene, State& state) {
   std::vector<SortKey> keys = sort_keys(state, mask);
   std::sort(keys.begin(), keys.end(), [](const SortKey& a, const SortKey& b) { return a.order() < b.order(); });
   sort_particles(state.particles, keys);
+  state.body.clear();
   make_bins(state, keys);
   make_masters(scene, state);
   make_stress_samples(scene, state);

@@ -62,15 +62,17 @@ struct Ledger {
   double interface_strain = 0.0;  // in the springs of soft interfaces and of tips, now
   double fluid_work = 0.0;        // integral of P dV
   double in_situ_work = 0.0;      // of the in-situ tractions released on surfaces
+  double body_work = 0.0;         // of the body force
+  double initial_kinetic = 0.0;   // of the velocities that particles start with
   double edge_work = 0.0;    // of the edges' tractions beyond the in-situ ones: none, edges keep these or do not move
   double damping = 0.0;      // dissipated by damping_1_s
   double transfer = 0.0;     // dissipated between particles and grid
   double integration = 0.0;  // lost by the time step itself: sum of dt^2 (f M^-1 f - v K v)/2, most of it at shocks
   double friction = 0.0;     // dissipated by sliding, the failure of interfaces and the implicit step of springs
   double fracture = 0.0;     // released from the springs of tips that moved on (see TipTie)
-  double largest = 0.0;      // largest fluid work, in-situ work or kinetic energy so far, the scale for closure()
+  double largest = 0.0;      // largest fluid, in-situ or body work or kinetic energy so far, the scale for closure()
 
-  double supplied() const { return fluid_work + in_situ_work + edge_work; }
+  double supplied() const { return fluid_work + in_situ_work + edge_work + body_work + initial_kinetic; }
   double stored() const { return kinetic + strain + interface_strain; }
   double dissipated() const { return damping + transfer + integration + friction + fracture; }
   double closure() const { return largest > 0.0 ? (stored() + dissipated() - supplied()) / largest : 0.0; }
@@ -116,6 +118,8 @@ struct State {
   std::vector<std::vector<SurfaceStencil>> point_stencils, vertex_stencils;  // of each surface
   std::vector<NodeSums> sums;
   std::vector<NodeMotion> motion;
+  std::vector<Vec2>
+      body;  // body force per mass of each particle (m/s^2), set anew at each time; empty where there is none
 
   const Surface& fracture() const { return surfaces.front(); }
   Surface& fracture() { return surfaces.front(); }

@@ -139,8 +139,9 @@ inline State made_state() {
   state.events = {{"start", 0.1 / 3, 1e6 / 3, 4.0, 2.1 / 3, false, "J"},
                   {"arrest", 0.2 / 3, 2e6 / 3, 3.9, 2.3 / 3, true, "energy"}};
   Ledger& l = state.ledger;
-  for (double* value : {&l.kinetic, &l.strain, &l.interface_strain, &l.fluid_work, &l.in_situ_work, &l.edge_work,
-                        &l.damping, &l.transfer, &l.integration, &l.friction, &l.fracture, &l.largest}) {
+  for (double* value :
+       {&l.kinetic, &l.strain, &l.interface_strain, &l.fluid_work, &l.in_situ_work, &l.edge_work, &l.body_work,
+        &l.initial_kinetic, &l.damping, &l.transfer, &l.integration, &l.friction, &l.fracture, &l.largest}) {
     *value = number.next();
   }
   l.largest = 1.0 + l.largest * l.largest;

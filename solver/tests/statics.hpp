@@ -16,7 +16,7 @@ struct Statics {
   State& state() { return run.state; }
   void update(bool halve = true) { update_model(run.scene, run.rocks, run.state, model, halve); }
   void solve() {
-    at = find_equilibrium(run.state, model);
+    at = find_equilibrium(run.scene, run.state.time, run.state, model);
     set_fields(run.scene, run.state, model, at);
     set_all_particles(run.scene, run.state, model);
     run.state.dt = 1.0;  // what J's inertia divides by

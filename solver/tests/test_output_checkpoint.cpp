@@ -85,6 +85,8 @@ void require_same(const Ledger& a, const Ledger& b) {
   CHECK(a.fluid_work == b.fluid_work);
   CHECK(a.in_situ_work == b.in_situ_work);
   CHECK(a.edge_work == b.edge_work);
+  CHECK(a.body_work == b.body_work);
+  CHECK(a.initial_kinetic == b.initial_kinetic);
   CHECK(a.damping == b.damping);
   CHECK(a.transfer == b.transfer);
   CHECK(a.integration == b.integration);

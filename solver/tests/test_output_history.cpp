@@ -39,7 +39,7 @@ TEST_CASE("history.csv starts with the columns of the contract, in its order") {
           "time_s,inlet_Pa,tip_x_m,tip_y_m,height_m,J_N_m,K_I_Pa_sqrt_m,K_II_Pa_sqrt_m,mouth_opening_m,"
           "fracture_volume_m2,kinetic_J,strain_J,interface_strain_J,fluid_work_J,in_situ_work_J,edge_work_J,damping_J,"
           "transfer_J,integration_J,friction_J,fracture_J,energy_closure,J_spread,kink_deg,at_interface,ring_m,"
-          "G_N_m,G_by_J_N_m,fluid_volume_balance\n");
+          "G_N_m,G_by_J_N_m,fluid_volume_balance,body_work_J,initial_kinetic_J\n");
 }
 
 TEST_CASE("a row says of the state what the state says") {
@@ -65,6 +65,8 @@ TEST_CASE("a row says of the state what the state says") {
   CHECK(row.fluid_work_J == state.ledger.fluid_work);
   CHECK(row.in_situ_work_J == state.ledger.in_situ_work);
   CHECK(row.edge_work_J == state.ledger.edge_work);
+  CHECK(row.body_work_J == state.ledger.body_work);
+  CHECK(row.initial_kinetic_J == state.ledger.initial_kinetic);
   CHECK(row.damping_J == state.ledger.damping);
   CHECK(row.transfer_J == state.ledger.transfer);
   CHECK(row.integration_J == state.ledger.integration);

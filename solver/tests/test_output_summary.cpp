@@ -47,6 +47,8 @@ TEST_CASE("the summary holds the keys of the contract with the values of the sta
   CHECK(energy.at("fluid_work_J") == l.fluid_work);
   CHECK(energy.at("in_situ_work_J") == l.in_situ_work);
   CHECK(energy.at("edge_work_J") == l.edge_work);
+  CHECK(energy.at("body_work_J") == l.body_work);
+  CHECK(energy.at("initial_kinetic_J") == l.initial_kinetic);
   CHECK(energy.at("damping_J") == l.damping);
   CHECK(energy.at("transfer_J") == l.transfer);
   CHECK(energy.at("integration_J") == l.integration);

@@ -10,7 +10,7 @@ from verification.tests.cases import completed
 
 STORED = ("kinetic_J", "strain_J", "interface_strain_J")
 DISSIPATED = ("damping_J", "transfer_J", "integration_J", "friction_J", "fracture_J")
-SUPPLIED = ("fluid_work_J", "in_situ_work_J", "edge_work_J")
+SUPPLIED = ("fluid_work_J", "in_situ_work_J", "edge_work_J", "body_work_J", "initial_kinetic_J")
 
 
 def total(run: Run, names: tuple[str, ...]) -> np.ndarray:
