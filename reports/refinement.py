@@ -149,8 +149,8 @@ def _picture(figure: RefinementFigure, experiment: str, mechanics: str, out: Pat
     sizes = listed([metres(size) if size >= 1.0 else f"{size:g}\u00a0m" for size in figure.sizes_m])
     caption = (
         f"Each number against its cell size to the power of its own observed order p, as a share of the coarsest size's: a number of"
-        f" clean order lies on a straight line to its limit, drawn at 0 with its uncertainty; dashed, against h itself, where there is"
-        f" no such order. Marks from right to left: cells of {sizes}. Each panel has its own scale."
+        f" clean order lies on a straight line to its limit, drawn at 0 with its uncertainty, over the finest three sizes; dashed"
+        f" beyond these, and, against h itself, where there is no such order. Marks from right to left: cells of {sizes}. Each panel has its own scale."
     )
     return put_figure(draw_refinement(figure), out, f"refine_{experiment}_{mechanics}", figure.title, caption)
 

@@ -34,7 +34,7 @@ def draw_refinement(data: RefinementFigure) -> Figure:
     handles = [Line2D([], [], color=COLOURS.get(name, INK), marker=_MARKS.get(name, "o"), markersize=5, linewidth=1.4,
                       label=name.replace("_", "–")) for name in data.variants]
     handles.append(Line2D([], [], color=PALE, marker="_", markersize=9, linestyle="none", label="limit ± uncertainty"))
-    handles.append(Line2D([], [], color=PALE, linestyle=(0, (3, 2)), label="no clean order (drawn against h)"))
+    handles.append(Line2D([], [], color=PALE, linestyle=(0, (3, 2)), label="no clean order, drawn against h; or sizes it is not of"))
     put_legend(figure, handles, 4 if columns < 3 else 6)
     return figure
 
@@ -55,12 +55,15 @@ def _draw_panel(axes: Axes, panel: RefinementPanel) -> None:
 
 
 def _draw_line(axes: Axes, line: RefinementLine, number: int) -> None:
-    """One variant; its limit stands a little aside where several have one."""
+    """One variant, solid over the sizes its order is of; its limit stands a little aside where several have one."""
     colour, mark = COLOURS.get(line.variant, INK), _MARKS.get(line.variant, "o")
-    clean = line.order is not None
     width = _WIDTHS.get(line.variant, 1.4)
-    axes.plot(line.x, line.y, color=colour, marker=mark, markersize=5 if width < 3 else 7, linewidth=width, alpha=0.45 if width > 3 else 1.0,
-              linestyle="-" if clean else (0, (3, 2)), zorder=5 - 0.5 * width)
+    look = {"color": colour, "linewidth": width, "alpha": 0.45 if width > 3 else 1.0, "zorder": 5 - 0.5 * width}
+    dashed = len(line.x) if line.order is None else len(line.x) - 2
+    axes.plot(line.x, line.y, marker=mark, markersize=5 if width < 3 else 7, linestyle="none", **look)
+    axes.plot(line.x[:dashed], line.y[:dashed], linestyle=(0, (3, 2)), **look)
+    if line.order is not None:
+        axes.plot(line.x[-3:], line.y[-3:], linestyle="-", **look)
     if line.limit is None:
         return
     value, uncertainty = line.limit

@@ -125,7 +125,7 @@ def estimate(sizes: Sequence[float], values: Sequence[float], noise: float = 0.0
     last = triples[-1]
     if not last.clean:
         kind = last.kind if last.kind != "converges" else "odd order"
-        return Estimate(kind, _why_not(last, spread, noise, unit), triples, last.order, spread=spread)
+        return Estimate(kind, _why_not(last, spread, abs(values[-1] - values[-2]), noise, unit), triples, last.order, spread=spread)
     assert last.order is not None
     agrees = len(triples) == 1 or _agree(triples[-2], last)
     beyond = (values[-1] - values[-2]) / ((sizes[-2] / sizes[-1]) ** last.order - 1.0)
@@ -161,13 +161,13 @@ def _triple_words(item: Triple) -> str:
     return words.get(item.kind, item.kind) + order
 
 
-def _why_not(last: Triple, spread: float, noise: float, unit: str) -> str:
+def _why_not(last: Triple, spread: float, change: float, noise: float, unit: str) -> str:
     """Why the finest three values show no order."""
     if last.kind == "still":
         return f"the same at the finest three sizes to {told(noise, unit)}" if noise > 0.0 else "the same at the finest three sizes"
     if last.kind == "settled":
         return f"settled: the last refinement moves it by no more than {told(noise, unit)}"
-    range_words = f"spread {told(spread, unit)} over the finest three"
+    range_words = f"spread {told(spread, unit)} over the finest three, last change {told(change, unit)}"
     if last.kind == "oscillates":
         return f"oscillates: {range_words}"
     if last.kind == "diverges":

@@ -63,7 +63,7 @@ def test_a_limit_lies_within_its_uncertainty_where_a_second_term_is_small() -> N
 def test_what_oscillates_has_no_limit() -> None:
     found = estimate((1.0, 0.5, 0.25), (1.0, 3.0, 2.0), unit="m")
     assert (found.kind, found.order, found.extrapolate, found.uncertainty, found.spread) == ("oscillates", None, None, None, 2.0)
-    assert found.says == "oscillates: spread 2 m over the finest three"
+    assert found.says == "oscillates: spread 2 m over the finest three, last change 1 m"
 
 
 def test_what_moves_apart_has_no_limit_but_its_order() -> None:
