@@ -90,10 +90,11 @@ class Curve:
 
 @dataclass(frozen=True)
 class Panel:
-    """The curves of one case."""
+    """The curves of one case or family; unit: of the sizes, "m" or "s", or nothing where their labels do not say."""
 
     heading: str
     curves: tuple[Curve, ...]
+    unit: str = ""
 
 
 @dataclass(frozen=True)
@@ -103,7 +104,6 @@ class ConvergenceFigure:
     title: str
     panels: tuple[Panel, ...]
     quantities: tuple[str, ...]
-    unit: str
     left_out: int
 
 
@@ -183,18 +183,27 @@ def convergence_figure(ladder: Ladder, family: str) -> ConvergenceFigure | None:
         return None
     cases = dict.fromkeys((curve.case, curve.mechanics) for curve in curves)
     panels = tuple(
-        Panel(f"{plain(case)}, {mechanics_name(mechanics)}", tuple(one for one in curves if one.case == case))
+        Panel(case_words(case, mechanics), tuple(one for one in curves if one.case == case), unit_of(rows, case))
         for case, mechanics in cases
     )
     every = {(row.case, row.quantity) for row in rows}
-    units = {found[1] for row in rows if (found := UNIT.search(row.level))}
     return ConvergenceFigure(
         title=convergence_words(curves),
         panels=panels,
         quantities=tuple(dict.fromkeys(curve.quantity for curve in curves)),
-        unit=units.pop() if len(units) == 1 else "",
         left_out=len(every) - len(curves),
     )
+
+
+def case_words(case: str, mechanics: str) -> str:
+    """A case's name in words with its mechanics, unless the name has it."""
+    return plain(case) if mechanics in case.split("_") else f"{plain(case)}, {mechanics_name(mechanics)}"
+
+
+def unit_of(rows: Sequence[Row], case: str) -> str:
+    """The unit that the labels of a case's levels have their size in, or nothing."""
+    units = {found[1] for row in rows if row.case == case and (found := UNIT.search(row.level))}
+    return units.pop() if len(units) == 1 else ""
 
 
 def convergence_words(curves: Sequence[Curve]) -> str:
@@ -214,7 +223,7 @@ def convergence_words(curves: Sequence[Curve]) -> str:
 
 def order_words(order: float) -> str:
     """An order with one decimal."""
-    return f"{order:.1f}".replace("-", "−")
+    return f"{round(order, 1) + 0.0:.1f}".replace("-", "−")
 
 
 def cost_figure(ladder: Ladder) -> CostFigure | None:

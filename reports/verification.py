@@ -21,9 +21,9 @@ from typing import Any
 import jinja2
 
 from reports.charts.ladder_chart import draw_convergence, draw_cost
-from reports.ladder import Ladder, Row, convergence_figure, convergence_words, cost_figure, curves_of, load_ladder
+from reports.ladder import Ladder, Row, case_words, convergence_figure, convergence_words, cost_figure, curves_of, load_ladder
 from reports.sections import Picture, Section, put_figure
-from reports.words import mechanics_name, number, plain, share
+from reports.words import number, plain, share
 
 # Modules of reports/ that fill parts of the page, in its order; one that is not there is left out.
 PARTS: tuple[str, ...] = ("path_check", "refinement", "budget")
@@ -76,6 +76,7 @@ def write_verification(runs: Path, out: Path, ladder_file: Path | None = None, w
             shown |= {**ladder_context(ladder, out), "headline": headline(ladder)}
     except Exception:  # a torn file must not cost the reader the other parts
         defects.append(traceback.format_exc())
+        shown["headline"] = "The accuracy ladder's judgement could not be read."
     if shown["ladder"] is None and not parts and not defects:
         return None
     out.mkdir(parents=True, exist_ok=True)
@@ -208,9 +209,8 @@ def _block(ladder: Ladder, rows: list[Row]) -> dict[str, Any]:
             }  # fmt: skip
         )
     return {
-        "name": plain(first.case),
+        "name": case_words(first.case, first.mechanics),
         "says": ladder.cases[first.family, first.case],
-        "mechanics": mechanics_name(first.mechanics),
         "comparisons": len(rows),
         "quantities": quantities,
     }
@@ -241,7 +241,7 @@ def _reasons(rows: list[Row], reasons: list[str]) -> list[str]:
 
 def line(row: Row) -> dict[str, Any]:
     """A level's cells."""
-    order = "–" if row.order is None else f"{row.order:.2f}".replace("-", "−")
+    order = "–" if row.order is None else f"{round(row.order, 2) + 0.0:.2f}".replace("-", "−")
     gate = "none" if math.isnan(row.gate) else relative(row.gate)
     return {
         "level": row.level,

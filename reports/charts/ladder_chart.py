@@ -35,7 +35,7 @@ def draw_convergence(data: ConvergenceFigure) -> Figure:
     for axes in every[len(data.panels):]:
         axes.set_axis_off()
     for k, (axes, panel) in enumerate(zip(every, data.panels)):
-        _size_axes(axes, panel, low, high, data.unit)
+        _size_axes(axes, panel, low, high)
         for curve in panel.curves:
             _draw_curve(axes, curve, *looks[curve.quantity])
         _order_labels(axes, panel, low, high, {name: colour for name, (colour, _) in looks.items()})
@@ -88,7 +88,7 @@ def _legend_columns(handles: list[Line2D], width_in: float) -> int:
     return max(1, min(6, int(width_in / (0.075 * longest + 0.7))))
 
 
-def _size_axes(axes: Axes, panel: Panel, low: float, high: float, unit: str) -> None:
+def _size_axes(axes: Axes, panel: Panel, low: float, high: float) -> None:
     """Logarithmic axes with the sizes of the levels as ticks; fine on the left, with room there for order labels."""
     sizes = sorted({size for curve in panel.curves for size in curve.sizes})
     axes.set(xscale="log", yscale="log", xlim=(sizes[0] / 1.9, sizes[-1] * 1.25), ylim=(low, high))
@@ -97,7 +97,7 @@ def _size_axes(axes: Axes, panel: Panel, low: float, high: float, unit: str) -> 
     axes.set_xticks(sizes, [f"{size:.3g}" for size in sizes])
     axes.xaxis.set_minor_formatter(NullFormatter())
     axes.set_title(panel.heading)
-    axes.set_xlabel({"m": "cell size (m)", "s": "step (s)"}.get(unit, "size"))
+    axes.set_xlabel({"m": "cell size (m)", "s": "step (s)"}.get(panel.unit, "size"))
     axes.grid(True, which="major")
     _percent_axis(axes)
 
@@ -126,9 +126,10 @@ def _draw_curve(axes: Axes, curve: Curve, colour: str, mark: str) -> None:
 
 def _crosses(axes: Axes, places: tuple[float, ...], curve: Curve) -> None:
     """A red cross on every point that is not as its gate asks."""
+    size = 7 if len(places) > 1 else 4.5
     wrong = [(place, error) for place, error, passed in zip(places, curve.errors, curve.passed) if not passed]
     if wrong:
-        axes.plot(*zip(*wrong), linestyle="none", marker="X", markersize=8, color=FLAG, zorder=5)
+        axes.plot(*zip(*wrong), linestyle="none", marker="X", markersize=size, color=FLAG, zorder=5)
 
 
 def _order_labels(axes: Axes, panel: Panel, low: float, high: float, colours: dict[str, str]) -> None:

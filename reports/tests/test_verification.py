@@ -130,6 +130,7 @@ def test_round_off_is_not_drawn_but_counted(tmp_path: Path) -> None:
     ladder = load_ladder(write_ladder(tmp_path, some_rows()) / "ladder" / "ladder.json")
     assert ladder is not None
     figure = convergence_figure(ladder, "cracks")
+    assert [(panel.heading, panel.unit) for panel in figure.panels] == [("at rest, quasi-static", "m"), ("moving, explicit", "m")]
     assert [curve.quantity for panel in figure.panels for curve in panel.curves] == ["K_I", "mouth"] and figure.left_out == 1
     assert "1 quantity that holds to round-off" in page_of(tmp_path / "runs", tmp_path / "out")
     exact = load_ladder(write_ladder(tmp_path, some_rows()[3:6]) / "ladder" / "ladder.json")
@@ -174,7 +175,8 @@ def test_a_torn_judgement_is_a_defect(tmp_path: Path, content: str) -> None:
     runs = write_ladder(tmp_path, [])
     (runs / "ladder" / "ladder.json").write_text(content, encoding="utf-8")
     assert main(["--runs", str(runs), "--out", str(tmp_path / "out"), "--strict"]) == 1
-    assert "could not be made" in (tmp_path / "out" / "verification.html").read_text(encoding="utf-8")
+    page = (tmp_path / "out" / "verification.html").read_text(encoding="utf-8")
+    assert "could not be made" in page and "could not be read" in page
 
 
 def a_part(name: str, monkeypatch: pytest.MonkeyPatch, section: Any) -> None:

@@ -61,13 +61,22 @@ def text(rows: list[Row]) -> str:
     for family in dict.fromkeys(row.family for row in rows):
         own = [(row, words) for row, words in zip(rows, body) if row.family == family]
         lines += ["", f"{family}", *(line(words) for _, words in own)]
-        reasons: dict[tuple[str, str, str], list[str]] = {}
-        for row, _ in own:
-            if row.no_order:
-                reasons.setdefault((row.case, row.quantity, row.no_order), []).append(row.level)
-        for (case, quantity, reason), levels in reasons.items():
-            lines.append(f"  no order for {case} {quantity} at {', '.join(levels)}: {reason}")
+        lines += reasons([row for row, _ in own])
     return "\n".join(lines)
+
+
+def reasons(rows: list[Row]) -> list[str]:
+    """A line for each reason why no order is to be expected, with the cases and quantities that it is given for."""
+    given: dict[str, dict[str, list[str]]] = {}
+    for row in rows:
+        if row.no_order:
+            given.setdefault(row.no_order, {}).setdefault(f"{row.case} {row.quantity}", []).append(row.level)
+    whole = {name: sum(f"{row.case} {row.quantity}" == name for row in rows) for names in given.values() for name in names}
+    return [
+        f"  no order: {reason}: "
+        + "; ".join(name if len(levels) == whole[name] else f"{name} at {', '.join(levels)}" for name, levels in names.items())
+        for reason, names in given.items()
+    ]
 
 
 def write_json(path: Path, rows: list[Row], families: Families, count: Tally, stale: list[str], part: bool) -> None:
