@@ -40,7 +40,8 @@ _COST_CAPTION = (
 class Family:
     """A family on the page: what it says, its chart (None where all is round-off), a block of table rows a case.
 
-    exact: the blocks of cases of which everything holds to round-off as it should, which the page folds away.
+    exact: the blocks of cases of which everything holds to round-off as it should, which the page folds away;
+    reasons: why no order is to be expected, which the tables refer to by their numbers.
     """
 
     name: str
@@ -50,6 +51,7 @@ class Family:
     figure: Picture | None
     blocks: list[dict[str, Any]]
     exact: list[dict[str, Any]]
+    reasons: list[str]
     comparisons: int
     wrong: int
 
@@ -164,10 +166,11 @@ def _family(ladder: Ladder, name: str, out: Path) -> Family:
     if data is not None:
         picture = put_figure(draw_convergence(data), out, f"ladder_{name}", data.title, _convergence_caption(data.left_out))
     curves = curves_of(rows)
+    reasons = list(dict.fromkeys(row.no_order for row in rows if row.no_order))
     blocks: dict[bool, list[dict[str, Any]]] = {True: [], False: []}
     for case in dict.fromkeys(row.case for row in rows):
         own = [row for row in rows if row.case == case]
-        blocks[all(row.round_off and row.passed for row in own)].append(_block(ladder, own))
+        blocks[all(row.round_off and row.passed for row in own)].append(_block(ladder, own, reasons))
     return Family(
         name=name,
         title=plain(name)[:1].upper() + plain(name)[1:],
@@ -176,6 +179,7 @@ def _family(ladder: Ladder, name: str, out: Path) -> Family:
         figure=picture,
         blocks=blocks[False],
         exact=blocks[True],
+        reasons=reasons,
         comparisons=len(rows),
         wrong=sum(not row.passed for row in rows),
     )
@@ -194,13 +198,12 @@ def _convergence_caption(left_out: int) -> str:
     )
 
 
-def _block(ladder: Ladder, rows: list[Row]) -> dict[str, Any]:
+def _block(ladder: Ladder, rows: list[Row], reasons: list[str]) -> dict[str, Any]:
     """A case's part of the table: its quantities, each with its levels."""
     first = rows[0]
     quantities = []
     for quantity in dict.fromkeys(row.quantity for row in rows):
         own = [row for row in rows if row.quantity == quantity]
-        reasons = list(dict.fromkeys(row.no_order for row in own if row.no_order))
         quantities.append(
             {
                 "name": quantity, "unit": own[0].unit, "count": _count_words(own), "reasons": _reasons(own, reasons),
@@ -230,12 +233,13 @@ def _scale_words(rows: list[Row]) -> str:
     return f"errors relative to {' / '.join(scales)} {rows[0].unit}".rstrip() if scales else ""
 
 
-def _reasons(rows: list[Row], reasons: list[str]) -> list[str]:
-    """Why no order is expected, with the levels where that is not so of all."""
+def _reasons(rows: list[Row], reasons: list[str]) -> list[tuple[int, str]]:
+    """The numbers of the reasons why no order is expected, with the levels where that is not so of all."""
     told = []
-    for reason in reasons:
+    for index, reason in enumerate(reasons, 1):
         levels = [row.level for row in rows if row.no_order == reason]
-        told.append(reason if len(levels) == len(rows) else f"at {', '.join(levels)}: {reason}")
+        if levels:
+            told.append((index, "" if len(levels) == len(rows) else f" at {', '.join(levels)}"))
     return told
 
 

@@ -81,7 +81,8 @@ def test_every_comparison_is_listed_with_its_numbers(tmp_path: Path) -> None:
     for words in ("2.04", "+2\u00a0%", "1.00", "≥ 0.7", "3\u00a0%", "4.0", "25\u202f600", "40", "−2.0×10⁻¹⁵", "(0.30)"):
         assert words in table, words
     assert "rms of 50 values" in table and "errors relative to 1\u202f234 m" in table
-    assert "no order: round-off: symmetric" in table and "no order: at 1 m: still &lt;coarse&gt;" in table
+    assert 'no order <a href="#cracks_1">[1]' in table and 'no order at 1 m <a href="#cracks_2">[2]' in table
+    assert '<li id="cracks_1">round-off: symmetric</li><li id="cracks_2">still &lt;coarse&gt;</li>' in page
     assert "It shows at_rest." in table and "About cracks." in page
 
 
