@@ -174,7 +174,7 @@ def _family(ladder: Ladder, name: str, out: Path) -> Family:
     return Family(
         name=name,
         title=plain(name)[:1].upper() + plain(name)[1:],
-        says=ladder.families[name],
+        says=sentence(ladder.families[name]),
         finding=convergence_words(curves) if curves else "Everything holds to round-off" if rows else "Nothing was run",
         figure=picture,
         blocks=blocks[False],
@@ -213,10 +213,15 @@ def _block(ladder: Ladder, rows: list[Row], reasons: list[str]) -> dict[str, Any
         )
     return {
         "name": case_words(first.case, first.mechanics),
-        "says": ladder.cases[first.family, first.case],
+        "says": sentence(ladder.cases[first.family, first.case]),
         "comparisons": len(rows),
         "quantities": quantities,
     }
+
+
+def sentence(words: str) -> str:
+    """Words with a capital and a full stop."""
+    return f"{words[:1].upper()}{words[1:].rstrip('.')}." if words else ""
 
 
 def _count_words(rows: list[Row]) -> str:
