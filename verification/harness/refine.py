@@ -235,9 +235,14 @@ def study_of(
     content = content_of(scene, variant, settings)
     rows = [row_of(quantity, levels) for quantity in quantities_of(content, heights_m)]
     rows = [row for row in rows if not arrests_nowhere(row)]
+    nowhere = [row.label for row in rows if all(value is None for value in row.values)]
+    rows = [row for row in rows if row.label not in nowhere]
     if turns(content):
         rows += path_rows(levels)
-    return Study(mechanics, variant, increment_of(content), tuple(levels), tuple(rows), unlike(content, [level.cell_m for level in levels]))
+    notes = unlike(content, [level.cell_m for level in levels])
+    if nowhere:
+        notes += (f"{variant or 'base'}: at no size is there a {', '.join(nowhere)}",)
+    return Study(mechanics, variant, increment_of(content), tuple(levels), tuple(rows), notes)
 
 
 def unlike(content: dict[str, Any], cells_m: Sequence[float]) -> tuple[str, ...]:

@@ -122,6 +122,14 @@ def test_arrests_that_no_size_has_are_left_out_and_some_are_told(tmp_path: Path)
     assert row.notes == ("1 m: no arrest",)
 
 
+def test_what_no_size_has_is_told_in_a_note(tmp_path: Path) -> None:
+    low = [level(h, load(write_run(tmp_path / f"{h}", climb(to_m=30.0), end_Pa=2.9e6))) for h in (1.0, 0.5)]
+    study = study_of(EXP1, "quasistatic", "weak", low)
+    assert not any(row.name == "pressure_at_40_Pa" for row in study.rows)
+    assert study.notes == ("weak: at no size is there a pressure at 40 m, pressure at 60 m",)
+    assert any(row.name == "pressure_at_20_Pa" for row in study.rows)
+
+
 def test_sizes_at_which_tip_or_interface_lie_otherwise_in_their_cells_are_named() -> None:
     content = {**CONTENT, "strata": {"layers": [{"rock": "a", "thickness_m": 10}, {"rock": "b"}]}}
     assert refine.unlike(content, (1.0, 0.5, 0.25)) == ()
