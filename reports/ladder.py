@@ -7,7 +7,7 @@ import math
 import re
 import statistics
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -109,7 +109,7 @@ class ConvergenceFigure:
 
 @dataclass(frozen=True)
 class CostFigure:
-    """Error against wall time of every quantity, a panel a family; `mechanics` in the order of their colours."""
+    """Largest error of every case against wall time, a panel a family; `mechanics` in the order of their colours."""
 
     title: str
     panels: tuple[Panel, ...]
@@ -228,7 +228,7 @@ def order_words(order: float) -> str:
 
 def cost_figure(ladder: Ladder) -> CostFigure | None:
     """What the chart of error against cost shows; None where there is nothing to draw."""
-    curves = [curve for curve in curves_of(ladder.rows) if all(wall > 0.0 for wall in curve.walls_s)]
+    curves = [case for case in worst_of(curves_of(ladder.rows)) if all(wall > 0.0 for wall in case.walls_s)]
     mechanics = tuple(name for name in ("quasistatic", "explicit") if any(curve.mechanics == name for curve in curves))
     if not curves:
         return None
@@ -237,18 +237,37 @@ def cost_figure(ladder: Ladder) -> CostFigure | None:
     return CostFigure(cost_words(curves, mechanics), panels, mechanics)
 
 
+def worst_of(curves: Sequence[Curve]) -> list[Curve]:
+    """A curve a case: the largest error among its quantities at each size; it passes where all of them do."""
+    groups: dict[tuple[str, str], dict[float, list[tuple[Curve, int]]]] = {}
+    for curve in curves:
+        for index, size in enumerate(curve.sizes):
+            groups.setdefault((curve.family, curve.case), {}).setdefault(size, []).append((curve, index))
+    found = []
+    for sizes in groups.values():
+        first = next(iter(sizes.values()))[0][0]
+        order = sorted(sizes, reverse=True)
+        found.append(replace(
+            first, quantity="", order=None, sizes=tuple(order), gates=(),
+            errors=tuple(max(curve.errors[k] for curve, k in sizes[size]) for size in order),
+            walls_s=tuple(max(curve.walls_s[k] for curve, k in sizes[size]) for size in order),
+            passed=tuple(all(curve.passed[k] for curve, k in sizes[size]) for size in order),
+        ))  # fmt: skip
+    return found
+
+
 def cost_words(curves: Sequence[Curve], mechanics: Sequence[str]) -> str:
-    """How long it takes each mechanics to come within a percent, in a sentence."""
+    """How long it takes each mechanics to come within a percent in all that a case measures, in a sentence."""
     told = []
     for name in mechanics:
         own = [curve for curve in curves if curve.mechanics == name]
         first = [time for curve in own if (time := first_within(curve, ONE_PERCENT)) is not None]
         time = f" in {number(statistics.median(first), 2)}\u00a0s (median)" if first else ""
-        told.append(f"{mechanics_name(name)} runs bring {len(first)} of {len(own)} quantities within 1\u00a0%{time}")
-    return listed(told)[:1].upper() + listed(told)[1:]
+        told.append(f"{len(first)} of {len(own)} {mechanics_name(name)} cases{time}")
+    return f"Within 1\u00a0% in all that they measure: {listed(told)}"
 
 
 def first_within(curve: Curve, error: float) -> float | None:
-    """The least wall time (s) of a level at which a quantity is within an error, or None."""
+    """The least wall time (s) of a level at which a curve is within an error, or None."""
     times = [wall for wall, off in zip(curve.walls_s, curve.errors) if off <= error]
     return min(times) if times else None

@@ -30,9 +30,9 @@ PARTS: tuple[str, ...] = ("path_check", "refinement", "budget")
 NAME = "verification.html"
 LADDER = Path("ladder") / "ladder.json"
 _COST_CAPTION = (
-    "Relative error of every quantity against the wall time of its run, from its coarsest to its finest level, a panel a family."
-    " Dashed: 1\u00a0%. Quantities that hold to round-off are left out. Runs were made side by side, so that times tell sizes"
-    " rather than speeds."
+    "Largest relative error among the quantities of a case (but those that hold to round-off) against the wall time of the run,"
+    " a line a case from its coarsest to its finest level, a panel a family. Dashed: 1\u00a0%. Runs were made side by side, so"
+    " that times tell sizes rather than speeds."
 )
 
 
@@ -193,7 +193,7 @@ def _convergence_caption(left_out: int) -> str:
         lack = f" {left_out} {which} to round-off, or could not be measured, {'is' if left_out == 1 else 'are'} left out."
     return (
         "Relative error against size, logarithmic, a panel a case; finer to the left. Beside each curve its observed order"
-        " between the finest two levels, in brackets and the curve dashed where no order is to be expected (the table says why)."
+        " between the finest two levels, the curve dashed and without one where no order is to be expected (the table says why)."
         f" Short dashes: what the gate allows. Triangles: orders 1 and 2.{lack}"
     )
 

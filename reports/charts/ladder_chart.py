@@ -13,18 +13,19 @@ from reports.charts.style import FLAG, INK, PALE, new_figure, put_legend, put_ti
 from reports.ladder import ConvergenceFigure, CostFigure, Curve, Panel, order_words
 from reports.words import mechanics_name
 
-# Wong's palette again, with two more, each with its own mark for those who see no colours.
+# Wong's palette again and paler ones, each with its own mark for those who see no colours.
 _LOOKS: tuple[tuple[str, str], ...] = (
     ("#0067a5", "o"), ("#d04a00", "s"), ("#00845f", "^"), ("#a3397f", "D"), ("#8a6a00", "v"), ("#222222", "P"),
-    ("#5b8fd9", "X"), ("#7a5230", "<"), ("#6b6b6b", ">"), ("#b8860b", "h"),
+    ("#5b8fd9", "X"), ("#7a5230", "<"), ("#6b6b6b", ">"), ("#e0a030", "h"), ("#35a7b5", "*"), ("#e58a66", "p"), ("#78bd8f", "d"),
+    ("#c98ab5", "H"), ("#9db4d6", "8"), ("#b9a36a", "."),
 )
-_COLUMNS, _MOST_COLUMNS = 3, 4  # of panels; the latter where there are more than twelve
+_COLUMNS = 3
 _LABEL_GAP = 0.055  # of the axes' height, between order labels
 
 
 def draw_convergence(data: ConvergenceFigure) -> Figure:
     """A panel a case on common scales of error; lines to orders 1 and 2 in a corner, the finest order beside each curve."""
-    columns = min(_COLUMNS if len(data.panels) <= 12 else _MOST_COLUMNS, len(data.panels))
+    columns = min(_COLUMNS, len(data.panels))
     rows = -(-len(data.panels) // columns)
     width = max(8.2, 3.9 * columns)
     figure = new_figure(width, 1.0 + 3.4 * rows)
@@ -50,7 +51,7 @@ def draw_convergence(data: ConvergenceFigure) -> Figure:
 
 
 def draw_cost(data: CostFigure) -> Figure:
-    """Every quantity's way down in error with wall time, thin, a panel a family and a colour a mechanics."""
+    """Every case's way down in error with wall time, a panel a family and a colour a mechanics."""
     columns = min(_COLUMNS, len(data.panels))
     rows = -(-len(data.panels) // columns)
     width = max(8.2, 3.9 * columns)
@@ -71,7 +72,7 @@ def draw_cost(data: CostFigure) -> Figure:
             axes.plot(curve.walls_s, curve.errors, color=colour, linewidth=0.9, marker=mark, markersize=3.4, alpha=0.75, zorder=3)
             _crosses(axes, curve.walls_s, curve)
         if k % columns == 0:
-            axes.set_ylabel("relative error")
+            axes.set_ylabel("largest relative error of the case")
         if k + columns >= len(data.panels):
             axes.set_xlabel("wall time of the run (s)")
             axes.tick_params(labelbottom=True)
@@ -133,26 +134,33 @@ def _crosses(axes: Axes, places: tuple[float, ...], curve: Curve) -> None:
 
 
 def _order_labels(axes: Axes, panel: Panel, low: float, high: float, colours: dict[str, str]) -> None:
-    """The order of the finest pair beside the finest point of each curve, moved apart where they would overlap."""
+    """The order of the finest pair beside the finest point of each curve that is judged by it, apart where they would overlap."""
     height = math.log(high / low)
-    known = [(math.log(curve.errors[-1] / low) / height, curve) for curve in panel.curves if curve.order is not None]
+    judged = [curve for curve in panel.curves if curve.order is not None and curve.judged]
+    known = [(math.log(curve.errors[-1] / low) / height, curve) for curve in judged]
     wanted = sorted(known, key=lambda pair: pair[0])
     places = spread_apart([place for place, _ in wanted], _LABEL_GAP)
     for place, (_, curve) in zip(places, wanted):
-        words = order_words(curve.order) if curve.judged else f"({order_words(curve.order)})"
-        axes.annotate(words, (curve.sizes[-1], low * math.exp(place * height)), xytext=(-7, 0), textcoords="offset points",
-                      ha="right", va="center", fontsize=8.5, color=colours[curve.quantity], fontweight="bold", zorder=6)
+        end = (curve.sizes[-1], low * math.exp(place * height))
+        axes.annotate(order_words(curve.order), end, xytext=(-7, 0), textcoords="offset points", ha="right", va="center",
+                      fontsize=8.5, color=colours[curve.quantity], fontweight="bold", zorder=6)
 
 
 def spread_apart(places: list[float], gap: float) -> list[float]:
-    """Sorted places moved upwards as little as needed for a gap between neighbours, then down together to stay centred."""
-    moved: list[float] = []
+    """Sorted places moved as little as needed for a gap between neighbours: those too near form a group about their mean."""
+    groups: list[list[float]] = []
     for place in places:
-        moved.append(max(place, moved[-1] + gap) if moved else place)
-    if not moved:
-        return moved
-    shift = sum(after - before for after, before in zip(moved, places)) / len(moved)
-    return [place - shift for place in moved]
+        groups.append([place])
+        while len(groups) > 1 and _ends(groups[-1], gap)[0] - _ends(groups[-2], gap)[1] < gap:
+            last = groups.pop()
+            groups[-1] += last
+    return [_ends(group, gap)[0] + gap * k for group in groups for k in range(len(group))]
+
+
+def _ends(group: list[float], gap: float) -> tuple[float, float]:
+    """The first and last place of a group whose members are a gap apart about their mean."""
+    middle, half = sum(group) / len(group), 0.5 * gap * (len(group) - 1)
+    return middle - half, middle + half
 
 
 def _slopes(axes: Axes) -> None:

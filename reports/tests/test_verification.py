@@ -122,8 +122,19 @@ def test_figures_say_what_the_numbers_say(tmp_path: Path) -> None:
         titles.append((convergence_figure(ladder, "cracks").title, cost_figure(ladder).title))
     assert titles[0][0] == "Errors of 1\u00a0% (K_I, at rest) at the finest level; orders 1.0 between the finest two levels"
     assert titles[1][0].startswith("Errors of 2\u00a0%")
-    assert titles[0][1] == "Quasi-static runs bring 1 of 1 quantities within 1\u00a0% in 32\u00a0s (median)"
-    assert titles[1][1] == "Quasi-static runs bring 0 of 1 quantities within 1\u00a0%"
+    assert titles[0][1] == "Within 1\u00a0% in all that they measure: 1 of 1 quasi-static cases in 32\u00a0s (median)"
+    assert titles[1][1] == "Within 1\u00a0% in all that they measure: 0 of 1 quasi-static cases"
+
+
+def test_the_worst_of_a_case_is_what_it_costs(tmp_path: Path) -> None:
+    """The largest error at each size counts, with a cross where any quantity falls short."""
+    found = {"K": (0.04, 0.001), "w": (0.02, 0.01)}
+    rows = [a_row("at_rest", name, k, error) for name, errors in found.items() for k, error in enumerate(errors)]
+    rows[0] |= {"verdict": "FAIL", "problems": ["error above"]}
+    ladder = load_ladder(write_ladder(tmp_path, rows) / "ladder" / "ladder.json")
+    assert ladder is not None
+    (curve,) = cost_figure(ladder).panels[0].curves
+    assert (curve.sizes, curve.errors, curve.passed, curve.walls_s) == ((2.0, 1.0), (0.04, 0.01), (False, True), (0.5, 4.0))
 
 
 def test_round_off_is_not_drawn_but_counted(tmp_path: Path) -> None:
@@ -223,6 +234,8 @@ def test_relative_errors_in_words() -> None:
 def test_labels_that_would_overlap_are_moved_apart() -> None:
     """By no more than a gap, and about where they were."""
     assert spread_apart([0.1, 0.5], 0.05) == [0.1, 0.5] and spread_apart([], 0.05) == []
-    moved = spread_apart([0.30, 0.31, 0.31], 0.05)
-    assert moved[1] - moved[0] == pytest.approx(0.05) and moved[2] - moved[1] == pytest.approx(0.05)
-    assert sum(moved) == pytest.approx(0.92)
+    moved = spread_apart([0.05, 0.30, 0.31, 0.31, 0.9], 0.05)
+    assert [moved[0], moved[4]] == pytest.approx([0.05, 0.9]), "what is far off stays"
+    assert moved[2] - moved[1] == pytest.approx(0.05) and moved[3] - moved[2] == pytest.approx(0.05)
+    assert sum(moved[1:4]) == pytest.approx(0.92)
+    assert spread_apart([0.2, 0.24, 0.26], 0.05) == pytest.approx([0.7 / 3 - 0.05, 0.7 / 3, 0.7 / 3 + 0.05])
