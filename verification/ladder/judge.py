@@ -62,8 +62,15 @@ def judge(row: Row, coarser: Row | None, gate: Gate | None) -> Row:
         problems.append(_order_problem(row, coarser, gate))
     wrong = mutants_of(row, coarser)
     survivors = [name for name, mutant in wrong.items() if not refuses(gate, row, coarser, name, mutant)]
-    problems += [f"the gate lets {name} pass" for name in survivors]
+    problems += [f"the gate lets {name} pass{_risen(row, gate) if name == HALF_AN_ORDER else ''}" for name in survivors]
     return replace(row, gate=gate, problems=tuple(filter(None, problems)), refused=len(wrong) - len(survivors))
+
+
+def _risen(row: Row, gate: Gate) -> str:
+    """How an order that rose leaves its gate too low, in brackets."""
+    if row.order is None or gate.measured_order is None:
+        return ""
+    return f" (order {row.order:.2f}, accepted at {gate.measured_order:.2f}); see --accept"
 
 
 def _order_problem(row: Row, coarser: Row, gate: Gate) -> str:

@@ -195,7 +195,8 @@ def test_half_an_order_lost_is_refused_by_the_order_where_the_error_alone_would_
     # With an order gate 0.6 below (measured said to be as much lower) half an order lost would pass: so the gate fails.
     loose = replace(gate, order=0.4, measured_order=0.7)
     row = judged(rows, {"made_up": {**known["made_up"], rows[1].key: loose}})[1]
-    assert row.problems == (f"the gate lets {HALF_AN_ORDER} pass",) and row.refused == 3
+    assert row.problems == (f"the gate lets {HALF_AN_ORDER} pass (order 1.00, accepted at 0.70); see --accept",)
+    assert row.refused == 3
 
 
 def test_a_gate_that_lets_a_mutant_pass_fails() -> None:
