@@ -137,7 +137,10 @@ def _finding(experiment: str, budgets: list[dict[str, Any]]) -> str:
     parts = [f"{factor} moves the {listed(list(dict.fromkeys(labels)))} most" for factor, labels in tops.items()]
     largest = max(numerical, default=None)
     told = f"; the largest numerical effect is that of the {largest[1]}, {largest[0] / 1e3:.3g} kPa ({largest[2]})" if largest else ""
-    return f"{_number_of(experiment)}: {', '.join(parts) if parts else 'no complete run'}{told}"
+    paths = [top for budget in budgets if (top := dominant(budget, "path_m")) is not None]
+    way = max(paths, key=lambda item: item[1], default=None)
+    aside = f"; the {way[0]} moves the path most, by up to {way[1]:.2g} m" if way else ""
+    return f"{_number_of(experiment)}: {', '.join(parts) if parts else 'no complete run'}{told}{aside}"
 
 
 def _picture(figure: BudgetFigure, experiment: str, out: Path) -> Picture:

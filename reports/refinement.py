@@ -11,7 +11,7 @@ from typing import Any
 
 from reports.charts.refinement_chart import draw_refinement
 from reports.sections import Picture, Section, Table, put_figure
-from reports.words import listed, mechanics_name, metres, plain
+from reports.words import listed, mechanics_name, plain
 
 # Quantities that have a panel each, in this order; of the pressures at heights one in the middle and the last.
 _PANELS = ("start_Pa", "restart_1_Pa", "restart_2_Pa", "plateau_1_Pa", "deflection_m", "final_angle_deg", "path_to_next_m")
@@ -84,11 +84,16 @@ def _intro(rows: list[dict[str, Any]]) -> str:
     orders = [row["estimate"]["order"] for row in rows if row["estimate"]["kind"] == "clean"]
     middle = f" (median order {statistics.median(orders):.2g})" if orders else ""
     same = sum(kind in ("still", "settled") for kind in kinds)
-    without = {word: kinds.count(kind) for kind, word in
-               (("oscillates", "oscillate"), ("diverges", "do not converge"), ("odd order", "have an order no scheme has"),
-                ("too few", "have values at fewer than three sizes"))}  # fmt: skip
-    rest = listed([f"{count} {word}" for word, count in without.items() if count])
-    return f"Of {len(rows)} numbers {len(orders)} have a limit{middle}, {same} stand still" + (f", {rest}." if rest else ".")
+    words = {"oscillates": "oscillating", "diverges": "not converging", "odd order": "of an order that no scheme has",
+             "too few": "known at fewer than three sizes"}  # fmt: skip
+    without = listed([f"{kinds.count(kind)} {word}" for kind, word in words.items() if kind in kinds])
+    head = f"Of {len(rows)} numbers {len(orders)} {_verb(len(orders))} a limit{middle}, {same} stand{'s' * (same == 1)} still"
+    return f"{head}; the others: {without}." if without else f"{head}."
+
+
+def _verb(count: int) -> str:
+    """'has' of one, 'have' of others."""
+    return "has" if count == 1 else "have"
 
 
 def _number_of(experiment: str) -> str:
@@ -133,8 +138,10 @@ def _finding(experiment: str, studies: list[dict[str, Any]]) -> str:
     rows = [(study["variant"], row) for study in studies for row in judged(study)]
     clean = sum(row["estimate"]["kind"] == "clean" for _, row in rows)
     still = sum(row["estimate"]["kind"] in ("still", "settled") for _, row in rows)
-    head = f"{_number_of(experiment)}, {mechanics_name(studies[0]['mechanics'])}: of {len(rows)} numbers {clean} have a limit and {still} stand still"
-    failed = [f"{plain(study['variant'])} at {level['cell_m']:g} m" for study in studies for level in study["levels"] if level["status"] != "completed"]
+    where = f"{_number_of(experiment)}, {mechanics_name(studies[0]['mechanics'])}"
+    head = f"{where}: of {len(rows)} numbers {clean} {_verb(clean)} a limit and {still} stand{'s' * (still == 1)} still"
+    failed = [f"{plain(study['variant'])} at {level['cell_m']:g} m"
+              for study in studies for level in study["levels"] if level["status"] != "completed"]  # fmt: skip
     lost = f"; no complete run of {listed(failed)}" if failed else ""
     open_ = [(row["estimate"]["spread"], variant, row) for variant, row in rows
              if row["unit"] == "Pa" and row["estimate"]["kind"] not in _GOOD and row["estimate"]["spread"] is not None]  # fmt: skip
@@ -146,7 +153,7 @@ def _finding(experiment: str, studies: list[dict[str, Any]]) -> str:
 
 def _picture(figure: RefinementFigure, experiment: str, mechanics: str, out: Path) -> Picture:
     """Draw an experiment's figure."""
-    sizes = listed([metres(size) if size >= 1.0 else f"{size:g}\u00a0m" for size in figure.sizes_m])
+    sizes = listed([f"{size:g}\u00a0m" for size in figure.sizes_m])
     caption = (
         f"Each number against its cell size to the power of its own observed order p, as a share of the coarsest size's: a number of"
         f" clean order lies on a straight line to its limit, drawn at 0 with its uncertainty, over the finest three sizes; dashed"

@@ -84,10 +84,10 @@ def test_refinement_counts_what_converges_and_names_what_does_not(tmp_path: Path
     """Intro, title, table and marks follow from the rows."""
     found = refinement.section(write_refined(tmp_path / "runs"), tmp_path / "out")
     assert found is not None
-    assert "Of 5 numbers 3 have a limit (median order 1), 1 stand still, 1 oscillate." in found["intro"]
+    assert "Of 5 numbers 3 have a limit (median order 1), 1 stands still; the others: 1 oscillating." in found["intro"]
     (picture,), (table,) = found["figures"], found["tables"]
     assert (tmp_path / "out" / "figures" / f"{picture['name']}.png").stat().st_size > 5000
-    assert "of 5 numbers 3 have a limit and 1 stand still; no complete run of soft at 0.25\xa0m".replace("\xa0", " ") in picture["title"]
+    assert "of 5 numbers 3 have a limit and 1 stands still; no complete run of soft at 0.25\xa0m".replace("\xa0", " ") in picture["title"]
     assert "moves the restart pressure (soft) most, by 200 kPa" in picture["title"]
     assert table["header"][2:6] == ["2 m", "1 m", "0.5 m", "0.25 m"] and table["marked"] == [3]
     start = table["rows"][0]
@@ -112,6 +112,7 @@ def test_the_budget_names_what_dominates_and_shows_failures(tmp_path: Path) -> N
     assert found is not None
     (picture,), (table, broken) = found["figures"], found["tables"]
     assert picture["title"].startswith("Experiment 1: mesh moves the start of growth most, loading rate moves the pressure at 40 m most")
+    assert "path" not in picture["title"]
     assert "largest numerical effect is that of the mesh, 20 kPa (start of growth, soft)" in picture["title"]
     assert (tmp_path / "out" / "figures" / f"{picture['name']}.svg").is_file()
     assert "2 of their runs failed or were refused" in found["intro"]
@@ -119,6 +120,15 @@ def test_the_budget_names_what_dominates_and_shows_failures(tmp_path: Path) -> N
     assert table["marked"] == [3, 4] and "J ring, 3 cells: unknown key." in table["note"]
     assert table["rows"][6][3] == "does not reach 40 m" and table["rows"][7][1] == "no flow"
     assert broken["rows"] == [["failed: it became a mechanism"]] and broken["marked"] == [0]
+
+
+def test_what_moves_a_path_most_is_told(tmp_path: Path) -> None:
+    """A path has no share in the pressures' finding, but its own."""
+    content = json.loads((write_budget(tmp_path) / "budget" / "exp1_single_interface.json").read_text())
+    one = content["budgets"][0]
+    one["quantities"].append(["path_m", "path, largest distance", "m"])
+    one["lines"][0]["tried"][0]["effects"]["path_m"] = {"value": 5.2, "note": ""}
+    assert budget.budget_figure("exp1", [one]).title.endswith("; the mesh moves the path most, by up to 5.2 m")
 
 
 def test_bars_are_ordered_by_size_and_what_says_nothing_is_last(tmp_path: Path) -> None:

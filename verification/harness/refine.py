@@ -168,7 +168,7 @@ def shown(quantity: Quantity, level: Level) -> tuple[float | None, str]:
     """A quantity of one run, or None with the reason."""
     if level.run is None:
         return None, f"{level.cell_m:g} m: {'refused' if level.outcome.exit_status == REFUSED else 'failed'}"
-    if not level.outcome.ok and quantity.name.startswith("final"):
+    if not level.outcome.ok and quantity.name.startswith(("final", "deflection")):
         return None, f"{level.cell_m:g} m: the run failed"
     found: Measured = quantity.measure(level.run)
     if found.exact:
