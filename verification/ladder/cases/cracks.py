@@ -290,7 +290,10 @@ CASES = (
     at_rest("graded", "crack on a grid line, cells growing away from it", levels(FINEST, "", graded)),
     at_rest("wide", "crack in a graded block 400 m wide", levels(FINEST, "wide", far_graded)),
     *(
-        at_rest(f"tip_{share:g}", f"tip {share:g} of a cell past a grid line", levels(FINE, "", within_cell(share), graded), AT_TIP)
+        at_rest(
+            f"tip_{share:g}", f"tip {share:g} of a cell past a grid line",
+            levels(FINE, "", within_cell(share), graded), AT_TIP,
+        )
         for share in (0.25, 0.5, 0.75)
     ),
     at_rest("sloped", "net pressure that falls off towards the tip, as the run has it", levels(FINEST, "sloped", graded), SLOPED),
