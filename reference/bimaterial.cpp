@@ -76,6 +76,16 @@ BondedCrack::BondedCrack(const Geometry& geometry, const Rock& rock_1, const Roc
           [this](double t, double x) { return kernel(geometry_, mirror_, t, x); },
           [&p](double x) { return Eigen::Vector2d(p(x), 0); }, n) {}
 
+BondedCrack::BondedCrack(const Geometry& geometry, const Rock& rock_1, const Rock& rock_2, const PressureKnots& p,
+                         int n)
+    : geometry_(checked(geometry)),
+      rock_1_(rock_1),
+      rock_2_(rock_2),
+      mirror_(bonded_mirror(rock_1, rock_2)),
+      line_(
+          geometry.half_length, rock_1.E_prime(),
+          [this](double t, double x) { return kernel(geometry_, mirror_, t, x); }, p, n) {}
+
 BondedCrack::Field BondedCrack::field(double x, double y) const {
   return evaluate({x, y}, y >= 0);
 }

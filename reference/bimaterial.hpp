@@ -38,6 +38,8 @@ class BondedCrack {
   // Throws std::invalid_argument for rocks with E_1 <= 0, E_2 < 0 or nu outside [0, 0.5), or a crack that reaches the
   // interface.
   BondedCrack(const Geometry& geometry, const Rock& rock_1, const Rock& rock_2, const Function& p, int n = 0);
+  // The same for piecewise-linear p, whose kinks and jumps then cost no accuracy.
+  BondedCrack(const Geometry& geometry, const Rock& rock_1, const Rock& rock_2, const PressureKnots& p, int n = 0);
 
   const CrackLine& line() const { return line_; }
 

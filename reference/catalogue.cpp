@@ -178,6 +178,18 @@ Inputs read_inputs(const Entry& entry, const std::vector<std::string>& settings)
   return inputs;
 }
 
+Answer solved(const Entry& entry, const Inputs& inputs) {
+  Answer answer = entry.solve(inputs);
+  for (const Value& value : answer.values) {
+    bool finite = true;
+    if (const double* one = std::get_if<double>(&value.value)) finite = std::isfinite(*one);
+    if (const auto* many = std::get_if<std::vector<double>>(&value.value))
+      finite = std::all_of(many->begin(), many->end(), [](double number) { return std::isfinite(number); });
+    if (!finite) throw std::runtime_error(value.name + " of " + entry.name + " is not finite for these inputs");
+  }
+  return answer;
+}
+
 InputValue at_each(const Inputs& inputs, const std::string& key, const std::function<double(double)>& f) {
   if (const double* one = std::get_if<double>(&inputs[key])) return f(*one);
   std::vector<double> values;

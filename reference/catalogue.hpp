@@ -76,6 +76,9 @@ Entry find_entry(const std::string& name);
 // Throws std::invalid_argument whose text lists every problem of every setting, a line each.
 Inputs read_inputs(const Entry& entry, const std::vector<std::string>& settings);
 
+// The entry's answer to the inputs. Throws as its solve, and std::runtime_error if a value is not finite.
+Answer solved(const Entry& entry, const Inputs& inputs);
+
 // f at every number of input `key`: a list if the input is one, else a number.
 InputValue at_each(const Inputs& inputs, const std::string& key, const std::function<double(double)>& f);
 

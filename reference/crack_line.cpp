@@ -17,19 +17,85 @@ double node_angle(int j, int n) {
   return (2 * j + 1) * pi / (2 * n);
 }
 
+Eigen::VectorXd node_places(double a, int n) {
+  Eigen::VectorXd nodes(n);
+  for (int j = 0; j < n; ++j) nodes(j) = a * std::cos(node_angle(j, n));
+  return nodes;
+}
+
+void check_crack(double half_length, double E_prime) {
+  if (!(half_length > 0 && E_prime > 0) || !std::isfinite(half_length) || !std::isfinite(E_prime))
+    throw std::invalid_argument("half_length and E_prime must be positive and finite");
+}
+
+// int_0^pi p(a cos th) sin(m th) sin(th) d(th) for m = 0 .. n-1.
+Eigen::VectorXd sine_moments(double a, const PressureKnots& p, int n) {
+  Eigen::VectorXd moments = Eigen::VectorXd::Zero(n);
+  const auto cosine_integral = [](int j, double from, double to) {  // of cos(j th)
+    return j == 0 ? to - from : (std::sin(j * to) - std::sin(j * from)) / j;
+  };
+  for (std::size_t i = 0; i + 1 < p.x.size(); ++i) {
+    const double low = std::max(p.x[i], -a), high = std::min(p.x[i + 1], a);
+    if (!(low < high)) continue;
+    const double slope = (p.p[i + 1] - p.p[i]) / (p.x[i + 1] - p.x[i]);
+    const double from = std::acos(high / a), to = std::acos(low / a);
+    for (int m = 1; m < n; ++m) {
+      const double constant = 0.5 * (cosine_integral(m - 1, from, to) - cosine_integral(m + 1, from, to));
+      const double linear = 0.25 * a * (cosine_integral(std::abs(m - 2), from, to) - cosine_integral(m + 2, from, to));
+      moments(m) += (p.p[i] - slope * p.x[i]) * constant + slope * linear;
+    }
+  }
+  return moments;
+}
+
+// Strengths of n point dislocations with the moments of the infinite plane's opening under p.
+Eigen::VectorXd plane_strengths(double a, double E_prime, const PressureKnots& p, int n) {
+  const Eigen::VectorXd moments = -4 * a / E_prime * sine_moments(a, p, n);
+  Eigen::VectorXd strengths = Eigen::VectorXd::Zero(n);
+  for (int j = 0; j < n; ++j)
+    for (int m = 1; m < n; ++m) strengths(j) += 2.0 / n * moments(m) * std::cos(m * node_angle(j, n));
+  return strengths;
+}
+
 }  // namespace
 
 CrackLine::CrackLine(double half_length, double E_prime, const CrackKernel& kernel, const CrackLoad& load, int n)
     : a_(half_length), E_prime_(E_prime) {
-  if (!(a_ > 0 && E_prime_ > 0) || !std::isfinite(a_) || !std::isfinite(E_prime_))
-    throw std::invalid_argument("half_length and E_prime must be positive and finite");
-  if (n > 0) {
-    solve(kernel, load, n);
-    return;
-  }
+  check_crack(half_length, E_prime);
+  settle(
+      kernel, [&load](int) { return load; }, n);
+  rest_ = strengths_;
+}
+
+CrackLine::CrackLine(double half_length, double E_prime, const CrackKernel& kernel, const PressureKnots& p, int n)
+    : a_(half_length), E_prime_(E_prime) {
+  check_crack(half_length, E_prime);
+  plane_ = LinearlyPressurisedCrack(half_length, E_prime, p);
+  // The rest answers the traction that the plane's part sends back to the crack.
+  const auto returned = [&](int count) -> CrackLoad {
+    return [&kernel, nodes = node_places(a_, count), given = plane_strengths(a_, E_prime_, p, count),
+            unit = E_prime_ / (4 * pi)](double x) {
+      Eigen::Vector2d traction = Eigen::Vector2d::Zero();
+      for (Eigen::Index j = 0; j < nodes.size(); ++j) traction += kernel(nodes(j), x).col(0) * given(j);
+      return Eigen::Vector2d(unit * traction);
+    };
+  };
+  settle(kernel, returned, n);
+  rest_ = strengths_;
+  strengths_.row(0) += plane_strengths(a_, E_prime_, p, static_cast<int>(nodes_.size())).transpose();
+}
+
+void CrackLine::settle(const CrackKernel& kernel, const std::function<CrackLoad(int)>& load_of, int n) {
+  const TipIntensities plane = plane_ ? plane_->K_I() : TipIntensities{};
+  const auto solve_with = [&](int count) {
+    solve(kernel, load_of(count), count);
+    plus_.K_I += plane.plus;
+    minus_.K_I += plane.minus;
+  };
+  if (n > 0) return solve_with(n);
   Intensities plus, minus;
   for (n = 32; n <= kMaxNodes; n *= 2) {
-    solve(kernel, load, n);
+    solve_with(n);
     const double size = std::max({std::hypot(plus_.K_I, plus_.K_II), std::hypot(minus_.K_I, minus_.K_II), 1e-300});
     error_ = std::max(std::hypot(plus_.K_I - plus.K_I, plus_.K_II - plus.K_II),
                       std::hypot(minus_.K_I - minus.K_I, minus_.K_II - minus.K_II)) /
@@ -41,8 +107,7 @@ CrackLine::CrackLine(double half_length, double E_prime, const CrackKernel& kern
 }
 
 void CrackLine::solve(const CrackKernel& kernel, const CrackLoad& load, int n) {
-  nodes_.resize(n);
-  for (int j = 0; j < n; ++j) nodes_(j) = a_ * std::cos(node_angle(j, n));
+  nodes_ = node_places(a_, n);
 
   // Unknowns: the strengths s_j of n point dislocations, opening and slip.
   Eigen::MatrixXd A(2 * n, 2 * n);
@@ -78,10 +143,10 @@ Eigen::Vector2d CrackLine::jump(double x) const {
   const int n = static_cast<int>(nodes_.size());
   const double angle = std::acos(x / a_);
   // g = sum B_m T_m integrates to -sum B_m sin(m angle)/m.
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  Eigen::Vector2d sum(plane_ ? plane_->opening(x) : 0.0, 0.0);
   for (int m = 1; m < n; ++m) {
     Eigen::Vector2d B = Eigen::Vector2d::Zero();
-    for (int j = 0; j < n; ++j) B += strengths_.col(j) * std::cos(m * node_angle(j, n));
+    for (int j = 0; j < n; ++j) B += rest_.col(j) * std::cos(m * node_angle(j, n));
     sum -= 2 / pi * B * std::sin(m * angle) / m;
   }
   return sum;

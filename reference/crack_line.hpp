@@ -9,6 +9,9 @@
 
 #include <Eigen/Dense>
 #include <functional>
+#include <optional>
+
+#include "griffith.hpp"
 
 namespace strata::reference {
 
@@ -28,6 +31,10 @@ class CrackLine {
   // half_length a in m, E_prime in Pa of the rock around the crack.
   // Throws std::invalid_argument unless both are positive, std::runtime_error if the solution is not finite.
   CrackLine(double half_length, double E_prime, const CrackKernel& kernel, const CrackLoad& load, int n = 0);
+  // The same under piecewise-linear net pressure, whose kinks and jumps the nodes need not resolve: delta' is that of
+  // the infinite plane, in closed form, and a smooth rest. The former acts through k by its moments
+  //   int delta_0' T_m(t/a) dt = -(4 a/E') int_0^pi p(a cos th) sin(m th) sin(th) d(th)   (by reciprocity).
+  CrackLine(double half_length, double E_prime, const CrackKernel& kernel, const PressureKnots& p, int n = 0);
 
   // K at the tip +a or -a, Pa sqrt(m): K_I + .. = -+ (E'/4) sqrt(pi/a) g(+-a). K_II > 0 turns the tip clockwise.
   Intensities at_plus() const { return plus_; }
@@ -36,7 +43,7 @@ class CrackLine {
   Eigen::Vector2d jump(double x) const;
   // int opening dx, m^2.
   double volume() const;
-  // Relative change of K from half the nodes (0 where n was given).
+  // Change of K from half the nodes over |K| (0 where n was given).
   double error() const { return error_; }
 
   // Nodes t_j (m) and strengths delta'(t_j) sqrt(a^2 - t_j^2) pi/n (m) of the equivalent point dislocations.
@@ -44,6 +51,8 @@ class CrackLine {
   const Eigen::Matrix2Xd& strengths() const { return strengths_; }
 
  private:
+  // Solves with n nodes, or with as many as settle K; load_of(n) is the load for n nodes.
+  void settle(const CrackKernel& kernel, const std::function<CrackLoad(int)>& load_of, int n);
   void solve(const CrackKernel& kernel, const CrackLoad& load, int n);
 
   double a_;
@@ -52,6 +61,8 @@ class CrackLine {
   Intensities plus_, minus_;
   Eigen::VectorXd nodes_;
   Eigen::Matrix2Xd strengths_;
+  std::optional<LinearlyPressurisedCrack> plane_;  // the part in closed form,
+  Eigen::Matrix2Xd rest_;                          // and the strengths of the rest
 };
 
 // Direction of maximum hoop stress from the tip's own, rad, anticlockwise positive (Erdogan & Sih 1963):

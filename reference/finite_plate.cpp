@@ -97,6 +97,15 @@ void check_block(const Block& block) {
     throw std::invalid_argument("poisson_ratio is outside [0, 0.5)");
 }
 
+// The block with ends drawn in that the crack does not feel; see the header.
+Block drawn_in(Block block) {
+  constexpr double kFar = 2.0;
+  if (block.sides == EdgeHold::traction) block.width = std::min(block.width, 2 * kFar * 2 * block.half_height);
+  if (block.sides == EdgeHold::traction || block.top == EdgeHold::traction)
+    block.half_height = std::min(block.half_height, block.half_crack + kFar * block.width);
+  return block;
+}
+
 // theta of s = a sin(theta) for the points that lie on the crack.
 std::vector<double> to_angles(const std::vector<double>& points, double a) {
   std::vector<double> angles;
@@ -109,19 +118,22 @@ std::vector<double> to_angles(const std::vector<double>& points, double a) {
 
 BlockCrack::BlockCrack(const Block& block, int terms) : block_(block), kappa_(3 - 4 * block.poisson_ratio) {
   check_block(block);
-  const double along = block.half_height;
-  const double across = block.width / 2;
+  block_ = drawn_in(block);
+  const double along = block_.half_height;
+  const double across = block_.width / 2;
   capacity_ = 0.5 * (along + across);
   beta_ = (along * along - across * across) / (4 * capacity_ * capacity_);
   if (terms > 0) {
     solve(terms);
     return;
   }
+  const double floor = block_.width < block.width || block_.half_height < block.half_height ? 1e-7 : 0.0;
   double previous = 0.0;
   for (int n = 12; n <= kMaxTerms; n *= 2) {
     solve(n);
-    F_error_ = std::abs(F() - previous);
-    if (F_error_ < 1e-9) return;
+    const double change = std::abs(F() - previous);
+    F_error_ = std::max(change, floor);
+    if (change < 1e-9) return;
     previous = F();
   }
 }
@@ -193,6 +205,7 @@ double BlockCrack::critical_pressure(double K_Ic) const {
 
 BlockCrack::Field BlockCrack::field(double x, double y) const {
   const Complex Z(y, x);
+  if (std::abs(x) > block_.width / 2 || std::abs(y) > block_.half_height) return {0, 0, 0, 0, 0};
   const auto q = polynomials(Z, 2 * terms(), capacity_, beta_);
   const Jet root = crack_root(Z, block_.half_crack);
   Jet f{-0.5 * Z, -0.5, 0};

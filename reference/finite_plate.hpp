@@ -9,8 +9,11 @@
 //   2 mu (u_X + i u_Y) = kappa phi(Z) - omega(conj Z) - (Z - conj Z) conj(Phi(Z)),
 // with real polynomials E even and O odd; their coefficients follow from the conditions on the edges by least squares.
 // Then K_I = 2 E(a) sqrt(pi a) and the opening is (8/E') E(x) sqrt(a^2 - x^2).
-// Source: Muskhelishvili 1953, Some basic problems, chapters 18 and 19; the collocation is in the manner of Isida 1971,
-// Int. J. Fract. Mech. 7, 301. No table or fit enters.
+// Ends so far from the crack that their effect, e^(-2 x 2.1 x distance/half the block's breadth) or less
+// (Saint-Venant), is below 1e-7 are drawn in: a block far longer than wide (not with sides and top both fixed, where a
+// uniform stress comes back) or far wider than long (sides not fixed). Source: Muskhelishvili 1953, Some basic
+// problems, chapters 18 and 19; the collocation is in the manner of Isida 1971, Int. J. Fract. Mech. 7, 301. No table
+// or fit enters.
 #pragma once
 
 #include <complex>
@@ -42,7 +45,8 @@ class BlockCrack {
 
   // F = K_I/(p sqrt(pi a)), the correction to the infinite plane.
   double F() const;
-  // Change of F from half the terms: the error estimate (0 where `terms` was given).
+  // Change of F from half the terms, 1e-7 or more if ends were drawn in: the error estimate (0 where `terms` was
+  // given).
   double F_error() const { return F_error_; }
   // K_I = F p sqrt(pi a), Pa sqrt(m), p in Pa.
   double K_I(double p) const;
@@ -57,7 +61,7 @@ class BlockCrack {
   double amplitude(double s) const;
 
   // Stresses over p in the block's axes (x across, y along the crack) at (x, y) in m, not on the crack;
-  // u_x and u_y are displacements times 2 mu/p, m.
+  // u_x and u_y are displacements times 2 mu/p, m. Beyond an end that was drawn in all stress is 0 and so are u_x, u_y.
   struct Field {
     double s_xx, s_yy, s_xy;
     double u_x, u_y;
@@ -70,7 +74,7 @@ class BlockCrack {
  private:
   void solve(int terms);
 
-  Block block_;
+  Block block_;  // with its far ends drawn in
   double kappa_;
   double capacity_;  // length that scales the polynomials, m
   double beta_;      // of their recurrence

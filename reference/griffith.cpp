@@ -10,6 +10,8 @@ namespace {
 
 using std::numbers::pi;
 
+constexpr double kShortest = 1e-8;  // of half_length: a piece of a profile that is steep but not a jump
+
 void check_crack(double half_length, double E_prime) {
   if (!(half_length > 0) || !std::isfinite(half_length)) throw std::invalid_argument("half_length must be positive");
   if (!(E_prime > 0) || !std::isfinite(E_prime)) throw std::invalid_argument("E_prime must be positive");
@@ -107,10 +109,15 @@ LinearlyPressurisedCrack::LinearlyPressurisedCrack(double half_length, double E_
   check_crack(half_length, E_prime);
   knots.validate();
   for (std::size_t i = 0; i + 1 < knots.x.size(); ++i) {
-    const double slope = (knots.p[i + 1] - knots.p[i]) / (knots.x[i + 1] - knots.x[i]);
     const double from = std::max(knots.x[i], -a_);
     const double to = std::min(knots.x[i + 1], a_);
-    if (from < to) segments_.push_back({from, to, knots.p[i] - slope * knots.x[i], slope});
+    if (!(from < to)) continue;
+    const double slope = (knots.p[i + 1] - knots.p[i]) / (knots.x[i + 1] - knots.x[i]);
+    // Over so short a piece the mean is better than a slope that cancels.
+    if (knots.x[i + 1] - knots.x[i] < kShortest * a_)
+      segments_.push_back({from, to, 0.5 * (knots.p[i] + knots.p[i + 1]), 0.0});
+    else
+      segments_.push_back({from, to, knots.p[i] - slope * knots.x[i], slope});
   }
 }
 
@@ -162,9 +169,23 @@ double LinearlyPressurisedCrack::energy() const {
       const double x = a_ * std::sin(theta);
       return 0.5 * (segment.p_mid + segment.slope * x) * opening(x) * a_ * std::cos(theta);
     };
-    sum += integrate(f, std::asin(segment.from / a_), std::asin(segment.to / a_)).value;
+    // Round-off of a steep profile is 1e-8 of the opening (see profile_error).
+    sum += integrate(f, std::asin(segment.from / a_), std::asin(segment.to / a_), {}, 1e-11).value;
   }
   return sum;
+}
+
+double profile_error(const PressureKnots& knots, double half_length) {
+  double largest = 0.0, steepest = 0.0, shortest = half_length;
+  for (std::size_t i = 0; i < knots.x.size(); ++i) {
+    largest = std::max(largest, std::abs(knots.p[i]));
+    if (i == 0 || knots.x[i] == knots.x[i - 1] || knots.p[i] == knots.p[i - 1]) continue;
+    const double width = knots.x[i] - knots.x[i - 1];
+    shortest = std::min(shortest, width);
+    if (width >= kShortest * half_length) steepest = std::max(steepest, std::abs(knots.p[i] - knots.p[i - 1]) / width);
+  }
+  const double rise = shortest < kShortest * half_length ? kShortest : 0.0;
+  return largest == 0.0 ? 1e-12 : std::max({1e-12, 1e-15 * steepest * half_length / largest, rise});
 }
 
 double energy_release_rate(double K_I, double E_prime) {

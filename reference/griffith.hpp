@@ -77,6 +77,10 @@ class LinearlyPressurisedCrack {
   std::vector<Segment> segments_;
 };
 
+// Relative round-off of the closed form for the opening: 1e-12, more where p changes steeply, by |dp/dx| a/p_max 1e-15;
+// a rise over less than 1e-8 a is taken at its mean. a in m.
+double profile_error(const PressureKnots& knots, double half_length);
+
 // Energy release rate J = K_I^2/E', J/m^2 (Irwin 1957), for K_I in Pa sqrt(m) and E' in Pa.
 double energy_release_rate(double K_I, double E_prime);
 

@@ -19,7 +19,7 @@ std::array<double, 3> released(double s, double c) {
   const double cs = c * s;
   if (cs < 40) {
     // k^(m+1)/(k+c) divided out; the rest is e^(cs) E_1(cs), zero with c.
-    const double G = c == 0 ? 0.0 : c * gsl_sf_expint_E1_scaled(cs);
+    const double G = cs == 0 ? 0.0 : c * gsl_sf_expint_E1_scaled(cs);
     const double J_0 = 1 / s - G;
     const double J_1 = 1 / (s * s) - c * J_0;
     return {J_0, J_1, 2 / (s * s * s) - c * J_1};
@@ -54,6 +54,17 @@ double largest(const Function& f, double to) {
   return f(0.5 * (low + high));
 }
 
+CrackKernel line_kernel(const SpringInterface& interface, double half_length, double distance, double E_prime) {
+  if (!(distance > 0)) throw std::invalid_argument("distance must be positive");
+  if (!(interface.normal_stiffness >= 0 && interface.shear_stiffness >= 0))
+    throw std::invalid_argument("stiffnesses must not be negative");
+  return [=, middle = distance + half_length](double t, double x) {
+    Eigen::Matrix2d k = Eigen::Matrix2d::Zero();
+    k(0, 0) = spring_kernel(interface, E_prime, middle + t, middle + x);
+    return k;
+  };
+}
+
 }  // namespace
 
 double spring_kernel(const SpringInterface& interface, double E_prime, double t, double y) {
@@ -65,17 +76,13 @@ double spring_kernel(const SpringInterface& interface, double E_prime, double t,
 
 CrackLine spring_interface_crack(const SpringInterface& interface, double half_length, double distance, double E_prime,
                                  const Function& p, int n) {
-  if (!(distance > 0)) throw std::invalid_argument("distance must be positive");
-  if (!(interface.normal_stiffness >= 0 && interface.shear_stiffness >= 0))
-    throw std::invalid_argument("stiffnesses must not be negative");
-  const double middle = distance + half_length;
-  const auto kernel = [&](double t, double x) {
-    Eigen::Matrix2d k = Eigen::Matrix2d::Zero();
-    k(0, 0) = spring_kernel(interface, E_prime, middle + t, middle + x);
-    return k;
-  };
-  return CrackLine(
-      half_length, E_prime, kernel, [&](double x) { return Eigen::Vector2d(p(x), 0); }, n);
+  const auto load = [&p](double x) { return Eigen::Vector2d(p(x), 0); };
+  return CrackLine(half_length, E_prime, line_kernel(interface, half_length, distance, E_prime), CrackLoad(load), n);
+}
+
+CrackLine spring_interface_crack(const SpringInterface& interface, double half_length, double distance, double E_prime,
+                                 const PressureKnots& p, int n) {
+  return CrackLine(half_length, E_prime, line_kernel(interface, half_length, distance, E_prime), p, n);
 }
 
 double first_slip_ratio(double friction) {
@@ -97,7 +104,7 @@ double first_slip_pressure(double half_length, double distance, double compressi
     // z along the crack; the interface is the line Re z = a + d, seen from the tip at th.
     const std::complex<double> z(a + distance, distance * std::tan(th));
     const std::complex<double> root = std::sqrt(z - a) * std::sqrt(z + a);
-    const std::complex<double> Z = z / root - 1.0;
+    const std::complex<double> Z = a * a / (root * (z + root));  // z/root - 1 without its cancellation far away
     const std::complex<double> dZ = -a * a / (root * root * root);
     const double along = Z.real() - z.imag() * dZ.imag();
     return along + std::abs(z.imag() * dZ.real()) / friction;

@@ -30,6 +30,9 @@ double spring_kernel(const SpringInterface& interface, double E_prime, double t,
 // Throws std::invalid_argument for a length, distance or modulus that is not positive or a negative stiffness.
 CrackLine spring_interface_crack(const SpringInterface& interface, double half_length, double distance, double E_prime,
                                  const Function& p, int n = 0);
+// The same for piecewise-linear p, whose kinks and jumps then cost no accuracy.
+CrackLine spring_interface_crack(const SpringInterface& interface, double half_length, double distance, double E_prime,
+                                 const PressureKnots& p, int n = 0);
 
 // K/(s_n sqrt(2 pi d)) at which a Coulomb interface at distance d ahead of the tip first slips, d << a: with the tip's
 // own field s_yy = K/sqrt(2 pi r) cos(th/2)(1 - sin(th/2) sin(3th/2)), s_xy = K/sqrt(2 pi r) sin(th/2) cos(th/2)

@@ -35,7 +35,7 @@ Json listing() {
 }
 
 Json solution(const Entry& entry, const Inputs& inputs) {
-  const Answer answer = entry.solve(inputs);
+  const Answer answer = strata::reference::solved(entry, inputs);
   Json values = Json::object();
   for (const auto& value : answer.values) values[value.name] = {{"value", to_json(value.value)}, {"unit", value.unit}};
   Json used = Json::object();

@@ -5,6 +5,7 @@
 
 #include "bimaterial.hpp"
 #include "griffith.hpp"
+#include "line_traction.hpp"
 
 using namespace strata::reference;
 using std::numbers::pi;
@@ -63,9 +64,14 @@ TEST_CASE("crack parallel to the interface: known values") {
 TEST_CASE("equal rocks, or a distant interface: Griffith's crack under any pressure and inclination") {
   const PressureKnots knots{{-5, 1, 5}, {0.2e6, 1e6, 0.1e6}};
   const LinearlyPressurisedCrack plane(5, stiff.E_prime(), knots);
-  const BondedCrack equal({5, 6, 0.7}, stiff, stiff, knots, 400);
-  CHECK(equal.line().at_plus().K_I == near(plane.K_I().plus, 1e-4));
-  CHECK(equal.line().at_minus().K_I == near(plane.K_I().minus, 1e-4));
+  // By nodes alone, as a function, and with the kink in closed form.
+  const BondedCrack sampled({5, 6, 0.7}, stiff, stiff, Function(knots), 400);
+  CHECK(sampled.line().at_plus().K_I == near(plane.K_I().plus, 1e-4));
+  CHECK(sampled.line().at_minus().K_I == near(plane.K_I().minus, 1e-4));
+  const BondedCrack equal({5, 6, 0.7}, stiff, stiff, knots);
+  CHECK(equal.line().at_plus().K_I == near(plane.K_I().plus, 1e-12));
+  CHECK(equal.line().at_minus().K_I == near(plane.K_I().minus, 1e-12));
+  CHECK(equal.line().volume() == near(plane.volume(), 1e-12));
   const BondedCrack far({5, 5000, 0.7}, stiff, soft, uniform);
   CHECK(far.line().at_plus().K_I == near(unit, 1e-6));
   CHECK(far.line().volume() == near(2 * pi * p0 * 25 / stiff.E_prime(), 1e-6));
@@ -88,7 +94,44 @@ TEST_CASE("kernel of the normal crack is Cook and Erdogan's") {
   CHECK(surface.La == near(-1, 1e-14));
 }
 
-TEST_CASE("tractions and displacements pass the interface, and the crack faces carry the pressure") {
+TEST_CASE("a kink or jump of the pressure costs no accuracy") {
+  // Against the same profile sampled at 512 nodes - for the jump midway between two of them, where sampling is best.
+  const BondedCrack::Geometry geometry{5, 6.5, 1.1};
+  const PressureKnots kinked{{-5, -1.5, 5}, {0.2e6, 1e6, 0.1e6}};
+  const double middle = 5 * std::cos(201 * pi / 1024);
+  const PressureKnots jump{{-5, middle, middle, 5}, {1e6, 1e6, 0.3e6, 0.3e6}};
+  for (const auto& [knots, tolerance] : {std::pair{kinked, 5e-5}, std::pair{jump, 2e-3}}) {
+    const BondedCrack crack(geometry, stiff, soft, knots), sampled(geometry, stiff, soft, Function(knots), 512);
+    CHECK(crack.line().error() < 1e-10);
+    CHECK(crack.line().at_plus().K_I == near(sampled.line().at_plus().K_I, tolerance));
+    CHECK(crack.line().at_minus().K_I == near(sampled.line().at_minus().K_I, tolerance));
+    CHECK(std::abs(crack.line().at_minus().K_II - sampled.line().at_minus().K_II) < 1e-5 * unit);
+    CHECK(std::abs(crack.line().at_minus().K_II) > 1e-3 * unit);
+    CHECK(crack.line().jump(-2)(0) == near(sampled.line().jump(-2)(0), tolerance));
+    CHECK(crack.field(1, -2).s_yy == near(sampled.field(1, -2).s_yy, tolerance));
+    // Reciprocity with uniform pressure: int p w_1 = p_1 V.
+    const BondedCrack even(geometry, stiff, soft, uniform);
+    const auto work = [&](double s) { return knots(s) * even.line().jump(s)(0); };
+    CHECK(crack.line().volume() == near(integrate(work, -5, 5, knots.x, 1e-8).value / p0, 1e-7));
+  }
+}
+
+TEST_CASE("the crack faces carry the pressure at points between those that were solved for") {
+  for (const auto& [h, inclination] : {std::pair{0.5, 0.0}, std::pair{7.0, 0.9}, std::pair{5.1, pi / 2}})
+    for (const Rock& beyond : {nothing, soft, Rock{100e9, 0.3}}) {
+      const BondedCrack::Geometry geometry{5, h, inclination};
+      const BondedCrack crack(geometry, stiff, beyond, uniform);
+      const BondedMirror mirror = bonded_mirror(stiff, beyond);
+      const auto kernel = [&](double t, double x) { return BondedCrack::kernel(geometry, mirror, t, x); };
+      for (double x : {-4.987, -3.21, 0.017, 2.5, 4.8}) {
+        const Eigen::Vector2d traction = line_traction(crack.line(), kernel, 5, stiff.E_prime(), x);
+        CHECK(traction(0) == near(-p0, 1e-8));
+        CHECK(std::abs(traction(1)) < 1e-8 * p0);
+      }
+    }
+}
+
+TEST_CASE("tractions and displacements pass the interface") {
   for (double inclination : {0.0, 0.6, pi / 2}) {
     const BondedCrack crack({5, 7, inclination}, stiff, soft, uniform);
     const auto origin_1 = crack.field(0, 0), origin_2 = crack.field_in_rock_2(0, 0);

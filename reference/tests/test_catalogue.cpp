@@ -21,7 +21,7 @@ double value_of(const Answer& answer, const std::string& name) {
 
 Answer solve(const std::string& name, const std::vector<std::string>& settings = {}) {
   const Entry entry = find_entry(name);
-  return entry.solve(read_inputs(entry, settings));
+  return solved(entry, read_inputs(entry, settings));
 }
 
 std::string refusal(const std::string& name, const std::vector<std::string>& settings) {
@@ -42,7 +42,7 @@ TEST_CASE("every entry is documented and answers with its defaults") {
     for (const std::string& text : {entry.description, entry.source, entry.validity}) CHECK(text.size() > 10);
     std::set<std::string> keys;
     for (const Input& input : entry.inputs) CHECK(keys.insert(input.key).second);
-    const Answer answer = entry.solve(read_inputs(entry, {}));
+    const Answer answer = solved(entry, read_inputs(entry, {}));
     CHECK(answer.relative_error > 0);
     CHECK(answer.relative_error < 1e-2);
     CHECK(answer.error_basis.size() > 5);
@@ -87,6 +87,44 @@ TEST_CASE("settings reach the solution") {
   const auto pressures = std::get<std::vector<double>>(list.values.front().value);
   REQUIRE(pressures.size() == 2);
   CHECK(pressures[1] == Approx(380203.53).epsilon(1e-8));
+}
+
+TEST_CASE("the error estimate speaks where accuracy is lost") {
+  CHECK(solve("bonded_normal").relative_error == Approx(1e-10));
+  // A profile with a jump, against the closed form of the plane: within the estimate.
+  const std::vector<std::string> jump = {"pressure=profile", "profile_x_m=-5,-3,-3,5", "profile_Pa=1e6,1e6,2e5,2e5"};
+  std::vector<std::string> equal = jump;
+  equal.push_back("beyond_youngs_modulus_Pa=10e9");
+  const Answer line = solve("bonded_normal", equal), plane = solve("pressurised_crack", jump);
+  for (const auto& [of_line, of_plane] :
+       {std::pair{"K_I_far", "K_I"}, std::pair{"K_I_near", "K_I_minus"},
+        std::pair{"mouth_opening_m", "mouth_opening_m"}, std::pair{"volume_m2", "volume_m2"}})
+    CHECK(std::abs(value_of(line, of_line) / value_of(plane, of_plane) - 1) < line.relative_error);
+  CHECK(line.relative_error < 1e-8);
+  CHECK(solve("pressurised_crack", {"pressure=profile", "profile_x_m=-5,0,1e-6,5", "profile_Pa=1e6,1e6,0,0"})
+            .relative_error > 1e-10);
+  CHECK(solve("bonded_tip_exponent", {"beyond_youngs_modulus_Pa=1e-2"}).relative_error > 1e-12);
+  CHECK(solve("freund_step_pressure", {"time_s=1e-4,1e-2"}).relative_error == 1.0);
+  CHECK(solve("freund_step_pressure", {"time_s=1e-4,4e-3"}).relative_error < 1e-12);
+  // Blocks too slender for the series, and overflow, are no answers.
+  CHECK_THROWS_WITH(solve("block_crack", {"width_m=800", "half_height_m=10", "edges=fixed"}), Contains("too slender"));
+  CHECK_THROWS_WITH(solve("kgd_toughness", {"time_s=1e300", "rate_m2_s=1e200"}), Contains("not finite"));
+}
+
+TEST_CASE("the fracture between the vertices") {
+  const Answer viscous = solve("kgd", {"toughness_Pa_sqrt_m=0"}), vertex = solve("kgd_viscosity");
+  const Answer tough = solve("kgd", {"viscosity_Pa_s=1e-12"}), other = solve("kgd_toughness", {"viscosity_Pa_s=1e-12"});
+  for (const char* name : {"half_length_m", "mouth_opening_m", "inlet_pressure_Pa"}) {
+    CHECK(value_of(viscous, name) == Approx(value_of(vertex, name)).epsilon(1e-9));
+    CHECK(std::abs(value_of(tough, name) / value_of(other, name) - 1) < tough.relative_error);
+  }
+  const Answer list = solve("kgd", {"xi=0,-0.5,0.5"});
+  for (const Value& value : list.values)
+    if (const auto* profile = std::get_if<std::vector<double>>(&value.value)) {
+      CHECK(profile->at(0) == Approx(value_of(list, value.unit == "m" ? "mouth_opening_m" : "inlet_pressure_Pa")));
+      CHECK(profile->at(1) == profile->at(2));
+    }
+  CHECK_THAT(refusal("kgd", {"xi=0,1"}), Contains("1 is outside (-1, 1)"));
 }
 
 TEST_CASE("bad input is refused, every problem on a line") {

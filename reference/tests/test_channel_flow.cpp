@@ -72,6 +72,33 @@ TEST_CASE("the pressure solves dP/dt = kappa d2P/dx2 and no flux leaves a closed
   CHECK(std::abs(slope_end) < 2e-4 * std::abs(slope_inlet));
 }
 
+TEST_CASE("the equation holds from tiny to huge times") {
+  const double kappa = narrow.diffusivity();
+  for (FarEnd end : kEnds)
+    for (double tau : {1e-8, 1e-4, 0.09, 0.11, 2.0, 1e5}) {
+      // At a point of the boundary layer, or of the middle; differences over a share of the layer and of the time.
+      const double t = tau * 25 / kappa, reach = std::min(std::sqrt(kappa * t), 2.5), x = 0.8 * reach;
+      const double h = 1e-2 * reach, dt = 1e-2 * std::min(t, 25 / kappa);
+      const auto P = [&](double at, double time) { return ramped_channel(narrow, end, at, time); };
+      const double rate = (P(x, t + dt) - P(x, t - dt)) / (2 * dt);
+      const double bend = (P(x + h, t) - 2 * P(x, t) + P(x - h, t)) / (h * h);
+      CHECK(rate > 0.01 * narrow.rate);
+      CHECK(std::abs(rate - kappa * bend) < 1e-4 * rate + 1e-14 * P(x, t) * (1 / dt + 4 * kappa / (h * h)));
+    }
+  const double per_time = ellipse.diffusivity() / 25;
+  for (double tau : {1e-8, 0.99e-7, 1.01e-7, 1e-4, 10.0}) {
+    const double t = tau / per_time, reach = std::min(std::sqrt(tau), 0.5), xi = 0.8 * reach;
+    const double h = 1e-2 * reach, dt = 1e-2 * std::min(t, 1 / per_time);
+    const auto P = [&](double at, double time) { return ramped_ellipse(ellipse, 5 * at, time); };
+    const double rate = (P(xi, t + dt) - P(xi, t - dt)) / (2 * dt);
+    const double flux = ((1 - std::pow(xi + h / 2, 2)) * (P(xi + h, t) - P(xi, t)) -
+                         (1 - std::pow(xi - h / 2, 2)) * (P(xi, t) - P(xi - h, t))) /
+                        (h * h);
+    CHECK(rate > 0.01 * ellipse.rate);
+    CHECK(std::abs(rate - per_time * flux) < 1e-4 * rate + 1e-13 * P(xi, t) * (1 / dt + 4 * per_time / (h * h)));
+  }
+}
+
 TEST_CASE("elliptic opening: the pressure solves Legendre's equation") {
   const double rate_of = ellipse.diffusivity() / 25, h = 1e-3;
   for (double t : {0.05, 0.5, 3.0}) {

@@ -68,6 +68,32 @@ TEST_CASE("standing waves solve Navier's equations") {
   }
 }
 
+TEST_CASE("the standing wave itself, differenced, balances momentum, and slides along the walls") {
+  const double rho = 2500, mu = stiff.shear_modulus(), lambda = 2 * mu * 0.2 / 0.6, h = 2e-3;
+  const StandingWaves f = standing_waves(stiff, rho, 1);
+  for (double B : {1.0, -1.0}) {
+    const double omega = 2 * pi * (B > 0 ? f.dilatation : f.shear), k = 2 * pi;
+    const auto u = [&](double x, double y, double t) {
+      return std::pair{std::sin(k * x) * std::cos(k * y) * std::cos(omega * t),
+                       B * std::cos(k * x) * std::sin(k * y) * std::cos(omega * t)};
+    };
+    const double x = 0.31, y = 0.17, t = 0.1 / omega, dt = h / omega;
+    const auto centre = u(x, y, t), left = u(x - h, y, t), right = u(x + h, y, t), below = u(x, y - h, t),
+               above = u(x, y + h, t);
+    const double u_xx = (right.first - 2 * centre.first + left.first) / (h * h);
+    const double u_yy = (above.first - 2 * centre.first + below.first) / (h * h);
+    const double v_xy = (u(x + h, y + h, t).second - u(x + h, y - h, t).second - u(x - h, y + h, t).second +
+                         u(x - h, y - h, t).second) /
+                        (4 * h * h);
+    const double u_tt = (u(x, y, t + dt).first - 2 * centre.first + u(x, y, t - dt).first) / (dt * dt);
+    CHECK(rho * u_tt == near((lambda + 2 * mu) * u_xx + mu * u_yy + (lambda + mu) * v_xy, 1e-4));
+    CHECK(std::abs(u_tt) > 0.1 * omega * omega * std::abs(centre.first));
+    CHECK(std::abs(u(1, y, t).first) < 1e-12);
+    CHECK(std::abs((u(1, y + h, t).first - u(1, y - h, t).first) + (u(1 + h, y, t).second - u(1 - h, y, t).second)) <
+          1e-12);
+  }
+}
+
 TEST_CASE("rocks that cannot be meant are refused") {
   CHECK_THROWS_AS(wave_speeds({0, 0.2}, 2500), std::invalid_argument);
   CHECK_THROWS_AS(wave_speeds({1e9, 0.5}, 2500), std::invalid_argument);

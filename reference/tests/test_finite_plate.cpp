@@ -132,6 +132,26 @@ TEST_CASE("pressure of any shape by the weight function") {
   CHECK(block_volume(large, 1e10, linear) == near(plane.volume(), 1e-5));
 }
 
+TEST_CASE("slender blocks: the closed form of the row, and ends that are drawn in change nothing") {
+  // Far wider than long, held tops: a cell of the row of collinear cracks.
+  const double exact = std::sqrt(20 / (pi * 5) * std::tan(pi * 5 / 20));
+  CHECK(BlockCrack(Block{800, 10, 5, EdgeHold::traction, EdgeHold::fixed, 0.2}).F() == near(exact, 2e-6));
+  // A long crack in it is the worst that is answered: its error is below the estimate.
+  const double close = std::sqrt(20 / (pi * 8) * std::tan(pi * 8 / 20));
+  const BlockCrack worst(Block{800, 10, 8, EdgeHold::traction, EdgeHold::fixed, 0.2});
+  CHECK(std::abs(worst.F() / close - 1) < std::max(worst.F_error(), worst.edge_residual()));
+  CHECK(worst.F() == near(close, 5e-4));
+  // Far longer than wide: 16:1 against 3.5:1, both ways of holding the sides.
+  for (auto sides : {EdgeHold::traction, EdgeHold::fixed}) {
+    const double longer = BlockCrack(Block{80, 1280, 10, sides, EdgeHold::traction, 0.2}).F();
+    CHECK(longer == near(BlockCrack(Block{80, 140, 10, sides, EdgeHold::traction, 0.2}).F(), 3e-6));
+    CHECK(longer != BlockCrack(Block{80, 80, 10, sides, EdgeHold::traction, 0.2}).F());
+  }
+  const BlockCrack drawn(Block{80, 1280, 10, EdgeHold::traction, EdgeHold::traction, 0.2});
+  CHECK(drawn.edge_residual() < 1e-4);
+  CHECK(drawn.field(30, 1000).s_xx == 0);
+}
+
 TEST_CASE("blocks that cannot be meant are refused") {
   CHECK_THROWS_AS(BlockCrack(study_block(0)), std::invalid_argument);
   CHECK_THROWS_AS(BlockCrack(study_block(75)), std::invalid_argument);

@@ -7,6 +7,7 @@
 
 #include "bimaterial.hpp"
 #include "interface_springs.hpp"
+#include "line_traction.hpp"
 
 using namespace strata::reference;
 using std::numbers::pi;
@@ -140,6 +141,42 @@ TEST_CASE("displacement discontinuities over crack and interface give the same K
   }
 }
 
+TEST_CASE("a closed frictionless interface by the same elements") {
+  // Normal springs so stiff that they do not open.
+  const auto K = [&](int crack, int interface) {
+    return tip_opening(1e4, 0, crack, interface) / tip_opening(0, 0, crack, 0);
+  };
+  const double extrapolated = 2 * K(120, 50) + 2 * K(60, 100) - 3 * K(60, 50);
+  CHECK(extrapolated == near(K_near(kInfinite, 0), 2e-3));
+}
+
+TEST_CASE("the crack faces carry the pressure at points between those that were solved for") {
+  const double E_prime = stiff.E_prime();
+  for (double d : {0.01, 1.0, 30.0})
+    for (const auto& [normal, shear] :
+         {std::pair{0.0, 0.0}, std::pair{1e-2, 3.0}, std::pair{1e3, 1e3}, std::pair{kInfinite, 0.0}}) {
+      const SpringInterface interface { normal == 0 ? 0 : normal *E_prime / 5, shear == 0 ? 0 : shear *E_prime / 5 };
+      const CrackLine line = spring_interface_crack(interface, 5, d, E_prime, unit_pressure);
+      const auto kernel = [&](double t, double x) {
+        Eigen::Matrix2d k = Eigen::Matrix2d::Zero();
+        k(0, 0) = spring_kernel(interface, E_prime, d + 5 + t, d + 5 + x);
+        return k;
+      };
+      for (double x : {-4.987, -3.21, 0.017, 4.8})
+        CHECK(line_traction(line, kernel, 5, E_prime, x)(0) == near(-1, d < 0.1 ? 1e-4 : 1e-8));
+    }
+}
+
+TEST_CASE("a profile with a jump: reciprocity with uniform pressure, int p w_1 = p_1 V") {
+  const PressureKnots knots{{-5, -2, -2, 5}, {1, 1, 0.2, 0.6}};
+  const SpringInterface interface { 1e9, 2e8 };
+  const CrackLine even = spring_interface_crack(interface, 5, 1, stiff.E_prime(), unit_pressure);
+  const CrackLine line = spring_interface_crack(interface, 5, 1, stiff.E_prime(), knots);
+  const auto work = [&](double s) { return knots(s) * even.jump(s)(0); };
+  CHECK(line.volume() == near(integrate(work, -5, 5, knots.x, 1e-8).value, 1e-7));
+  CHECK(line.error() < 1e-10);
+}
+
 TEST_CASE("Coulomb's first slip") {
   CHECK(first_slip_ratio(0.4) == near(0.8122, 1e-4));
   CHECK(first_slip_ratio(0.6) == near(0.8915, 1e-4));
@@ -147,6 +184,8 @@ TEST_CASE("Coulomb's first slip") {
   // A short way ahead of a long crack the finite crack's field is the tip's.
   const double d = 1e-6, K = first_slip_ratio(0.4) * 3e6 * std::sqrt(2 * pi * d);
   CHECK(first_slip_pressure(5, d, 3e6, 0.4) == near(K / std::sqrt(5 * pi), 1e-3));
+  // Far ahead the crack is a dipole: s_yy and s_xy from Z = a^2/(2 z^2) scale with d^-2.
+  CHECK(first_slip_pressure(5, 1e11, 3e6, 0.4) == near(1e4 * first_slip_pressure(5, 1e9, 3e6, 0.4), 1e-7));
   CHECK(first_slip_pressure(5, 1, 3e6, 0.4) > 5 * first_slip_pressure(5, 1e-2, 3e6, 0.4));
 }
 
