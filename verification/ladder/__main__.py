@@ -6,7 +6,8 @@ Cases are in verification/ladder/cases/FAMILY.py, gates in verification/ladder/g
 a level: value and reference (of many values their rms), relative error, observed order from the level before (in brackets where
 none is to be expected), cost, gate (largest error / smallest order), verdict. --accept writes gates anew from what was measured
 (1.5 times the error, order less 0.3) and prints what changed: say in CHANGELOG.md why a gate became wider.
-Exit status: 0 all pass, 1 a gate does not hold, is missing, belongs to nothing or lets wrong results pass, 3 a run failed.
+Exit status: 0 all pass, 1 a gate does not hold, is missing, belongs to nothing or lets wrong results pass, or there is nothing
+to judge, 2 wrong use, 3 a run failed.
 """
 from __future__ import annotations
 
@@ -69,6 +70,8 @@ def main(arguments: list[str] | None = None) -> int:
     """Run, judge, print and write; the exit status says what came of it."""
     command = parser()
     options = command.parse_args(arguments)
+    if options.jobs < 1:
+        command.error(f"--jobs {options.jobs} is not a number of threads")
     try:
         known = families()
         chosen = choose(known, filter(None, options.family.split(",")), filter(None, options.case.split(",")))
@@ -95,7 +98,7 @@ def main(arguments: list[str] | None = None) -> int:
     before = sum(one.outcome.skipped for one in made)
     print(f"{len(made)} runs, {before} of them made before, {minutes:.1f} thread-minutes in all")
     print(f"ladder: {count.words()}{f'; {len(stale)} gates of nothing' if stale else ''}; written to {out}")
-    return 3 if count.failed else 1 if count.wrong or stale else 0
+    return 3 if count.failed else 1 if count.wrong or stale or not rows else 0
 
 
 if __name__ == "__main__":

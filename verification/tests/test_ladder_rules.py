@@ -353,6 +353,13 @@ def test_the_command_tells_gates_of_nothing(tmp_path: Path, ladder: Families, ca
     assert asked(tmp_path, "--accept") == 0 and not (tmp_path / "gates" / "gone.json").exists()
 
 
+def test_the_command_with_nothing_to_judge_is_no_pass(tmp_path: Path, ladder: Families) -> None:
+    ladder.clear()
+    assert asked(tmp_path) == 1
+    with pytest.raises(SystemExit):
+        asked(tmp_path, "--jobs", "0")
+
+
 def test_slots_give_no_more_than_there_are() -> None:
     slots = runner.Slots(2)
     with slots.taken(4):
