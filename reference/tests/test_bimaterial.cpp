@@ -1,4 +1,6 @@
 // Cracks beside a bonded interface: known values, limits, the published kernel, and continuity across the interface.
+// Changes that were made to the solution and fail here: La 1 % larger in the kernel, the slope's part of a profile's
+// moments with its sign turned, the traction that a profile's closed part sends back with its sign turned.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
