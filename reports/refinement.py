@@ -184,7 +184,7 @@ def refinement_table(experiment: str, studies: list[dict[str, Any]], settings: l
 
 def _order_words(item: dict[str, Any]) -> str:
     """The order of three sizes, or what they do instead."""
-    return f"{item['order']:.2f}" if item["order"] is not None else {"still": "0 = 0"}.get(item["kind"], item["kind"])
+    return f"{item['order']:.2f}" if item["order"] is not None else {"still": "same"}.get(item["kind"], item["kind"])
 
 
 def _value(value: float | None, unit: str) -> str:
