@@ -60,7 +60,7 @@ def some_rows() -> list[dict[str, Any]]:
     """Two cases: one converges in one quantity and is exact in another, one falls short and fails."""
     rows = [a_row("at_rest", "K_I", k, 0.04 / 2**k) for k in range(3)]
     exact = {"no_order": "round-off: symmetric", "scale": 1234.5}
-    rows += [a_row("at_rest", "K_II", k, -2e-15, order=None if k == 0 else 0.3, **exact) for k in range(3)]
+    rows += [a_row("at_rest", "K_II", k, -2e-9, order=None if k == 0 else 0.3, **exact) for k in range(3)]
     rows += [a_row("moving", "mouth", k, 0.03 / 2**k, no_order="" if k != 1 else "still <coarse>", values=50) for k in range(2)]
     rows[-1] |= {"verdict": "FAIL", "problems": ["order 0.20 below 0.7"]}
     rows.append(a_row("moving", "mouth", 2, None, failure="a mechanism", verdict="FAILED", values=0, cost=None, order=None))
@@ -78,7 +78,7 @@ def test_every_comparison_is_listed_with_its_numbers(tmp_path: Path) -> None:
     page = page_of(write_ladder(tmp_path, some_rows()), tmp_path / "out")
     table = page[page.index('class="ladder"') :].split("</table>")[0]
     assert table.count('class="mark ') == 9
-    for words in ("2.04", "+2\u00a0%", "1.00", "≥ 0.7", "3\u00a0%", "4.0", "25\u202f600", "40", "−2.0×10⁻¹⁵", "(0.30)"):
+    for words in ("2.04", "+2\u00a0%", "1.00", "≥ 0.7", "3\u00a0%", "4.0", "25\u202f600", "40", "−2.0×10⁻⁹", "(0.30)"):
         assert words in table, words
     assert "rms of 50 values" in table and "errors relative to 1\u202f234 m" in table
     assert 'no order <a href="#cracks_1">[1]' in table and 'no order at 1 m <a href="#cracks_2">[2]' in table
@@ -122,8 +122,19 @@ def test_figures_say_what_the_numbers_say(tmp_path: Path) -> None:
         titles.append((convergence_figure(ladder, "cracks").title, cost_figure(ladder).title))
     assert titles[0][0] == "Errors of 1\u00a0% (K_I, at rest) at the finest level; orders 1.0 between the finest two levels"
     assert titles[1][0].startswith("Errors of 2\u00a0%")
+    assert title_of(tmp_path, some_rows()[:3] + [row | {"quantity": "J", "no_order": "rings"} for row in some_rows()[:3]]) == (
+        "Errors from 1\u00a0% to 1\u00a0% (K_I, at rest) at the finest level; 1 of 2 are judged by their order, 1.0 between the finest"
+        " two levels"
+    )
     assert titles[0][1] == "Within 1\u00a0% in all that they measure: 1 of 1 quasi-static cases in 32\u00a0s (median)"
     assert titles[1][1] == "Within 1\u00a0% in all that they measure: 0 of 1 quasi-static cases"
+
+
+def title_of(root: Path, rows: list[dict[str, Any]]) -> str:
+    """The title of the chart of the rows' family."""
+    ladder = load_ladder(write_ladder(root, rows) / "ladder" / "ladder.json")
+    assert ladder is not None
+    return convergence_figure(ladder, "cracks").title
 
 
 def test_the_worst_of_a_case_is_what_it_costs(tmp_path: Path) -> None:
