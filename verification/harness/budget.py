@@ -256,9 +256,10 @@ def table(budget: Budget) -> str:
     for line in budget.lines:
         for one in line.tried:
             cells = [effect_words(one.effects.get(name), unit, budget.base.get(name)) for name, _, unit in budget.quantities]
-            failed = "" if one.status == "completed" else f"  {one.status}: {one.reason[:150]}"
+            lost = dict.fromkeys(effect.note for effect in one.effects.values() if effect.value is None)
+            failed = "  " + "; ".join(lost) if one.status == "completed" else f"  {one.status}: {one.reason[:150]}"
             label = f"{line.label}: {one.label}"
-            lines.append(f"  {label:44}" + "".join(f"{cell:>{width}}" for cell, width in zip(cells, widths)) + failed)
+            lines.append(f"  {label:44}" + "".join(f"{cell:>{width}}" for cell, width in zip(cells, widths)) + failed.rstrip())
         if line.why_not:
             lines.append(f"  {line.label}: {line.why_not}")
     for group in (NUMERICAL, ALL):

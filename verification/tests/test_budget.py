@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -145,6 +146,8 @@ def test_effects_are_differences_from_the_base_and_failures_are_failures(tmp_pat
     assert effects["arrest_1_m"].note == "no arrest"
     assert found.totals["start_Pa"]["all"].rss == pytest.approx(0.05e6)
     said = table(found)
+    silent = replace(found, lines=(replace(rate, tried=(replace(rate.tried[1], status="completed"),)),))
+    assert "does not reach 40 m, at least 3.20000" in table(silent)
     assert "refused: unknown key" in said and "failed: a mechanism" in said and "-30.00 -1.25%" in said
     broken = budget_of(EXP1, "quasistatic", "soft", factors, jobs, {**made, ("", ""): (outcome(3, "no"), made[keys[1]][1])})
     assert broken.status == "failed" and "failed: no" in table(broken)
