@@ -103,6 +103,7 @@ std::vector<Entry> crack_entries();
 std::vector<Entry> flow_entries();
 std::vector<Entry> interface_entries();
 std::vector<Entry> motion_entries();
+std::vector<Entry> path_entries();
 std::vector<Entry> wave_entries();
 std::vector<Entry> laminate_entries();
 
