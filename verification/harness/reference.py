@@ -41,9 +41,9 @@ def _settings(settings: dict[str, float | str | list[float]]) -> tuple[str, ...]
 
 
 def reference(name: str, **settings: float | str | list[float]) -> dict[str, Value]:
-    """The values of a named reference solution for its settings, in the units they state; those that are lists left out."""
+    """The values of a named reference solution for its settings, in the units they state; those that are lists or words left out."""
     answer = json.loads(_ask(name, _settings(settings)))["values"]
-    numbers = {key: item for key, item in answer.items() if not isinstance(item["value"], list)}
+    numbers = {key: item for key, item in answer.items() if not isinstance(item["value"], (list, str))}
     return {key: Value(float(item["value"]), str(item.get("unit", ""))) for key, item in numbers.items()}
 
 
