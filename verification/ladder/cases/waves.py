@@ -81,21 +81,19 @@ def case(name: str, says: str, variant: str, *settings: str, courant: tuple[floa
 UPDATED = "numerics.kinematics=updated"
 GIMP, LINEAR, XPIC2 = "numerics.shape=gimp", "numerics.shape=linear", "numerics.transfer=xpic2"
 AT_POINTS = "; strain is constant in a cell, so that at its points, off the middle, it tends to order 1"
+# Springs act at a step's end.
+AT_STEPS = "; with steps that fall as the cells do, order 2 of the cells tends to order 1 of the steps"
+SHORT = (0.5, 0.25, 0.125)
 
 CASES = (
     case("plane_wave", "a pulse crosses the column and is turned at the held and at the free end", ""),
-    case("plane_wave_updated", "the same with points that move", "", UPDATED),
-    case("plane_wave_gimp", f"the same with uGIMP{AT_POINTS}", "", UPDATED, GIMP),
-    case("plane_wave_linear", f"the same with linear functions{AT_POINTS}", "", LINEAR),
-    case("plane_wave_xpic2", "the same with XPIC(2)", "", XPIC2),
+    case("plane_wave_updated", "the plane wave with points that move", "", UPDATED),
+    case("plane_wave_gimp", f"the plane wave with uGIMP{AT_POINTS}", "", UPDATED, GIMP),
+    case("plane_wave_linear", f"the plane wave with linear functions{AT_POINTS}", "", LINEAR),
+    case("plane_wave_xpic2", "the plane wave with XPIC(2)", "", XPIC2),
     case("border", "a pulse is partly turned where stiff rock ends on soft rock", "border"),
-    case(
-        "spring",
-        "a pulse is partly turned by a soft interface that acts as a spring; steps fall as cells do, and springs act at a step's "
-        "end: order 2 of the cells tends to order 1 of the steps",
-        "spring",
-    ),
-    case("spring_short_steps", "the same with steps that fall as the cells' square: order 2", "spring", courant=(0.5, 0.25, 0.125)),
-    case("spring_updated", "the same with points that move", "spring", UPDATED, courant=(0.5, 0.25, 0.125)),
+    case("spring", f"a pulse is partly turned by a soft interface that acts as a spring{AT_STEPS}", "spring"),
+    case("spring_short_steps", "the spring with steps that fall as the cells' square", "spring", courant=SHORT),
+    case("spring_updated", "the same with points that move", "spring", UPDATED, courant=SHORT),
     case("bar", "a pulse in a bar with free sides: its speed sqrt(E'/rho), the sides draw in", "bar"),
 )
