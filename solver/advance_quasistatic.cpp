@@ -271,6 +271,7 @@ void fail_worst(const Scene& scene, const std::vector<BondedPlace>& places, doub
       if (other.surface != bad.surface || surface.points[other.point].column != column) continue;
       SurfacePoint& s = surface.points[other.point];
       s.split = true;
+      s.failed_s = state.time;
       s.bonded = jump_at(run.model.condensed, state.point_stencils[bad.surface][other.point], run.equilibrium.j);
       s.w = Vec2::Zero();
       s.reaction = other.carried;  // friction starts from the shear it carried

@@ -220,6 +220,7 @@ bool fail_interfaces(const Scene& scene, const std::vector<Elasticity>& rocks, S
       SurfacePoint& s = surface.points[q];
       if (s.split || failed[static_cast<std::size_t>(s.column)] == 0) continue;
       s.split = true;
+      s.failed_s = state.time;
       s.w = Vec2::Zero();  // what neighbours' splitting let it open while bonded is no gap, and no overlap to push back
       // The law takes over from what was carried; tension it cannot carry, and shear only as far as friction holds it.
       s.reaction = carried[q] - std::min(0.0, carried[q].dot(s.n)) * s.n;

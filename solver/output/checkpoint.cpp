@@ -17,7 +17,7 @@ namespace strata {
 namespace {
 
 constexpr std::string_view magic = "strata-checkpoint\n";
-constexpr std::uint32_t format_version = 3;  // to be raised with every change of what is saved
+constexpr std::uint32_t format_version = 4;  // to be raised with every change of what is saved
 constexpr std::uint32_t byte_order = 0x01020304;
 
 std::uint64_t fnv1a(std::string_view bytes) {
@@ -49,8 +49,8 @@ void fields(Archive& ar, Is<Particles> auto& particles) {
 
 template <class Archive>
 void fields(Archive& ar, Is<SurfacePoint> auto& point) {
-  auto& [x, n, A, arc, w, u, reaction, in_situ, bonded, P, slip, column, sides, split] = point;
-  ar(x, n, A, arc, w, u, reaction, in_situ, bonded, P, slip, column, sides, split);
+  auto& [x, n, A, arc, w, u, reaction, in_situ, bonded, P, slip, column, sides, split, failed_s] = point;
+  ar(x, n, A, arc, w, u, reaction, in_situ, bonded, P, slip, column, sides, split, failed_s);
 }
 
 template <class Archive>

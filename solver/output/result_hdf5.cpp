@@ -84,6 +84,7 @@ void write_interface(hdf5::Id group, const Scene& scene, const Surface& surface)
   std::vector<std::int32_t> split;
   for (const SurfacePoint& s : points) split.push_back(s.split ? 1 : 0);
   hdf5::write(group, "split", split, "1");
+  hdf5::write(group, "failed_s", collect(points, [](const SurfacePoint& s) { return s.failed_s; }), "s");
 }
 
 void write_particles(hdf5::Id group, const Scene& scene, const State& state) {

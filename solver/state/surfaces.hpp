@@ -24,6 +24,7 @@ struct SurfacePoint {
   int column = 0;                // the grid column (or row) an interface's point belongs to
   SideWord sides = 0;            // sides of the other surfaces; its own bit is clear
   bool split = false;            // two sides exist here: a law acts. Intact and bonded places are not split
+  double failed_s = -1.0;        // when a bonded place let go (s); -1 while it has not, and where nothing was bonded
 
   double opening() const { return w.dot(n); }
   double closing_stress() const { return in_situ.dot(n); }

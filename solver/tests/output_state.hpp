@@ -90,6 +90,7 @@ inline void fill_point(SurfacePoint& s, Numbers& number) {
   s.column = ++number.count;
   s.sides = static_cast<SideWord>(number.count);
   s.split = number.count % 2 == 0;
+  s.failed_s = 1e-3 * number.count;
 }
 
 inline Tip made_tip(bool at_back, Numbers& number) {

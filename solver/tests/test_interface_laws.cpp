@@ -279,7 +279,8 @@ TEST_CASE("a failed place starts with what it carried") {
   }
 }
 
-// Requires that a failed interface stays failed once the stress is gone, and that only the columns under stress fail.
+// Requires that a failed interface stays failed once the stress is gone, that only the columns under stress fail, and
+// that each failed point knows when.
 TEST_CASE("failure is for good and local") {
   Scene scene = block(12, 8);
   add_interface(scene, weak_law(0.5e6, 0.25e6), 4.0);
@@ -287,6 +288,7 @@ TEST_CASE("failure is for good and local") {
   for (std::size_t q = 0; q < run.state.particles.size(); ++q) {
     if (run.state.particles.x[q] < 6.0) strain(run.state, q, gradient_of(scene.rocks[0], {0.0, 0.4e6, 0.0}));
   }
+  run.state.time = 0.75;
   REQUIRE(fail_interfaces(run.scene, run.rocks, run.state));
   const std::size_t failed = split_points(run);
   CHECK(failed >= 11U);
@@ -294,10 +296,13 @@ TEST_CASE("failure is for good and local") {
   for (const SurfacePoint& s : run.state.surfaces[0].points) {
     if (s.x.x() < 5.0) CHECK(s.split);
     if (s.x.x() > 7.0) CHECK_FALSE(s.split);
+    CHECK(s.failed_s == (s.split ? 0.75 : -1.0));
   }
+  run.state.time = 1.0;
   load(run, {}, {});
   CHECK_FALSE(fail_interfaces(run.scene, run.rocks, run.state));
   CHECK(split_points(run) == failed);
+  for (const SurfacePoint& s : run.state.surfaces[0].points) CHECK(s.failed_s <= 0.75);
 }
 
 // Requires that two bars in series settle at the jump t/D that the elongations' sum gives, t = stretch/(L1/M1 + L2/M2 +

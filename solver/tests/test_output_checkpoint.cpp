@@ -29,6 +29,7 @@ void require_same(const SurfacePoint& a, const SurfacePoint& b) {
   CHECK(a.column == b.column);
   CHECK(a.sides == b.sides);
   CHECK(a.split == b.split);
+  CHECK(a.failed_s == b.failed_s);
 }
 
 void require_same(const Surface& a, const Surface& b) {

@@ -89,6 +89,7 @@ TEST_CASE("an interface's fields are those of its points, under its number in th
   SurfacePoint& first = state.surfaces[1].points[0];
   first.w = {2e-3, 1e-3};  // normal up, tangent to the right
   first.reaction = {3e5, 4e5};
+  first.failed_s = 0.25;
   ResultFile(folder.path / "result.h5").write_output(made_scene(), state);
   const auto file = hdf5::open_file(folder.path / "result.h5", false);
   // The surface lies at y = 5, on the second interface of the scene; the first, which never acts, has none.
@@ -106,6 +107,8 @@ TEST_CASE("an interface's fields are those of its points, under its number in th
   const auto split = hdf5::read(id, "split");
   for (std::size_t k = 0; k < 4; ++k) CHECK(split[k] == (state.surfaces[1].points[k].split ? 1.0 : 0.0));
   CHECK(hdf5::text_attribute(id, "reaction_n_Pa", "unit") == "Pa");
+  CHECK(hdf5::read(id, "failed_s")[0] == 0.25);
+  CHECK(hdf5::text_attribute(id, "failed_s", "unit") == "s");
 }
 
 TEST_CASE("total stress is the in-situ stress and plane strain's Hooke's law") {
