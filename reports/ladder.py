@@ -214,7 +214,7 @@ def convergence_words(curves: Sequence[Curve]) -> str:
     where = f"{share(max(finest))} ({worst.quantity}, {plain(worst.case)})"
     told = f"Errors {f'from {share(min(finest))} to {where}' if len(finest) > 1 else f'of {where}'} at the finest level"
     if not orders:
-        return told
+        return f"{told}; none is judged by its order"
     lowest, highest = min(orders), max(orders)
     spread = " to ".join(dict.fromkeys((order_words(lowest), order_words(highest))))
     which = f"{len(orders)} of {len(curves)} are judged by their order, " if len(orders) < len(curves) else "orders "

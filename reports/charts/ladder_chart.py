@@ -98,7 +98,7 @@ def _size_axes(axes: Axes, panel: Panel, low: float, high: float) -> None:
     axes.set_xticks(sizes, [f"{size:.3g}" for size in sizes])
     axes.xaxis.set_minor_formatter(NullFormatter())
     axes.set_title(panel.heading)
-    axes.set_xlabel({"m": "cell size (m)", "s": "step (s)"}.get(panel.unit, "size"))
+    axes.set_xlabel({"m": "cell size (m)", "s": "step (s)"}.get(panel.unit, "size (m)"))
     axes.grid(True, which="major")
     _percent_axis(axes)
 
