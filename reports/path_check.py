@@ -1,0 +1,191 @@
+"""The paths of Experiments 5 and 6 with a perfect interface beside those of boundary elements in the infinite plane."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from reports.charts.path_check_chart import draw_paths
+from reports.sections import Section, Table, put_figure
+from reports.words import mechanics_name
+from verification.harness.crack_paths import INTERFACE_M, exact_path, farthest, grown
+from verification.harness.load import Array, LoadError, Run, load
+from verification.harness.reference import NoReference
+
+TITLE = "Paths against boundary elements"
+GROWTH_M = 20.0  # of the paths that are compared
+CELLS = 1.0  # farthest distance in cells that is asked for
+SHIPPED = {5: "exp5_parallel_interface", 6: "exp6_stress_reversal"}
+CASES = {"": "400 m, graded", "_block": "80 m", "_explicit": "80 m"}
+TITLES = {5: "Experiment 5: away from the stiff rock", 6: "Experiment 6: to the soft rock"}
+# The converged path of boundary elements of each experiment: increment (m) and turning.
+CONVERGED: dict[int, tuple[float, str]] = {5: (0.5, "corrected"), 6: (0.125, "forward")}
+
+
+@dataclass(frozen=True)
+class SolverPath:
+    """A run's path (tips from the first on, x from the first crack, m) and how it compares."""
+
+    experiment: int
+    block: str
+    mechanics: str
+    flow: str
+    cell_m: float
+    increment_m: float
+    tips: Array
+    same: Array  # forward path of boundary elements in the run's own increments
+    off_m: float  # farthest from the converged path of boundary elements
+    off_same_m: float  # and from the forward one of the run's own increment
+
+    @property
+    def within(self) -> bool:
+        """Whether the path is as near as is asked for to the converged path, or to the exact one of its own increment."""
+        return min(self.off_m, self.off_same_m) <= CELLS * self.cell_m
+
+    @property
+    def label(self) -> str:
+        """For a legend."""
+        sizes = f"cells {self.cell_m:g} m, increments {self.increment_m:g} m"
+        return f"{mechanics_name(self.mechanics)}, {self.block}{self.flow}, {sizes}"
+
+
+@dataclass(frozen=True)
+class PathPanel:
+    """One experiment; lengths in m, x from the first crack."""
+
+    heading: str
+    converged: Array
+    converged_words: str
+    shows_same: bool  # draw each run's own forward path of boundary elements
+    runs: tuple[SolverPath, ...]
+    interface_m: float
+
+
+@dataclass(frozen=True)
+class PathFigure:
+    """Paths of both experiments."""
+
+    title: str
+    panels: tuple[PathPanel, ...]
+
+
+@dataclass(frozen=True)
+class PathCheck:
+    """The figure's data, the table's rows, which of them are farther off than is asked for, and what could not be read."""
+
+    figure: PathFigure
+    rows: list[list[str]]
+    marked: list[int]
+    missing: list[str]
+
+
+def _folders(runs: Path, experiment: int) -> Iterator[tuple[Path, str, str]]:
+    """Folders of runs to compare, each with its block and what is special about its flow."""
+    for ending, block in CASES.items():
+        folder = runs / "ladder" / "paths" / f"path_exp{experiment}{ending}"
+        for level in sorted(folder.glob("*/summary.json")):
+            yield level.parent, block, ""
+    for mechanics in ("quasistatic", "explicit"):
+        folder = runs / mechanics / SHIPPED[experiment] / "perfect"
+        if (folder / "summary.json").is_file():
+            yield folder, "80 m", ", study's flow"
+
+
+def compare(experiment: int, run: Run, block: str, flow: str, reference: Array) -> SolverPath:
+    """A run's path held against the reference's, and against the forward one of its own increment."""
+    tips = grown(run)
+    same = exact_path(experiment, run.increment_m, "forward", GROWTH_M)
+    inside = tips[tips[:, 0] < INTERFACE_M - 0.5]
+    cell_m = float(run.scene["numerics"]["cell_m"])
+    return SolverPath(experiment, block, run.summary.mechanics, flow, cell_m, run.increment_m, tips, same,
+                      farthest(inside, reference), farthest(inside, same))  # fmt: skip
+
+
+def path_check(runs: Path) -> PathCheck | None:
+    """All paths below `runs` beside the boundary elements'; None where there are none. Raises NoReference without the program."""
+    panels: list[PathPanel] = []
+    missing: list[str] = []
+    for experiment in SHIPPED:
+        found: list[SolverPath] = []
+        increment, turning = CONVERGED[experiment]
+        for folder, block, flow in _folders(runs, experiment):
+            try:
+                found.append(compare(experiment, load(folder), block, flow, exact_path(experiment, increment, turning, GROWTH_M)))
+            except LoadError as error:
+                missing.append(f"{folder.relative_to(runs)}: {error}")
+        if found:
+            words = f"boundary elements, {turning}, increments {increment:g} m"
+            converged = exact_path(experiment, increment, turning, GROWTH_M)
+            panels.append(PathPanel(TITLES[experiment], converged, words, experiment == 6, tuple(found), INTERFACE_M))
+    if not panels:
+        return None
+    every = [path for panel in panels for path in panel.runs]
+    return PathCheck(PathFigure(_finding(every), tuple(panels)), [_row(path) for path in every],
+                     [k for k, path in enumerate(every) if not path.within], missing)  # fmt: skip
+
+
+def _finding(paths: list[SolverPath]) -> str:
+    """What the comparison shows, from the finest run of each experiment in the large block and uniform flow."""
+    words = []
+    for experiment in SHIPPED:
+        own = [path for path in paths if path.experiment == experiment and not path.flow]
+        if own:
+            best = min(own, key=lambda path: (path.block != CASES[""], path.cell_m))
+            off = min(best.off_m, best.off_same_m)
+            which = "converged path" if best.off_m <= best.off_same_m else "path in the same increments"
+            words.append(f"Experiment {experiment}: {off:.2g} m from the boundary elements' {which} at {best.cell_m:g} m cells")
+    return "; ".join(words) or "Paths of the experiments beside those of boundary elements"
+
+
+def _row(path: SolverPath) -> list[str]:
+    """A run's line of the table."""
+    return [f"{path.experiment}", path.block + path.flow, mechanics_name(path.mechanics), f"{path.cell_m:g}", f"{path.increment_m:g}",
+            f"{path.tips[-1, 0]:.2f}, {path.tips[-1, 1]:.2f}", f"{path.off_m:.3f}", f"{path.off_m / path.cell_m:.2f}",
+            f"{path.off_same_m:.3f}"]  # fmt: skip
+
+
+def section(runs: Path, out: Path) -> Section | None:
+    """The part of the page of verification about paths; None where no path was run."""
+    try:
+        check = path_check(runs)
+    except NoReference as error:
+        return Section(title=TITLE, intro=f"strata-reference could not be asked: {error}", figures=[], tables=[])
+    if check is None:
+        return None
+    caption = (
+        "Tips of the fracture, x from its first line, heights above the symmetry line; different scales. Lines: boundary elements in"
+        " the infinite plane (strata-reference crack_path, bonded interface at x = 5 m, the pressure that starts the growth"
+        " everywhere), wide: converged, thin and dashed in a run's colour: with the run's own increment. Marks: runs. The edges of the"
+        " 80 m block are at x = ±40 m."
+    )
+    table = Table(
+        title="Largest distance of the paths over the first 20 m of growth, or to 0.5 m from the interface",
+        header=["experiment", "block", "mechanics", "cell (m)", "increment (m)", "last tip x, y (m)", "distance (m)", "in cells",
+                "from forward path of that increment (m)"],  # fmt: skip
+        rows=check.rows,
+        marked=check.marked,
+        note=_note(check),
+    )
+    figure = put_figure(draw_paths(check.figure), out, "path_check", check.figure.title, caption)
+    return Section(title=TITLE, intro=_intro(check), figures=[figure], tables=[table])
+
+
+def _intro(check: PathCheck) -> str:
+    """What was compared, in words."""
+    near = len(check.rows) - len(check.marked)
+    return (
+        f"{near} of {len(check.rows)} paths stay within a cell of the path that dislocations in the infinite plane predict by the same"
+        " criterion (maximum hoop stress, J = J_c, the pressure of the start everywhere), converged or with the same increment."
+    )
+
+
+def _note(check: PathCheck) -> str:
+    """Why Experiment 6 is as it is, and what could not be read."""
+    words = (
+        "Experiment 6 is unstable: under a stress along the fracture T = 1 MPa above that across it a path leaves its line over"
+        " K_Ic²/(8 T²) = 0.26 m (Cotterell & Rice 1980), so that increments decide where it turns, for boundary elements as for the"
+        " solver; converged paths need increments well below that length. The solver turns by the whole angle of maximum hoop stress"
+        " only where an increment has three cells, by a share of it below; such runs turn later."
+    )
+    return words + (" Not read: " + "; ".join(check.missing) + "." if check.missing else "")

@@ -1,0 +1,119 @@
+"""Paths of Experiments 5 and 6 in a block that stands for the infinite plane, against boundary elements (dislocations).
+
+Experiment 6's path is unstable and depends on the increment: it is held against the exact path of the same increment, and
+increments have three cells because the solver takes the whole turn of maximum hoop stress only then.
+"""
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from verification.harness.crack_paths import exact_path, farthest, first_kink_deg, grown, rise_at
+from verification.harness.load import LoadError, Run
+from verification.harness.paths import ANALYTIC
+from verification.ladder.case import Case, Level, Quantity, Sample
+
+GROWTH_M = 20.0  # of Experiment 5's path that is held against the reference
+TURN_M = 1.0  # sideways, where the height of Experiment 6's path is read
+CONVERGED_M = 0.5  # increment of Experiment 5's corrected path; 1 mm from those of 0.25 and 1 m
+
+
+def along_5(run: Run) -> Sample:
+    """x at every tip over the first 20 m of growth, Experiment 5; relative to the exact drift there."""
+    path, exact = grown(run), exact_path(5, CONVERGED_M, "corrected", GROWTH_M + 1.0)
+    top = path[0, 1] + GROWTH_M
+    if path[-1, 1] < top:
+        raise LoadError(f"{run.folder}: the fracture grew less than {GROWTH_M:g} m")
+    path = path[path[:, 1] <= top][1:]
+    drift = abs(float(np.interp(top, exact[:, 1], exact[:, 0])))
+    return Sample(path[:, 0], np.interp(path[:, 1], exact[:, 1], exact[:, 0]), None, drift, reference_error=0.002)
+
+
+def drift_5(run: Run) -> Sample:
+    """x after 20 m of growth, Experiment 5."""
+    path, exact = grown(run), exact_path(5, CONVERGED_M, "corrected", GROWTH_M + 1.0)
+    top = path[0, 1] + GROWTH_M
+    return Sample.of(float(np.interp(top, path[:, 1], path[:, 0])), float(np.interp(top, exact[:, 1], exact[:, 0])),
+                     reference_error=0.002)  # fmt: skip
+
+
+def cells_off_5(run: Run) -> Sample:
+    """Largest distance from the path over its first 20 m, Experiment 5, relative to a cell."""
+    exact = exact_path(5, CONVERGED_M, "corrected", GROWTH_M + 1.0)
+    return Sample.of(farthest(grown(run), exact), 0.0, scale=float(run.scene["numerics"]["cell_m"]))
+
+
+def first_turn(experiment: int) -> Callable[[Run], Sample]:
+    """Direction of maximum hoop stress when growth starts, anticlockwise from the crack's own, against boundary elements."""
+
+    def sample(run: Run) -> Sample:
+        still = np.hypot(run.history["tip_x_m"] - run.path[1, 0], run.history["tip_y_m"] - run.path[1, 1]) < 1e-9
+        if not np.any(still):
+            raise LoadError(f"{run.folder}: no row before growth")
+        return Sample.of(float(run.history["kink_deg"][still][-1]), first_kink_deg(experiment), reference_error=1e-4)
+
+    return sample
+
+
+def rise_6(run: Run) -> Sample:
+    """Height gained until the path is 1 m to the side of its first line, against the forward path of the run's own increment."""
+    exact = exact_path(6, run.increment_m, "forward", GROWTH_M)
+    return Sample.of(rise_at(grown(run), TURN_M), rise_at(exact, TURN_M), reference_error=1e-3)
+
+
+def levels(*cells_m: float, increment_cells: float) -> tuple[Level, ...]:
+    """Levels of cells with increments of so many cells."""
+    return tuple(
+        Level(f"{cell:g} m", cell, (f"numerics.cell_m={cell!r}", f"fracture.increment_m={increment_cells * cell!r}"))
+        for cell in cells_m
+    )
+
+
+def block_level(variant: str) -> tuple[Level, ...]:
+    """The one level of a variant in the study's block."""
+    return (Level("1 m", 1.0, ("fracture.increment_m=2.0",), variant),)
+
+
+_FLOOR = {"0.25 m": "4 mm are left, of either sign: the edges 200 m away alone shift the path by 2 mm"}
+_TAPER = "the increment shrinks with the cell, and with it the exact path that the run is held against"
+
+CASES: tuple[Case, ...] = (
+    Case(
+        "path_exp5",
+        "A crack in soft rock 5 m beside stiff rock drifts away from it: a stable path, increments of two cells.",
+        ANALYTIC / "path_exp5.toml",
+        "quasistatic",
+        levels(1.0, 0.5, 0.25, increment_cells=2.0),
+        (Quantity("first turn", "deg", first_turn(5)), Quantity("x along 20 m of path", "m", along_5, no_order_at=_FLOOR),
+         Quantity("drift after 20 m", "m", drift_5, no_order_at=_FLOOR)),
+        smoke=1,
+    ),
+    Case(
+        "path_exp5_block",
+        "The same in the study's block of 80 m with its sides held, which the infinite plane knows nothing of.",
+        ANALYTIC / "path_exp5.toml",
+        "quasistatic",
+        block_level("block"),
+        (Quantity("x along 20 m of path", "m", along_5),),
+        smoke=1,
+    ),
+    Case(
+        "path_exp5_explicit",
+        "The same with inertia: the tip runs at a good part of the Rayleigh speed, which equilibria know nothing of.",
+        ANALYTIC / "path_exp5.toml",
+        "explicit",
+        block_level("block_explicit"),
+        (Quantity("distance from the path, in cells", "m", cells_off_5),),
+        smoke=1,
+    ),
+    Case(
+        "path_exp6",
+        "A crack in stiff rock 5 m beside soft rock turns to it under a larger stress across: unstable, increments of three cells.",
+        ANALYTIC / "path_exp6.toml",
+        "quasistatic",
+        levels(1.0, 0.5, 0.25, increment_cells=3.0),
+        (Quantity("first turn", "deg", first_turn(6)), Quantity("rise until 1 m to the side", "m", rise_6, no_order=_TAPER)),
+        smoke=1,
+    ),
+)
