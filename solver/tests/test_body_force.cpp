@@ -259,6 +259,27 @@ TEST_CASE("an interface carries the weight of what lies on it") {
   }
 }
 
+// Requires that a spring so soft that the half above sinks by metres is told from no spring at all. Mutation that
+// fails: balance to 1e-9 of the load alone, which round-off of the sinking exceeds.
+TEST_CASE("the softest springs are no mechanism, no spring is one") {
+  for (const double D : {1e3, 0.0}) {
+    Scene scene = block(20, 40, 0.2);
+    scene.domain.bottom = Edge::symmetry;
+    scene.domain.sides = Edge::fixed;
+    scene.numerics.mechanics = Numerics::Mechanics::quasistatic;
+    scene.body.acceleration_m_s2 = Formulas{"0", "-1"};
+    add_interface(scene, soft_law(D, 1e9, InterfaceLaw::Compression::spring), 3.9);
+    Statics s(scene);
+    if (D == 0.0) {
+      CHECK_THROWS_WITH(s.solve(), Catch::Contains("mechanism"));
+      continue;
+    }
+    s.solve();
+    for (const SurfacePoint& point : s.state().surfaces[0].points)
+      CHECK(point.opening() == Approx(-2500.0 * 4.1 / D).epsilon(1e-6));
+  }
+}
+
 // Requires that J does not depend on its ring where a body force acts within it. Mutation that fails: J without b.
 TEST_CASE("J is the same on small and large rings under a body force") {
   std::vector<double> J;
