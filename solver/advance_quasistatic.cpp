@@ -132,8 +132,7 @@ double tip_margin(const Scene& scene, const std::vector<Elasticity>& rocks, cons
     return J_c > 0.0 ? std::sqrt(std::max(0.0, tip.G_trial) / J_c) : (tip.G_trial > 0.0 ? 2.0 : 0.0);
   }
   if (J_c == 0.0) return toughless_margin(state, rock.E_prime, tip);
-  if (tip.K_I <= 0.0 || tip.J <= 0.0) return 0.0;
-  return std::sqrt(tip.J / J_c);
+  return std::sqrt(driving_J(rock, tip) / J_c);
 }
 
 double margin_of(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {

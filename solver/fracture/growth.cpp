@@ -63,13 +63,6 @@ bool near_edge(const Scene& scene, const Vec2& x, const Vec2& direction, double 
   return left || right || bottom || top;
 }
 
-// In the step after a contact or a particle's change of side J may spike to several J_c while K stays near nothing:
-// such a J is no energy release rate. (K_I^2 + K_II^2)/E' has to reach half of J_c too; near interfaces K itself is not
-// to be trusted and J decides alone.
-bool confirmed_by_K(const Tip& tip, const Elasticity& rock) {
-  return tip.K_I * tip.K_I + tip.K_II * tip.K_II >= 0.5 * rock.J_c * rock.E_prime;
-}
-
 double rayleigh_wait(const Scene& scene, const Elasticity& rock) {
   return scene.fracture->increment_m / rock.c_R;
 }
@@ -270,6 +263,12 @@ bool interface_within(const Scene& scene, const State& state, const Tip& tip, do
   return false;
 }
 
+double driving_J(const Elasticity& rock, const Tip& tip) {
+  if (tip.K_I <= 0.0 || tip.J <= 0.0) return 0.0;
+  if (tip.at_interface) return tip.J;
+  return std::min(tip.J, 2.0 * (tip.K_I * tip.K_I + tip.K_II * tip.K_II) / rock.E_prime);
+}
+
 void note_growth(State& state, Tip& tip, const char* by, bool trusted) {
   if (!tip.has_grown) record(state, "start", tip, state.time, state.fluid.inlet_Pa, !trusted, by);
   if (tip.arrested) record(state, "restart", tip, state.time, state.fluid.inlet_Pa, !trusted, by);
@@ -287,8 +286,8 @@ bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state
   bool moved = false;
   for (Tip& tip : state.tips) {
     const Elasticity& ahead = rocks[rock_ahead(scene, state, tip)];
-    if (!tip.growing || tip.K_I <= 0.0 || tip.J <= 0.0 || tip.J < ahead.J_c) continue;
-    if (!tip.at_interface && !confirmed_by_K(tip, ahead)) continue;
+    const double J = driving_J(ahead, tip);
+    if (!tip.growing || J <= 0.0 || J < ahead.J_c) continue;
     if (tip.last_growth_s >= 0.0 && state.time - tip.last_growth_s < rayleigh_wait(scene, ahead)) continue;
     if (stopped_by_edge(scene, state, tip)) {
       tip.growing = false;

@@ -18,6 +18,11 @@ namespace strata {
 /// moved: the copies must then be rebuilt. Throws nothing.
 bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
 
+/// What drives a tip (N/m): J, but no more than twice (K_I^2 + K_II^2)/E', 0 for a closed tip. Where faces have just
+/// touched, or stand under a dry fluid, J may be several J_c while K is next to nothing: such a J is no energy release
+/// rate. Near interfaces K itself is not to be trusted and J stands alone. Throws nothing.
+double driving_J(const Elasticity& rock, const Tip& tip);
+
 /// Index of the rock that a tip is about to enter. Throws nothing.
 std::size_t rock_ahead(const Scene& scene, const State& state, const Tip& tip);
 

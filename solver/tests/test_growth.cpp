@@ -81,6 +81,25 @@ Totals totals(const Run& run) {
 
 }  // namespace
 
+// Requires J itself where K agrees with it or an interface makes K worthless, twice what K says where J is more, and
+// nothing for a closed tip or a negative J.
+TEST_CASE("what drives a tip is J as far as K confirms it") {
+  Elasticity rock;
+  rock.E_prime = 10e9;
+  Tip tip;
+  tip.K_I = 1e6, tip.K_II = 0.5e6;  // (K_I^2 + K_II^2)/E' = 125 N/m
+  tip.J = 130.0;
+  CHECK(driving_J(rock, tip) == 130.0);
+  tip.J = 900.0;
+  CHECK(driving_J(rock, tip) == Approx(250.0));
+  tip.at_interface = true;
+  CHECK(driving_J(rock, tip) == 900.0);
+  tip.J = -900.0;
+  CHECK(driving_J(rock, tip) == 0.0);
+  tip.J = 130.0, tip.K_I = 0.0;
+  CHECK(driving_J(rock, tip) == 0.0);
+}
+
 // Requires that a tip moves at J >= J_c = K_Ic^2/E' and not below, not with a closed tip, nor where growth is off.
 // Mutations that fail: J_c doubled, halved, zero.
 TEST_CASE("a tip grows at J_c") {
