@@ -46,6 +46,7 @@ class Row:
     order_gate: float | None
     verdict: str
     why: str
+    note: str
 
     @property
     def passed(self) -> bool:
@@ -146,7 +147,7 @@ def _row(item: dict[str, Any]) -> Row:
         reference_error=_float(item["reference_error"]), wall_s=_float(cost.get("wall_s")),
         particles=int(cost.get("particles", 0)), steps=int(cost.get("steps", 0)),
         memory_MB=_float(cost.get("peak_memory_MB")), gate=_float(gate.get("error")), order_gate=gate.get("order"),
-        why="; ".join(filter(None, (item["failure"], *item["problems"]))),
+        why="; ".join(filter(None, (item["failure"], *item["problems"]))), note=item.get("note", ""),
     )  # fmt: skip
 
 

@@ -208,7 +208,7 @@ def _block(ladder: Ladder, rows: list[Row], reasons: list[str]) -> dict[str, Any
             {
                 "name": quantity, "unit": own[0].unit, "count": _count_words(own), "reasons": _reasons(own, reasons),
                 "scale": _scale_words(own), "levels": [line(row) for row in own],
-                "height": len(own) + sum(bool(row.why) for row in own),
+                "height": len(own) + sum(bool(row.why or row.note) for row in own),
             }  # fmt: skip
         )
     return {
@@ -263,7 +263,7 @@ def line(row: Row) -> dict[str, Any]:
         "wall": "–" if math.isnan(row.wall_s) else f"{row.wall_s:.1f}" if row.wall_s >= 0.1 else f"{row.wall_s:.2g}",
         "particles": _thousands(row.particles), "steps": _thousands(row.steps),
         "memory": "–" if math.isnan(row.memory_MB) else f"{row.memory_MB:.0f}",
-        "verdict": row.verdict, "passed": row.passed, "why": row.why,
+        "verdict": row.verdict, "passed": row.passed, "why": row.why, "note": row.note,
     }  # fmt: skip
 
 

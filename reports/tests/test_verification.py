@@ -105,6 +105,16 @@ def test_all_well_is_said_as_such(tmp_path: Path) -> None:
     assert "Each of the 7 gates was tried" in page and "31 in all: all were refused" in page
 
 
+def test_gates_that_can_be_tightened_are_noted(tmp_path: Path) -> None:
+    """A note has a line of its own in the table, and makes nothing red."""
+    rows = some_rows()[:6]
+    rows[2] |= {"note": "gate can be tightened (error 0.01, accepted at 0.02): --accept"}
+    page = page_of(write_ladder(tmp_path, rows), tmp_path / "out")
+    assert page.count('<tr class="noted">') == 1 and "0.5 m: gate can be tightened (error 0.01, accepted at 0.02)" in page
+    assert re.search(r'rowspan="4" class="quantity">K_I', page), "its quantity's cell spans it"
+    assert 'class="failures"' not in page and 'class="mark no"' not in page and "6 comparisons" in page
+
+
 def test_gates_that_let_mutants_pass_and_stale_ones_are_told(tmp_path: Path) -> None:
     """The page hides nothing of the gates' own trial."""
     tally = {"gates": 7, "mutants": 31, "refused": 30}

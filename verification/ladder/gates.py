@@ -22,7 +22,9 @@ ORDER_LOSS = 0.3  # an order may be this much below the measured one; half an or
 ROUND_OFF = "round-off"
 ROUND_OFF_FLOOR = 1e-12
 ROUND_OFF_MOST = 1e-6
-FALLEN = 0.9  # an error that fell below this share of the accepted one asks for a tighter gate
+# From these on a gate is no longer tight, which is told but fails nothing: errors fall by improvements, and elsewhere by rounding.
+FALLEN = 0.9  # an error below this share of the accepted one
+RISEN = 0.5 - ORDER_LOSS  # an order this much above the accepted one: half an order of its own lost would pass
 
 
 class CannotAccept(Exception):
@@ -130,9 +132,12 @@ def keys_of(families: Families, family: str) -> list[Key]:
 
 
 def stale(families: Families, folder: Path | None = None) -> list[str]:
-    """Gates of cases, quantities, levels or families that there are no more, a line each."""
+    """Gates of cases, quantities or levels that there are no more, and files of families that there are none of, a line each."""
     lines = []
     for path in sorted((folder or FOLDER).glob("*.json")):
+        if path.stem not in families:
+            lines.append(f"{path.name}: there is no family {path.stem}; remove the file")
+            continue
         known = set(keys_of(families, path.stem))
         lines += [f"{path.stem}/{' / '.join(key)}" for key in read(path.stem, folder) if key not in known]
     return lines
@@ -151,9 +156,19 @@ def too_wide(gate: Gate, round_off: bool) -> str:
     return ""
 
 
-def fallen(gate: Gate, error: float) -> bool:
-    """Whether an error is so much smaller than when its gate was accepted that the gate is no longer tight."""
-    return abs(error) < FALLEN * gate.measured
+def loose(gate: Gate, error: float, order: float | None) -> str:
+    """In what a result became so much better since its gate was accepted that the gate is no longer tight, or nothing."""
+    better = []
+    if abs(error) < FALLEN * gate.measured:
+        better.append(f"error {abs(error):.3g}, accepted at {gate.measured:g}")
+    if risen(gate, order) > RISEN:
+        better.append(f"order {order:.2f}, accepted at {gate.measured_order:.2f}")
+    return f"gate can be tightened ({'; '.join(better)}): --accept" if better else ""
+
+
+def risen(gate: Gate, order: float | None) -> float:
+    """By how much an order is above the accepted one; 0 where it is not, or where there is none."""
+    return max(0.0, order - gate.measured_order) if order is not None and gate.measured_order is not None else 0.0
 
 
 def changes(before: Gates, now: Gates) -> list[str]:

@@ -21,6 +21,7 @@ class Tally:
     gates: int
     mutants: int
     refused: int
+    loose: int
 
     def words(self) -> str:
         """The tally as a line."""
@@ -28,7 +29,8 @@ class Tally:
         kinds = ((self.wrong, "not as their gates ask"), (self.failed, "failed"))
         bad = "".join(f", {count} {word}" for count, word in kinds if count)
         passed = self.rows - self.wrong - self.failed
-        return f"{self.rows} comparisons: {passed} pass{bad}; {self.gates} gates, {self.mutants} mutants, {said}"
+        notes = f"; {self.loose} can be tightened" if self.loose else ""
+        return f"{self.rows} comparisons: {passed} pass{bad}; {self.gates} gates, {self.mutants} mutants, {said}{notes}"
 
 
 def judged(rows: list[Row], gates: dict[str, Gates]) -> list[Row]:
@@ -54,23 +56,15 @@ def judge(row: Row, coarser: Row | None, gate: Gate | None) -> Row:
         return replace(row, problems=(f"no gate (measured error {row.error:.3g}); see --accept",))
     round_off = book.is_round_off(row.no_order)
     problems = [book.too_wide(gate, round_off)]
-    if not round_off and book.fallen(gate, row.error):
-        problems.append(f"error fell to {abs(row.error):.3g} from {gate.measured:g}: {gate.error:g} is too wide; see --accept")
     if not passes(gate.error, row.error):
         problems.append(f"error {abs(row.error):.3g} above {gate.error:g}")
     if coarser is not None and not row.no_order:
         problems.append(_order_problem(row, coarser, gate))
-    wrong = mutants_of(row, coarser)
+    wrong = mutants_of(row, coarser, gate)
     survivors = [name for name, mutant in wrong.items() if not refuses(gate, row, coarser, name, mutant)]
-    problems += [f"the gate lets {name} pass{_risen(row, gate) if name == HALF_AN_ORDER else ''}" for name in survivors]
-    return replace(row, gate=gate, problems=tuple(filter(None, problems)), refused=len(wrong) - len(survivors))
-
-
-def _risen(row: Row, gate: Gate) -> str:
-    """How an order that rose leaves its gate too low, in brackets."""
-    if row.order is None or gate.measured_order is None:
-        return ""
-    return f" (order {row.order:.2f}, accepted at {gate.measured_order:.2f}); see --accept"
+    problems += [f"the gate lets {name} pass" for name in survivors]
+    note = "" if round_off else book.loose(gate, row.error, row.order)
+    return replace(row, gate=gate, problems=tuple(filter(None, problems)), note=note, refused=len(wrong) - len(survivors))
 
 
 def _order_problem(row: Row, coarser: Row, gate: Gate) -> str:
@@ -94,11 +88,14 @@ def keeps(least: float, order: float | None) -> bool:
     return order is not None and order >= least
 
 
-def mutants_of(row: Row, coarser: Row | None) -> dict[str, float]:
-    """Errors that plainly wrong results would have had: the sample's own, and half an order lost from the level before."""
+def mutants_of(row: Row, coarser: Row | None, gate: Gate) -> dict[str, float]:
+    """Errors that plainly wrong results would have had: the sample's own, and half an order lost from the level before.
+
+    The half is lost from the order measured, or from the accepted one where that is lower.
+    """
     wrong = dict(row.mutants)
     if coarser is not None and not coarser.failure and not row.no_order:
-        wrong[HALF_AN_ORDER] = row.error * math.sqrt(coarser.size / row.size)
+        wrong[HALF_AN_ORDER] = row.error * (coarser.size / row.size) ** (0.5 + book.risen(gate, row.order))
     return wrong
 
 
@@ -114,7 +111,7 @@ def refuses(gate: Gate, row: Row, coarser: Row | None, name: str, error: float) 
 def tally(rows: list[Row]) -> Tally:
     """What became of judged rows."""
     coarser = _coarser(rows)
-    tried = [len(mutants_of(row, coarser.get(k))) if row.gate and not row.failure else 0 for k, row in enumerate(rows)]
+    tried = [len(mutants_of(row, coarser.get(k), row.gate)) for k, row in enumerate(rows) if row.gate and not row.failure]
     ordered = sum(1 for row in rows if row.gate and row.gate.order is not None and not row.failure)
     return Tally(
         rows=len(rows),
@@ -123,6 +120,7 @@ def tally(rows: list[Row]) -> Tally:
         gates=sum(1 for row in rows if row.gate and not row.failure) + ordered,
         mutants=sum(tried),
         refused=sum(row.refused for row in rows),
+        loose=sum(bool(row.note) for row in rows),
     )
 
 

@@ -51,6 +51,7 @@ class Row:
     failure: str = ""
     gate: Gate | None = None
     problems: tuple[str, ...] = ()
+    note: str = ""  # what is told without failing: a gate that is no longer tight
     refused: int = 0  # mutants that the gate was tried with and refused
 
     @property

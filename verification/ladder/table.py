@@ -25,7 +25,7 @@ def cells(row: Row) -> tuple[str, ...]:
     if row.gate:
         gate = f"{row.gate.error:g}" + (f" / {row.gate.order:g}" if row.gate.order is not None else "")
     many = f" rms of {row.values}" if row.values > 1 else ""
-    why = "; ".join((row.failure, *row.problems) if row.failure else row.problems)
+    why = "; ".join(filter(None, (row.failure, *row.problems, row.note)))
     return (
         f"{row.case} ({row.mechanics})", f"{row.quantity} [{row.unit or '1'}]{many}", row.level,
         _number(row.value), _number(row.reference), "-" if math.isnan(row.error) else f"{row.error:+.2e}",
