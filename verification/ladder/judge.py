@@ -1,7 +1,6 @@
 """Judges rows by their gates, and the gates by wrong results that they must refuse."""
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 
 from verification.ladder import gates as book
