@@ -13,7 +13,7 @@ from typing import Any
 
 from reports.words import listed, mechanics_name, number, plain, share
 
-ROUND_OFF = "round-off"
+ROUND_OFF = "round-off"  # as in verification/ladder/gates.py: how the reason of what holds to rounding begins
 SAME_AS_ROUNDING = 1e-13  # errors below it are not drawn
 ONE_PERCENT = 0.01
 UNIT = re.compile(r"\d (m|s)\b")  # of a level's size, in its label

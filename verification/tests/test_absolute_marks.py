@@ -39,7 +39,7 @@ def test_path_of_experiment_5() -> None:
     increment_m, tips = 2.0 * CELL_M, paths.GROWTH_M / (2.0 * CELL_M)
     (level,) = (level for case in paths.CASES if case.name == "path_exp5" for level in case.levels if level.label == LEVEL)
     assert f"fracture.increment_m={increment_m!r}" in level.settings
-    drift_m = abs(float(exact_path(5, paths.CONVERGED_M, "corrected", paths.GROWTH_M + 1.0)[-1, 0]))
+    drift_m = abs(float(paths.converged_5()[-1, 0]))
     assert math.sqrt(tips) * error(gates.read("paths"), "path_exp5", ALONG_5) * drift_m <= CELL_M
 
 

@@ -166,6 +166,11 @@ def parallel(held_by: str, distance_m: float, *cells: int, smoke: int = 1) -> Ca
     return Case(name, says, BONDED, "quasistatic", levels(f"parallel_in_{held_by}", distance_m, *cells), MIXED, smoke)
 
 
+def in_both(make: Callable[..., Case], distance_m: float, *cells: int, smoke: int = 1) -> tuple[Case, ...]:
+    """A crack in either rock at a distance (m) from the interface."""
+    return tuple(make(held_by, distance_m, *cells, smoke=smoke) for held_by in ("stiff", "soft"))
+
+
 def stiffness_settings(stiffness: float) -> tuple[str, ...]:
     """Springs of D a/E' = stiffness, alike along and across, as scene keys."""
     D = stiffness * E_PRIME_PA / HALF_LENGTH_M
@@ -207,25 +212,15 @@ def small_levels(variant: str) -> tuple[Level, ...]:
 
 
 CASES = (
-    normal("stiff", 1.0, 2, 4, 8, 16, smoke=2),
-    normal("soft", 1.0, 2, 4, 8, 16, smoke=2),
-    normal("stiff", 0.5, 2, 4, 8),
-    normal("soft", 0.5, 2, 4, 8),
-    normal("stiff", 2.5, 4, 8, 16),
-    normal("soft", 2.5, 4, 8, 16),
+    *in_both(normal, 1.0, 2, 4, 8, 16, smoke=2),
+    *in_both(normal, 0.5, 2, 4, 8),
+    *in_both(normal, 2.5, 4, 8, 16),
     Case("block_edges", "what the edges of the block cost: its width doubled", BONDED, "quasistatic",
          block_levels(200.0, 400.0, 800.0, 1600.0), both_tips(bonded, EDGES), 1),
-    parallel("stiff", 2.5, 2, 4, 8, 16, smoke=2),
-    parallel("soft", 2.5, 2, 4, 8, 16, smoke=2),
-    parallel("stiff", 1.25, 2, 4, 8),
-    parallel("soft", 1.25, 2, 4, 8),
-    parallel("stiff", 5.0, 4, 8, 16),
-    parallel("soft", 5.0, 4, 8, 16),
-    sprung(0.01, 2, 4, 8),
-    sprung(0.1, 2, 4, 8),
-    sprung(1.0, 2, 4, 8, smoke=2),
-    sprung(10.0, 2, 4, 8),
-    sprung(100.0, 2, 4, 8),
+    *in_both(parallel, 2.5, 2, 4, 8, 16, smoke=2),
+    *in_both(parallel, 1.25, 2, 4, 8),
+    *in_both(parallel, 5.0, 4, 8, 16),
+    *(sprung(stiffness, 2, 4, 8, smoke=2 if stiffness == 1.0 else 1) for stiffness in (0.01, 0.1, 1.0, 10.0, 100.0)),
     Case("free", "crack 1 m from springs so soft that they are a free surface", SPRINGS, "quasistatic",
          levels("springs", 1.0, 2, 4, 8, settings=NO_SPRINGS), both_tips(without_springs("free")), 1),
     Case("frictionless", "crack 1 m from a closed interface without friction", SPRINGS, "quasistatic",

@@ -12,16 +12,21 @@ import numpy as np
 from verification.harness.crack_paths import exact_path, farthest, first_kink_deg, grown, rise_at
 from verification.harness.load import LoadError, Run
 from verification.harness.paths import ANALYTIC
-from verification.ladder.case import Case, Level, Quantity, Sample
+from verification.ladder.case import Array, Case, Level, Quantity, Sample
 
 GROWTH_M = 20.0  # of Experiment 5's path that is held against the reference
 TURN_M = 1.0  # sideways, where the height of Experiment 6's path is read
 CONVERGED_M = 0.5  # increment of Experiment 5's corrected path; 1 mm from those of 0.25 and 1 m
 
 
+def converged_5() -> Array:
+    """The converged path of Experiment 5, a little longer than what is held against it."""
+    return exact_path(5, CONVERGED_M, "corrected", GROWTH_M + 1.0)
+
+
 def along_5(run: Run) -> Sample:
     """x at every tip over the first 20 m of growth, Experiment 5; relative to the exact drift there."""
-    path, exact = grown(run), exact_path(5, CONVERGED_M, "corrected", GROWTH_M + 1.0)
+    path, exact = grown(run), converged_5()
     top = path[0, 1] + GROWTH_M
     if path[-1, 1] < top:
         raise LoadError(f"{run.folder}: the fracture grew less than {GROWTH_M:g} m")
@@ -32,7 +37,7 @@ def along_5(run: Run) -> Sample:
 
 def drift_5(run: Run) -> Sample:
     """x after 20 m of growth, Experiment 5."""
-    path, exact = grown(run), exact_path(5, CONVERGED_M, "corrected", GROWTH_M + 1.0)
+    path, exact = grown(run), converged_5()
     top = path[0, 1] + GROWTH_M
     return Sample.of(float(np.interp(top, path[:, 1], path[:, 0])), float(np.interp(top, exact[:, 1], exact[:, 0])),
                      reference_error=0.002)  # fmt: skip
@@ -40,8 +45,7 @@ def drift_5(run: Run) -> Sample:
 
 def cells_off_5(run: Run) -> Sample:
     """Largest distance from the path over its first 20 m, Experiment 5, relative to a cell."""
-    exact = exact_path(5, CONVERGED_M, "corrected", GROWTH_M + 1.0)
-    return Sample.of(farthest(grown(run), exact), 0.0, scale=float(run.scene["numerics"]["cell_m"]))
+    return Sample.of(farthest(grown(run), converged_5()), 0.0, scale=float(run.scene["numerics"]["cell_m"]))
 
 
 def first_turn(experiment: int) -> Callable[[Run], Sample]:
@@ -78,42 +82,35 @@ def block_level(variant: str) -> tuple[Level, ...]:
 _FLOOR = {"0.25 m": "4 mm are left, of either sign: the edges 200 m away alone shift the path by 2 mm"}
 _TAPER = "the increment shrinks with the cell, and with it the exact path that the run is held against"
 
-CASES: tuple[Case, ...] = (
-    Case(
-        "path_exp5",
-        "A crack in soft rock 5 m beside stiff rock drifts away from it: a stable path, increments of two cells.",
-        ANALYTIC / "path_exp5.toml",
-        "quasistatic",
-        levels(1.0, 0.5, 0.25, increment_cells=2.0),
-        (Quantity("first turn", "deg", first_turn(5)), Quantity("x along 20 m of path", "m", along_5, no_order_at=_FLOOR),
-         Quantity("drift after 20 m", "m", drift_5, no_order_at=_FLOOR)),
-        smoke=1,
+_ALONG = "x along 20 m of path"
+
+
+def case(experiment: int, ending: str, says: str, mechanics: str, own: tuple[Level, ...], *quantities: Quantity) -> Case:
+    """A case of Experiment 5 or 6; the coarsest level runs in ci/test."""
+    name = f"path_exp{experiment}"
+    return Case(name + ending, says, ANALYTIC / f"{name}.toml", mechanics, own, quantities, smoke=1)
+
+
+CASES = (
+    case(
+        5, "", "A crack in soft rock 5 m beside stiff rock drifts away from it: a stable path, increments of two cells.",
+        "quasistatic", levels(1.0, 0.5, 0.25, increment_cells=2.0),
+        Quantity("first turn", "deg", first_turn(5)), Quantity(_ALONG, "m", along_5, no_order_at=_FLOOR),
+        Quantity("drift after 20 m", "m", drift_5, no_order_at=_FLOOR),
     ),
-    Case(
-        "path_exp5_block",
-        "The same in the study's block of 80 m with its sides held, which the infinite plane knows nothing of.",
-        ANALYTIC / "path_exp5.toml",
-        "quasistatic",
-        block_level("block"),
-        (Quantity("x along 20 m of path", "m", along_5),),
-        smoke=1,
+    case(
+        5, "_block", "The same in the study's block of 80 m with its sides held, which the infinite plane knows nothing of.",
+        "quasistatic", block_level("block"), Quantity(_ALONG, "m", along_5),
     ),
-    Case(
-        "path_exp5_explicit",
+    case(
+        5, "_explicit",
         "The same with inertia: the tip runs at a good part of the Rayleigh speed, which equilibria know nothing of.",
-        ANALYTIC / "path_exp5.toml",
-        "explicit",
-        block_level("block_explicit"),
-        (Quantity("distance from the path, in cells", "m", cells_off_5),),
-        smoke=1,
+        "explicit", block_level("block_explicit"), Quantity("distance from the path, in cells", "m", cells_off_5),
     ),
-    Case(
-        "path_exp6",
+    case(
+        6, "",
         "A crack in stiff rock 5 m beside soft rock turns to it under a larger stress across: unstable, increments of three cells.",
-        ANALYTIC / "path_exp6.toml",
-        "quasistatic",
-        levels(1.0, 0.5, 0.25, increment_cells=3.0),
-        (Quantity("first turn", "deg", first_turn(6)), Quantity("rise until 1 m to the side", "m", rise_6, no_order=_TAPER)),
-        smoke=1,
+        "quasistatic", levels(1.0, 0.5, 0.25, increment_cells=3.0),
+        Quantity("first turn", "deg", first_turn(6)), Quantity("rise until 1 m to the side", "m", rise_6, no_order=_TAPER),
     ),
-)
+)  # fmt: skip
