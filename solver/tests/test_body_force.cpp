@@ -62,7 +62,7 @@ Scene pulled() {
 
 // Requires u = v_0 t + b t^2/2 to round-off under every transfer and shape, moving points or not, without stress, and
 // a ledger that closes with the work m b . u of the body force. Mutations that fail: no half step at the start, b
-// doubled, work left out of the ledger, b taken of x instead of X (next test too).
+// doubled, work left out of the ledger or by V for m.
 TEST_CASE("free fall is exact") {
   for (const auto shape : shapes) {
     for (const auto transfer : transfers) {
@@ -131,6 +131,7 @@ TEST_CASE("forces on nodes have the resultant and the moments of the body force"
 }
 
 // Requires that X and Y stay those of the start while points move: a force that is a step at X = 2 keeps its particles.
+// Mutations that fail: b taken of x instead of X, X and Y exchanged.
 TEST_CASE("formulas are of the places where particles start") {
   Scene scene = block(4, 4);
   scene.body.acceleration_m_s2 = Formulas{"0", "X < 2 ? 1 : 2"};

@@ -280,7 +280,7 @@ TEST_CASE("a failed place starts with what it carried") {
 }
 
 // Requires that a failed interface stays failed once the stress is gone, that only the columns under stress fail, and
-// that each failed point knows when.
+// that each failed point knows when. Mutations that fail: the time not kept, kept for all points.
 TEST_CASE("failure is for good and local") {
   Scene scene = block(12, 8);
   add_interface(scene, weak_law(0.5e6, 0.25e6), 4.0);
