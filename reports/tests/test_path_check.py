@@ -5,9 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from reports.charts.path_check_chart import draw_paths
-from reports.path_check import PathFigure, PathPanel, SolverPath, _finding, _row, section
+from reports import path_check
+from reports.path_check import PathCheck, PathFigure, PathPanel, SolverPath, _finding, _note, _row, _settled, section
 
 
 def a_path(experiment: int, off_m: float, off_same_m: float, cell_m: float = 0.5, block: str = "400 m, graded") -> SolverPath:
@@ -43,6 +45,20 @@ def test_chart_shows_every_run_and_the_interface_where_paths_come_near() -> None
         assert sum("cells" in label for label in labels) == 2
         assert sum("boundary" in label for label in labels) == (1 if dashed else 0)
         assert len(labels) == 1 + 2 + 1 + dashed  # converged, runs, interface, dashed and its entry
+
+
+def test_how_far_converged_paths_are_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """From the paths themselves: with half an increment off at each, halving moves them by half of the smaller one."""
+
+    def leaning(experiment: int, increment_m: float, turning: str, growth_m: float) -> np.ndarray:
+        return np.array([[0.5 * increment_m, 5.0], [0.5 * increment_m, 5.0 + growth_m]])
+
+    monkeypatch.setattr(path_check, "exact_path", leaning)
+    assert _settled() == (
+        "Experiment 5 moved by 0.25 m when increments were halved to 0.5 m; Experiment 6 moved by 0.062 m when increments were halved to"
+        " 0.125 m, and is as far from its limit (first order)"
+    )
+    assert "= 0.26 m (Cotterell" in _note(PathCheck(PathFigure("", ()), [], [], [])), "1.45^2/8 m"
 
 
 def test_nothing_is_said_where_nothing_was_run(tmp_path: Path) -> None:

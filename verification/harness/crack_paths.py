@@ -13,6 +13,8 @@ INTERFACE_M = 5.0  # to the right of the first crack
 FIRST_TIP_M = 5.0
 _STIFF: dict[str, float] = {"youngs_modulus_Pa": 10e9, "toughness_Pa_sqrt_m": 1.45e6}
 _SOFT: dict[str, float] = {"youngs_modulus_Pa": 5e9, "toughness_Pa_sqrt_m": 1.25e6}
+_ACROSS_PA = -2e6  # in-situ stress across the fracture
+_ALONG_PA = {5: -3e6, 6: -1e6}  # and along it
 
 
 @lru_cache(maxsize=None)
@@ -23,10 +25,10 @@ def _column(quantity: str, settings: str) -> Array:
 
 def _settings(experiment: int, increment_m: float, turning: str, growth_m: float) -> str:
     """The settings of crack_path for Experiment 5 or 6 (JSON)."""
-    crack, beyond, vertical_Pa = (_SOFT, _STIFF, 3e6) if experiment == 5 else (_STIFF, _SOFT, 1e6)
+    crack, beyond = (_SOFT, _STIFF) if experiment == 5 else (_STIFF, _SOFT)
     return json.dumps({
-        **crack, "beyond_youngs_modulus_Pa": beyond["youngs_modulus_Pa"], "interface_x_m": INTERFACE_M, "s_xx_Pa": -2e6,
-        "s_yy_Pa": -vertical_Pa, "half_length_m": FIRST_TIP_M, "increment_m": increment_m, "turning": turning,
+        **crack, "beyond_youngs_modulus_Pa": beyond["youngs_modulus_Pa"], "interface_x_m": INTERFACE_M, "s_xx_Pa": _ACROSS_PA,
+        "s_yy_Pa": _ALONG_PA[experiment], "half_length_m": FIRST_TIP_M, "increment_m": increment_m, "turning": turning,
         "stop_growth_m": growth_m, "stop_height_m": 1000.0,
     })  # fmt: skip
 
@@ -43,6 +45,12 @@ def exact_path(experiment: int, increment_m: float, turning: str, growth_m: floa
 def first_kink_deg(experiment: int) -> float:
     """Direction of maximum hoop stress of the first crack when it starts to grow, degrees anticlockwise from its own."""
     return float(_column("kink_deg", _settings(experiment, 1.0, "forward", 1.0))[0])
+
+
+def leaving_m() -> float:
+    """Length over which Experiment 6's path leaves its line, K_Ic^2/(8 T^2), m, with T the stress along the fracture above that
+    across it (Cotterell & Rice, Int. J. Fracture 16 (1980) 155)."""
+    return (_STIFF["toughness_Pa_sqrt_m"] / (_ALONG_PA[6] - _ACROSS_PA)) ** 2 / 8.0
 
 
 def grown(run: Run) -> Array:
