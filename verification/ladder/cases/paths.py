@@ -43,9 +43,18 @@ def drift_5(run: Run) -> Sample:
                      reference_error=0.002)  # fmt: skip
 
 
-def cells_off_5(run: Run) -> Sample:
-    """Largest distance from the path over its first 20 m, Experiment 5, relative to a cell."""
-    return Sample.of(farthest(grown(run), converged_5()), 0.0, scale=float(run.scene["numerics"]["cell_m"]))
+def same_6(run: Run) -> Array:
+    """The forward path of Experiment 6 in a run's own increments."""
+    return exact_path(6, run.increment_m, "forward", GROWTH_M)
+
+
+def cells_off(exact: Callable[[Run], Array], why: str = "") -> Quantity:
+    """Largest distance from a path over its first 20 m, relative to a cell."""
+
+    def sample(run: Run) -> Sample:
+        return Sample.of(farthest(grown(run), exact(run)), 0.0, scale=float(run.scene["numerics"]["cell_m"]))
+
+    return Quantity("distance from the path, in cells", "m", sample, why)
 
 
 def first_turn(experiment: int) -> Callable[[Run], Sample]:
@@ -62,7 +71,7 @@ def first_turn(experiment: int) -> Callable[[Run], Sample]:
 
 def rise_6(run: Run) -> Sample:
     """Height gained until the path is 1 m to the side of its first line, against the forward path of the run's own increment."""
-    exact = exact_path(6, run.increment_m, "forward", GROWTH_M)
+    exact = same_6(run)
     return Sample.of(rise_at(grown(run), TURN_M), rise_at(exact, TURN_M), reference_error=1e-3)
 
 
@@ -82,6 +91,7 @@ def block_level(variant: str) -> tuple[Level, ...]:
 _FLOOR = {"0.25 m": "4 mm are left, of either sign: the edges 200 m away alone shift the path by 2 mm"}
 _TAPER = "the increment shrinks with the cell, and with it the exact path that the run is held against"
 
+_CELLS = "the largest distance is counted in cells, which shrink as it does"
 _ALONG = "x along 20 m of path"
 
 
@@ -96,7 +106,7 @@ CASES = (
         5, "", "A crack in soft rock 5 m beside stiff rock drifts away from it: a stable path, increments of two cells.",
         "quasistatic", levels(1.0, 0.5, 0.25, increment_cells=2.0),
         Quantity("first turn", "deg", first_turn(5)), Quantity(_ALONG, "m", along_5, no_order_at=_FLOOR),
-        Quantity("drift after 20 m", "m", drift_5, no_order_at=_FLOOR),
+        Quantity("drift after 20 m", "m", drift_5, no_order_at=_FLOOR), cells_off(lambda _: converged_5(), _CELLS),
     ),
     case(
         5, "_block", "The same in the study's block of 80 m with its sides held, which the infinite plane knows nothing of.",
@@ -105,12 +115,13 @@ CASES = (
     case(
         5, "_explicit",
         "The same with inertia: the tip runs at a good part of the Rayleigh speed, which equilibria know nothing of.",
-        "explicit", block_level("block_explicit"), Quantity("distance from the path, in cells", "m", cells_off_5),
+        "explicit", block_level("block_explicit"), cells_off(lambda _: converged_5()),
     ),
     case(
         6, "",
         "A crack in stiff rock 5 m beside soft rock turns to it under a larger stress across: unstable, increments of three cells.",
         "quasistatic", levels(1.0, 0.5, 0.25, increment_cells=3.0),
         Quantity("first turn", "deg", first_turn(6)), Quantity("rise until 1 m to the side", "m", rise_6, no_order=_TAPER),
+        cells_off(same_6, _CELLS),
     ),
 )  # fmt: skip
