@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from reports.charts.budget_chart import draw_budget
 from reports.sections import Picture, Section, Table, put_figure
-from reports.words import listed, mechanics_name, plain
+from reports.words import experiment_name, listed, mechanics_name, plain
 
 METHOD = (
     "Each factor is varied alone from what the scene says. Numerical factors are the method's: cells, flow or time step, J ring, particles a"
@@ -75,12 +74,6 @@ def section(runs: Path, out: Path) -> Section | None:
     return Section(title="Error budgets of the experiments", intro=METHOD + failed, figures=figures, tables=tables)
 
 
-def _number_of(experiment: str) -> str:
-    """'Experiment 1' from a scene's name, else the name."""
-    found = re.match(r"exp(\d+)", experiment)
-    return f"Experiment {found.group(1)}" if found else plain(experiment)
-
-
 def _effect(tried: dict[str, Any], quantity: str) -> float | None:
     """An alternative's effect on a quantity, None where it says nothing."""
     found = tried["effects"].get(quantity)
@@ -140,7 +133,7 @@ def _finding(experiment: str, budgets: list[dict[str, Any]]) -> str:
     paths = [top for budget in budgets if (top := dominant(budget, "path_m")) is not None]
     way = max(paths, key=lambda item: item[1], default=None)
     aside = f"; the {way[0]} moves the path most, by up to {way[1]:.2g} m" if way else ""
-    return f"{_number_of(experiment)}: {', '.join(parts) if parts else 'no complete run'}{told}{aside}"
+    return f"{experiment_name(experiment)}: {', '.join(parts) if parts else 'no complete run'}{told}{aside}"
 
 
 def _picture(figure: BudgetFigure, experiment: str, out: Path) -> Picture:
@@ -155,7 +148,7 @@ def _picture(figure: BudgetFigure, experiment: str, out: Path) -> Picture:
 
 def budget_table(experiment: str, budget: dict[str, Any], settings: list[str]) -> Table:
     """One variant's budget."""
-    title = f"{_number_of(experiment)}, {plain(budget['variant'])}, {mechanics_name(budget['mechanics'])}"
+    title = f"{experiment_name(experiment)}, {plain(budget['variant'])}, {mechanics_name(budget['mechanics'])}"
     if budget["status"] != "completed":
         return Table(title=title, header=["base run"], rows=[[f"{budget['status']}: {budget['reason']}"]], marked=[0])
     quantities = budget["quantities"]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import statistics
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import Any
 
 from reports.charts.refinement_chart import draw_refinement
 from reports.sections import Picture, Section, Table, put_figure
-from reports.words import listed, mechanics_name, plain
+from reports.words import experiment_name, listed, mechanics_name, plain
 
 # Quantities that have a panel each, in this order; of the pressures at heights one in the middle and the last.
 _PANELS = ("start_Pa", "restart_1_Pa", "restart_2_Pa", "plateau_1_Pa", "deflection_m", "final_angle_deg", "path_to_next_m")
@@ -96,12 +95,6 @@ def _verb(count: int) -> str:
     return "has" if count == 1 else "have"
 
 
-def _number_of(experiment: str) -> str:
-    """'Experiment 1' from a scene's name, else the name."""
-    found = re.match(r"exp(\d+)", experiment)
-    return f"Experiment {found.group(1)}" if found else plain(experiment)
-
-
 def refinement_figure(experiment: str, studies: list[dict[str, Any]]) -> RefinementFigure:
     """What is drawn of the studies of an experiment in one mechanics."""
     known = {row["name"] for study in studies for row in study["rows"] if sum(value is not None for value in row["values"]) > 1}
@@ -138,7 +131,7 @@ def _finding(experiment: str, studies: list[dict[str, Any]]) -> str:
     rows = [(study["variant"], row) for study in studies for row in judged(study)]
     clean = sum(row["estimate"]["kind"] == "clean" for _, row in rows)
     still = sum(row["estimate"]["kind"] in ("still", "settled") for _, row in rows)
-    where = f"{_number_of(experiment)}, {mechanics_name(studies[0]['mechanics'])}"
+    where = f"{experiment_name(experiment)}, {mechanics_name(studies[0]['mechanics'])}"
     head = f"{where}: of {len(rows)} numbers {clean} {_verb(clean)} a limit and {still} stand{'s' * (still == 1)} still"
     failed = [f"{plain(study['variant'])} at {level['cell_m']:g} m"
               for study in studies for level in study["levels"] if level["status"] != "completed"]  # fmt: skip
@@ -177,7 +170,7 @@ def refinement_table(experiment: str, studies: list[dict[str, Any]], settings: l
             rows.append([plain(study["variant"]), label, *(_value(value, row["unit"]) for value in values), orders or "–",
                          _limit_words(row), "; ".join(row["notes"])])  # fmt: skip
     increments = listed(sorted({f"{study['increment_m']:g} m" for study in studies}))
-    title = f"{_number_of(experiment)}, {mechanics_name(studies[0]['mechanics'])}, increment {increments}"
+    title = f"{experiment_name(experiment)}, {mechanics_name(studies[0]['mechanics'])}, increment {increments}"
     header = ["variant", "number", *(f"{size:g} m" for size in sizes), "orders, coarse to fine", "limit, or why there is none", "notes"]
     return Table(title=title, header=header, rows=rows, marked=marked, note=_failures(studies, settings))
 

@@ -23,7 +23,7 @@ import jinja2
 from reports.charts.ladder_chart import draw_convergence, draw_cost
 from reports.ladder import Ladder, Row, case_words, convergence_figure, convergence_words, cost_figure, curves_of, load_ladder
 from reports.sections import Picture, Section, put_figure
-from reports.words import number, plain, share
+from reports.words import number, plain, scientific, share
 
 # Modules of reports/ that fill parts of the page, in its order; one that is not there is left out.
 PARTS: tuple[str, ...] = ("path_check", "refinement", "budget")
@@ -276,9 +276,7 @@ def relative(error: float, signed: bool = False) -> str:
         return "0"
     if abs(error) >= 1e-6:
         return sign + share(error)
-    mantissa, exponent = f"{error:.1e}".split("e")
-    raised = str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
-    return f"{sign}{mantissa}×10{raised}".replace("-", "−")
+    return sign + scientific(error, 2)
 
 
 def _value(value: float) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -33,14 +34,14 @@ def number(value: float, digits: int = 3) -> str:
     if abs(value) < 1e-13:  # round-off of any quantity shown here
         return "0"
     if abs(value) < 1e4 and abs(value - float(f"{value:.{digits}g}")) < 1e-9 * abs(value):
-        return f"{value:.{digits}g}".replace("-", "−") if abs(value) >= 1e-3 else _scientific(value, digits)
+        return f"{value:.{digits}g}".replace("-", "−") if abs(value) >= 1e-3 else scientific(value, digits)
     size = math.floor(math.log10(abs(value)))
     if size < -3 or size > 6:
-        return _scientific(value, digits)
+        return scientific(value, digits)
     return f"{value:,.{max(0, digits - 1 - size)}f}".replace("-", "−").replace(",", "\u202f")
 
 
-def _scientific(value: float, digits: int) -> str:
+def scientific(value: float, digits: int) -> str:
     """A number as mantissa and power of ten."""
     mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
     return f"{mantissa}×10{_raised(int(exponent))}".replace("-", "−")
@@ -71,6 +72,12 @@ def listed(items: Sequence[str]) -> str:
     if len(items) < 2:
         return "".join(items)
     return ", ".join(items[:-1]) + " and " + items[-1]
+
+
+def experiment_name(experiment: str) -> str:
+    """'Experiment 1' from a scene's name, else the name."""
+    found = re.match(r"exp(\d+)", experiment)
+    return f"Experiment {found.group(1)}" if found else plain(experiment)
 
 
 def plain(name: str) -> str:

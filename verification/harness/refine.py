@@ -13,6 +13,7 @@ import argparse
 import json
 import math
 import sys
+import tomllib
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
@@ -87,8 +88,6 @@ def scene_of(name: str) -> Path:
 
 def nested(setting: str) -> dict[str, Any]:
     """A setting key.path=value of the command line as nested tables; a value that is no TOML is a word."""
-    import tomllib
-
     key, _, text = setting.partition("=")
     try:
         value = tomllib.loads(f"value = {text}")["value"]
