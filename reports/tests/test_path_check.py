@@ -51,6 +51,7 @@ def test_how_far_converged_paths_are_is_counted(monkeypatch: pytest.MonkeyPatch)
     """From the paths themselves: with half an increment off at each, halving moves them by half of the smaller one."""
 
     def leaning(experiment: int, increment_m: float, turning: str, growth_m: float) -> np.ndarray:
+        """A straight path, half an increment to the side."""
         return np.array([[0.5 * increment_m, 5.0], [0.5 * increment_m, 5.0 + growth_m]])
 
     monkeypatch.setattr(path_check, "exact_path", leaning)

@@ -10,7 +10,6 @@ REPRODUCED = "reproduced"
 NOT_REPRODUCED = "not reproduced"
 ONLY_UNDER_A_VARIANT = "only under a variant"
 NOT_EVALUATED = "not evaluated"
-VERDICTS = (REPRODUCED, ONLY_UNDER_A_VARIANT, NOT_REPRODUCED, NOT_EVALUATED)
 
 # An arrest or plateau that rests on J where an interface is too near for it to be trusted, and what becomes of the flag
 # where a quasi-static run decides the same case by energy.
