@@ -38,3 +38,8 @@ def test_paths_of_experiments_5_and_6(case: str, level: str) -> None:
     """
     assert paths.GROWTH_M >= 20.0
     assert error(gates.read("paths"), case, CELLS_OFF, level) <= 1.0
+
+
+def test_history_is_written_by_the_rock_s_own_wave() -> None:
+    """The speed that output times are made of is that of the reference."""
+    assert freund.speed("c_P") == pytest.approx(freund.C_P_M_S, rel=1e-6)

@@ -16,6 +16,7 @@ RETURN_M = 60.0  # the way of a P wave from the other tip, and to the top and ba
 SETTLED_CELLS = 10.0  # c_P t in cells from which on K_I is held against the exact one
 SETTLED_M = 20.0  # the same for all sizes, which an order needs: 10 of the coarsest cells
 COURANT = 0.5
+C_P_M_S = 2108.185  # of the rock below; levels are made before there is a strata-reference to ask
 ROCK = {"youngs_modulus_Pa": 10e9, "poisson_ratio": 0.2, "density_kg_m3": 2500.0}
 
 
@@ -101,7 +102,7 @@ def levels(cells_m: tuple[float, ...], *further: str) -> tuple[Level, ...]:
     """Levels that write history in each second step, with further settings."""
     found = []
     for h in cells_m:
-        every = 1.98 * COURANT * h / 2108.185  # a little less than two steps
+        every = 1.98 * COURANT * h / C_P_M_S  # a little less than two steps
         settings = (f"numerics.cell_m={h!r}", f"numerics.courant={COURANT}", f"output.fields_every_s={every:.6g}")
         found.append(Level(f"{h:g} m", h, (*settings, *further)))
     return tuple(found)
