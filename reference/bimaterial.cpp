@@ -66,25 +66,24 @@ Eigen::Matrix2d BondedCrack::kernel(const Geometry& geometry, const BondedMirror
   return k;
 }
 
-BondedCrack::BondedCrack(const Geometry& geometry, const Rock& rock_1, const Rock& rock_2, const Function& p, int n)
+BondedCrack::BondedCrack(const Geometry& geometry, const Rock& rock_1, const Rock& rock_2, const LineSolver& line)
     : geometry_(checked(geometry)),
       rock_1_(rock_1),
       rock_2_(rock_2),
       mirror_(bonded_mirror(rock_1, rock_2)),
-      line_(
-          geometry.half_length, rock_1.E_prime(),
-          [this](double t, double x) { return kernel(geometry_, mirror_, t, x); },
-          [&p](double x) { return Eigen::Vector2d(p(x), 0); }, n) {}
+      line_(line([this](double t, double x) { return kernel(geometry_, mirror_, t, x); })) {}
+
+BondedCrack::BondedCrack(const Geometry& geometry, const Rock& rock_1, const Rock& rock_2, const Function& p, int n)
+    : BondedCrack(geometry, rock_1, rock_2, [&](const CrackKernel& kernel) {
+        const auto load = [&p](double x) { return Eigen::Vector2d(p(x), 0); };
+        return CrackLine(geometry.half_length, rock_1.E_prime(), kernel, CrackLoad(load), n);
+      }) {}
 
 BondedCrack::BondedCrack(const Geometry& geometry, const Rock& rock_1, const Rock& rock_2, const PressureKnots& p,
                          int n)
-    : geometry_(checked(geometry)),
-      rock_1_(rock_1),
-      rock_2_(rock_2),
-      mirror_(bonded_mirror(rock_1, rock_2)),
-      line_(
-          geometry.half_length, rock_1.E_prime(),
-          [this](double t, double x) { return kernel(geometry_, mirror_, t, x); }, p, n) {}
+    : BondedCrack(geometry, rock_1, rock_2, [&](const CrackKernel& kernel) {
+        return CrackLine(geometry.half_length, rock_1.E_prime(), kernel, p, n);
+      }) {}
 
 BondedCrack::Field BondedCrack::field(double x, double y) const {
   return evaluate({x, y}, y >= 0);

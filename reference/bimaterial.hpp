@@ -11,6 +11,7 @@
 #pragma once
 
 #include <complex>
+#include <functional>
 
 #include "crack_line.hpp"
 #include "quadrature.hpp"
@@ -57,6 +58,8 @@ class BondedCrack {
   static Eigen::Matrix2d kernel(const Geometry& geometry, const BondedMirror& mirror, double t, double x);
 
  private:
+  using LineSolver = std::function<CrackLine(const CrackKernel&)>;
+  BondedCrack(const Geometry& geometry, const Rock& rock_1, const Rock& rock_2, const LineSolver& line);
   Field evaluate(std::complex<double> z, bool in_rock_1) const;
 
   Geometry geometry_;

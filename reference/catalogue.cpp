@@ -168,7 +168,7 @@ Inputs read_inputs(const Entry& entry, const std::vector<std::string>& settings)
       complain("set twice.");
     } else {
       try {
-        inputs.set(key, read_value(*input, setting.substr(equals + 1)));
+        inputs.give(key, read_value(*input, setting.substr(equals + 1)));
       } catch (const std::invalid_argument& problem) {
         complain(problem.what());
       }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
@@ -39,9 +40,16 @@ class Inputs {
   std::vector<double> numbers(const std::string& key) const;
   const InputValue& operator[](const std::string& key) const { return values_.at(key); }
   void set(const std::string& key, InputValue value) { values_[key] = std::move(value); }
+  // As set, for what is asked for rather than a default; and whether `key` was.
+  void give(const std::string& key, InputValue value) {
+    set(key, std::move(value));
+    given_.insert(key);
+  }
+  bool given(const std::string& key) const { return given_.contains(key); }
 
  private:
   std::map<std::string, InputValue> values_;
+  std::set<std::string> given_;
 };
 
 struct Value {

@@ -107,18 +107,25 @@ Entry bonded_tip_exponent_entry() {
           }};
 }
 
+// Throws std::invalid_argument for a stiffness that is given but is not that of the law.
 SpringInterface interface_of(const Inputs& inputs) {
-  const double infinite = std::numeric_limits<double>::infinity();
-  if (inputs.word("law") == "free") return {0, 0};
-  if (inputs.word("law") == "frictionless") return {infinite, 0};
-  return {inputs.number("normal_stiffness_Pa_m"), inputs.number("shear_stiffness_Pa_m")};
+  const std::string& law = inputs.word("law");
+  const double normal = inputs.number("normal_stiffness_Pa_m"), shear = inputs.number("shear_stiffness_Pa_m");
+  if (law == "spring") return {normal, shear};
+  const bool closed = law == "frictionless";
+  for (const auto& [key, meant] :
+       {std::pair{"normal_stiffness_Pa_m", closed ? "an infinite one" : "0"}, std::pair{"shear_stiffness_Pa_m", "0"}})
+    if (inputs.given(key) && (inputs.number(key) != 0 || *meant != '0'))
+      throw std::invalid_argument(std::string(key) + " is given, but law=" + law + " means " + meant +
+                                  ". Leave it out, or set law=spring.");
+  return {closed ? std::numeric_limits<double>::infinity() : 0, 0};
 }
 
 Entry spring_interface() {
   std::vector<Input> inputs = joined(rock_inputs("", 10e9), crack_inputs("from the interface to the near tip", 1));
   inputs.push_back(word_input("law", "springs; closed without friction; or free", {"spring", "frictionless", "free"}));
-  inputs.push_back(number_input("normal_stiffness_Pa_m", "D_n of the springs", 0.5e6, 0, 1e30));
-  inputs.push_back(number_input("shear_stiffness_Pa_m", "D_t of the springs", 0.5e6, 0, 1e30));
+  inputs.push_back(number_input("normal_stiffness_Pa_m", "D_n of the springs; not with another law", 0.5e6, 0, 1e30));
+  inputs.push_back(number_input("shear_stiffness_Pa_m", "D_t of the springs; not with another law", 0.5e6, 0, 1e30));
   return {
       "spring_interface",
       "pressurised crack normal to a soft, frictionless or free interface in one rock: K at the near and the far tip",
@@ -143,8 +150,7 @@ Entry coulomb_first_slip() {
            positive_input("toughness_Pa_sqrt_m", "K_Ic", 1.45e6)},
           "the tip's own field, and Westergaard's function of the finite crack; own evaluation",
           "one rock, interface without cohesion and unslipped before; ratio: distance << a; distance_at_K_Ic_m: where "
-          "a tip "
-          "at K_Ic makes the interface slip",
+          "a tip at K_Ic makes the interface slip",
           [](const Inputs& in) {
             const double s_n = in.number("compression_Pa");
             const double a = in.number("half_length_m");

@@ -34,15 +34,12 @@ Eigen::VectorXd sine_moments(double a, const PressureKnots& p, int n) {
   const auto cosine_integral = [](int j, double from, double to) {  // of cos(j th)
     return j == 0 ? to - from : (std::sin(j * to) - std::sin(j * from)) / j;
   };
-  for (std::size_t i = 0; i + 1 < p.x.size(); ++i) {
-    const double low = std::max(p.x[i], -a), high = std::min(p.x[i + 1], a);
-    if (!(low < high)) continue;
-    const double slope = (p.p[i + 1] - p.p[i]) / (p.x[i + 1] - p.x[i]);
-    const double from = std::acos(high / a), to = std::acos(low / a);
+  for (const PressureSegment& segment : p.segments(a)) {
+    const double from = std::acos(segment.to / a), to = std::acos(segment.from / a);
     for (int m = 1; m < n; ++m) {
       const double constant = 0.5 * (cosine_integral(m - 1, from, to) - cosine_integral(m + 1, from, to));
       const double linear = 0.25 * a * (cosine_integral(std::abs(m - 2), from, to) - cosine_integral(m + 2, from, to));
-      moments(m) += (p.p[i] - slope * p.x[i]) * constant + slope * linear;
+      moments(m) += segment.at_0 * constant + segment.slope * linear;
     }
   }
   return moments;

@@ -62,6 +62,22 @@ double PressureKnots::operator()(double at) const {
   return sides == 0 ? 0.0 : sum / sides;
 }
 
+std::vector<PressureSegment> PressureKnots::segments(double a) const {
+  std::vector<PressureSegment> all;
+  for (std::size_t i = 0; i + 1 < x.size(); ++i) {
+    const double from = std::max(x[i], -a), to = std::min(x[i + 1], a);
+    if (!(from < to)) continue;
+    const double width = x[i + 1] - x[i], rise = p[i + 1] - p[i];
+    if (width < kShortest * a) {
+      all.push_back({from, to, p[i] + rise * (0.5 * (from - x[i] + to - x[i]) / width), 0.0});
+    } else {
+      const double slope = rise / width;
+      all.push_back({from, to, p[i] - slope * x[i], slope});
+    }
+  }
+  return all;
+}
+
 PressurisedCrack::PressurisedCrack(double half_length, double E_prime, Function p, std::vector<double> kinks)
     : a_(half_length), E_prime_(E_prime), p_(std::move(p)) {
   check_crack(half_length, E_prime);
@@ -108,26 +124,16 @@ LinearlyPressurisedCrack::LinearlyPressurisedCrack(double half_length, double E_
     : a_(half_length), E_prime_(E_prime) {
   check_crack(half_length, E_prime);
   knots.validate();
-  for (std::size_t i = 0; i + 1 < knots.x.size(); ++i) {
-    const double from = std::max(knots.x[i], -a_);
-    const double to = std::min(knots.x[i + 1], a_);
-    if (!(from < to)) continue;
-    const double slope = (knots.p[i + 1] - knots.p[i]) / (knots.x[i + 1] - knots.x[i]);
-    // Over so short a piece the mean is better than a slope that cancels.
-    if (knots.x[i + 1] - knots.x[i] < kShortest * a_)
-      segments_.push_back({from, to, 0.5 * (knots.p[i] + knots.p[i + 1]), 0.0});
-    else
-      segments_.push_back({from, to, knots.p[i] - slope * knots.x[i], slope});
-  }
+  segments_ = knots.segments(a_);
 }
 
 TipIntensities LinearlyPressurisedCrack::K_I() const {
   TipIntensities K;
-  for (const Segment& segment : segments_) {
+  for (const PressureSegment& segment : segments_) {
     // int (c0 + c1 a sin(theta)) (1 + sign sin(theta)) d(theta), split into its even and odd part.
-    const auto even = [&](double theta) { return segment.p_mid * theta - segment.slope * a_ * std::cos(theta); };
+    const auto even = [&](double theta) { return segment.at_0 * theta - segment.slope * a_ * std::cos(theta); };
     const auto odd = [&](double theta) {
-      return -segment.p_mid * std::cos(theta) + segment.slope * a_ * (0.5 * theta - 0.25 * std::sin(2 * theta));
+      return -segment.at_0 * std::cos(theta) + segment.slope * a_ * (0.5 * theta - 0.25 * std::sin(2 * theta));
     };
     const double from = std::asin(segment.from / a_);
     const double to = std::asin(segment.to / a_);
@@ -142,20 +148,20 @@ TipIntensities LinearlyPressurisedCrack::K_I() const {
 double LinearlyPressurisedCrack::opening(double x) const {
   if (std::abs(x) >= a_) return 0.0;
   double sum = 0.0;
-  for (const Segment& segment : segments_) {
+  for (const PressureSegment& segment : segments_) {
     const KernelMoments to = kernel_moments(segment.to, x, a_);
     const KernelMoments from = kernel_moments(segment.from, x, a_);
-    sum += (segment.p_mid + segment.slope * x) * (to.zeroth - from.zeroth) + segment.slope * (to.first - from.first);
+    sum += (segment.at_0 + segment.slope * x) * (to.zeroth - from.zeroth) + segment.slope * (to.first - from.first);
   }
   return 4 / (pi * E_prime_) * sum;
 }
 
 double LinearlyPressurisedCrack::volume() const {
   double sum = 0.0;
-  for (const Segment& segment : segments_) {
+  for (const PressureSegment& segment : segments_) {
     const auto f = [&](double theta) {
       const double c = std::cos(theta);
-      return segment.p_mid * (0.5 * theta + 0.25 * std::sin(2 * theta)) - segment.slope * a_ * c * c * c / 3;
+      return segment.at_0 * (0.5 * theta + 0.25 * std::sin(2 * theta)) - segment.slope * a_ * c * c * c / 3;
     };
     sum += f(std::asin(segment.to / a_)) - f(std::asin(segment.from / a_));
   }
@@ -164,10 +170,10 @@ double LinearlyPressurisedCrack::volume() const {
 
 double LinearlyPressurisedCrack::energy() const {
   double sum = 0.0;
-  for (const Segment& segment : segments_) {
+  for (const PressureSegment& segment : segments_) {
     const auto f = [&](double theta) {
       const double x = a_ * std::sin(theta);
-      return 0.5 * (segment.p_mid + segment.slope * x) * opening(x) * a_ * std::cos(theta);
+      return 0.5 * (segment.at_0 + segment.slope * x) * opening(x) * a_ * std::cos(theta);
     };
     // Round-off of a steep profile is 1e-8 of the opening (see profile_error).
     sum += integrate(f, std::asin(segment.from / a_), std::asin(segment.to / a_), {}, 1e-11).value;
@@ -176,16 +182,21 @@ double LinearlyPressurisedCrack::energy() const {
 }
 
 double profile_error(const PressureKnots& knots, double half_length) {
-  double largest = 0.0, steepest = 0.0, shortest = half_length;
+  double largest = 0.0, steepest = 0.0, error = 1e-12;
   for (std::size_t i = 0; i < knots.x.size(); ++i) {
     largest = std::max(largest, std::abs(knots.p[i]));
     if (i == 0 || knots.x[i] == knots.x[i - 1] || knots.p[i] == knots.p[i - 1]) continue;
-    const double width = knots.x[i] - knots.x[i - 1];
-    shortest = std::min(shortest, width);
-    if (width >= kShortest * half_length) steepest = std::max(steepest, std::abs(knots.p[i] - knots.p[i - 1]) / width);
+    const double from = knots.x[i - 1], to = knots.x[i];
+    if (to <= -half_length || from >= half_length) continue;
+    if (to - from >= kShortest * half_length) {
+      steepest = std::max(steepest, std::abs(knots.p[i] - knots.p[i - 1]) / (to - from));
+      continue;
+    }
+    const double gap = std::max(0.0, half_length - std::max(std::abs(from), std::abs(to)));
+    const double near_tip = gap > to - from ? std::pow((to - from) / gap, 1.5) : 1.0;
+    error = std::max({error, kShortest, 0.2 * std::sqrt((to - from) / half_length) * near_tip});
   }
-  const double rise = shortest < kShortest * half_length ? kShortest : 0.0;
-  return largest == 0.0 ? 1e-12 : std::max({1e-12, 1e-15 * steepest * half_length / largest, rise});
+  return largest == 0.0 ? 1e-12 : std::max(error, 1e-15 * steepest * half_length / largest);
 }
 
 double energy_release_rate(double K_I, double E_prime) {

@@ -20,6 +20,13 @@ struct TipIntensities {
   double plus = 0.0;
 };
 
+// One line of a piecewise-linear pressure, over from < x < to, m: p = at_0 + slope x, Pa.
+struct PressureSegment {
+  double from, to;
+  double at_0;   // Pa, at x = 0 on the segment's line extended
+  double slope;  // Pa/m
+};
+
 // Pressure given by values at knots, linear between them and zero outside: x_m ascending (m), value Pa, same length.
 // Two knots at the same place make a jump.
 struct PressureKnots {
@@ -30,6 +37,9 @@ struct PressureKnots {
   void validate() const;
   // Pressure at x (m), Pa; at a jump the mean of its two sides.
   double operator()(double at) const;
+  // The lines between the knots, jumps left out, cut off at |x| = a (m). Over less than 1e-8 a the pressure is taken at
+  // its mean: the line's two terms would cancel there.
+  std::vector<PressureSegment> segments(double a) const;
 };
 
 // A crack in an infinite plane under any p(x), by quadrature.
@@ -67,18 +77,14 @@ class LinearlyPressurisedCrack {
   double energy() const;
 
  private:
-  struct Segment {
-    double from, to;  // m
-    double p_mid;     // Pa, at x = 0 on the segment's line extended
-    double slope;     // Pa/m
-  };
   double a_;
   double E_prime_;
-  std::vector<Segment> segments_;
+  std::vector<PressureSegment> segments_;
 };
 
-// Relative round-off of the closed form for the opening: 1e-12, more where p changes steeply, by |dp/dx| a/p_max 1e-15;
-// a rise over less than 1e-8 a is taken at its mean. a in m.
+// Relative error of the closed form for the opening and K: round-off 1e-12, more where p changes steeply, by
+// |dp/dx| a/p_max 1e-15; for a rise over w < 1e-8 a, taken at its mean, 1e-8, or near a tip, at distance g from it,
+// 0.2 sqrt(w/a) min(1, (w/g)^(3/2)) (K's weight sqrt(2a/u) over the rise against its mean). a in m.
 double profile_error(const PressureKnots& knots, double half_length);
 
 // Energy release rate J = K_I^2/E', J/m^2 (Irwin 1957), for K_I in Pa sqrt(m) and E' in Pa.

@@ -118,6 +118,21 @@ TEST_CASE("a kink or jump of the pressure costs no accuracy") {
   }
 }
 
+TEST_CASE("a rise as steep as may be is the jump") {
+  const BondedCrack::Geometry geometry{5, 6.5, 1.1};
+  const BondedCrack jump(geometry, stiff, soft, PressureKnots{{-5, -3, -3, 5}, {1e6, 1e6, 0.2e6, 0.2e6}});
+  for (double width : {1e-6, 1e-7, 1e-9, 1e-11, 1e-12, 1e-14}) {
+    const PressureKnots knots{{-5, -3 - width / 2, -3 + width / 2, 5}, {1e6, 1e6, 0.2e6, 0.2e6}};
+    const BondedCrack steep(geometry, stiff, soft, knots);
+    const double error = profile_error(knots, 5);
+    CHECK(error < 1e-6);
+    CHECK(std::abs(steep.line().at_plus().K_I / jump.line().at_plus().K_I - 1) < error);
+    CHECK(std::abs(steep.line().at_minus().K_I / jump.line().at_minus().K_I - 1) < error);
+    CHECK(std::abs(steep.line().at_minus().K_II - jump.line().at_minus().K_II) < error * unit);
+    CHECK(std::abs(steep.line().volume() / jump.line().volume() - 1) < error);
+  }
+}
+
 TEST_CASE("the crack faces carry the pressure at points between those that were solved for") {
   for (const auto& [h, inclination] : {std::pair{0.5, 0.0}, std::pair{7.0, 0.9}, std::pair{5.1, pi / 2}})
     for (const Rock& beyond : {nothing, soft, Rock{100e9, 0.3}}) {

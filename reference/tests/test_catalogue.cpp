@@ -70,7 +70,13 @@ TEST_CASE("settings reach the solution") {
   CHECK(value_of(solve("spring_interface", {"law=free"}), "F_near") == Approx(1.4637).epsilon(1e-4));
   CHECK(value_of(solve("spring_interface", {"normal_stiffness_Pa_m=2083333333", "shear_stiffness_Pa_m=2083333333"}),
                  "F_near") == Approx(1.0704).epsilon(1e-4));
-  CHECK(value_of(solve("coulomb_first_slip"), "ratio") == Approx(0.8122).epsilon(1e-4));
+  const Answer slip = solve("coulomb_first_slip");
+  CHECK(value_of(slip, "ratio") == Approx(0.8122).epsilon(1e-4));
+  CHECK(value_of(slip, "K_I") == Approx(value_of(slip, "net_pressure_Pa") * std::sqrt(std::acos(-1.0) * 5)));
+  // A tip at a small K_Ic makes the interface slip from that distance, which the finite crack reaches there as well.
+  const double d = value_of(solve("coulomb_first_slip", {"toughness_Pa_sqrt_m=1.45e4"}), "distance_at_K_Ic_m");
+  CHECK(value_of(solve("coulomb_first_slip", {"distance_m=" + std::to_string(d * 1e6) + "e-6"}), "K_I") ==
+        Approx(1.45e4).epsilon(0.02));
   CHECK(value_of(solve("layered_wave", {"thickness_m=40", "youngs_modulus_Pa=10e9", "lateral=free", "width_m=1"}),
                  "u_m") !=
         value_of(solve("layered_wave", {"thickness_m=40", "youngs_modulus_Pa=10e9", "lateral=free"}), "u_m"));
@@ -143,6 +149,25 @@ TEST_CASE("bad input is refused, every problem on a line") {
   CHECK_THAT(refusal("channel_no_flux", {"viscosity_Pa_s=nan"}), Contains("not a number"));
 }
 
+TEST_CASE("a stiffness that the interface's law does not have is refused") {
+  for (const char* law : {"law=free", "law=frictionless"}) {
+    CHECK_THAT(refusal("spring_interface", {law, "normal_stiffness_Pa_m=1e9"}),
+               Contains("normal_stiffness_Pa_m is given, but " + std::string(law) + " means"));
+    CHECK_THAT(refusal("spring_interface", {"shear_stiffness_Pa_m=0.5e6", law}),
+               Contains("shear_stiffness_Pa_m is given, but " + std::string(law) + " means 0. Leave it out"));
+    CHECK(refusal("spring_interface", {law, "shear_stiffness_Pa_m=0"}) == "accepted");
+  }
+  CHECK_THAT(refusal("spring_interface", {"law=frictionless", "normal_stiffness_Pa_m=0"}), Contains("an infinite one"));
+  const auto F = [](const std::vector<std::string>& settings) {
+    return value_of(solve("spring_interface", settings), "F_near");
+  };
+  CHECK(F({"law=frictionless"}) == Approx(1.3659).epsilon(2e-3));
+  CHECK(F({"law=free", "normal_stiffness_Pa_m=0", "shear_stiffness_Pa_m=0"}) == F({"law=free"}));
+  // Each stiffness is its own direction's: all but closed, and all but fixed in shear.
+  CHECK(F({"normal_stiffness_Pa_m=1e20", "shear_stiffness_Pa_m=0"}) == Approx(F({"law=frictionless"})).epsilon(1e-6));
+  CHECK(F({"normal_stiffness_Pa_m=0", "shear_stiffness_Pa_m=1e20"}) != Approx(F({"law=frictionless"})).epsilon(1e-3));
+}
+
 TEST_CASE("a list may come from a file, one number a line") {
   const auto folder = std::filesystem::temp_directory_path() / "strata_reference_lists";
   std::filesystem::create_directories(folder);
@@ -155,7 +180,7 @@ TEST_CASE("a list may come from a file, one number a line") {
       if (value.name == "opening_m") return std::get<std::vector<double>>(value.value);
     return std::vector<double>{};
   };
-  const std::string three = file("three.csv", "# x in m\n0\n\n  3.0 # off the middle\r\n-4e0");
+  const std::string three = file("three.csv", "# x in m\n0\r\n\r\n\n  3.0 # off the middle\r\n-4e0");
   const auto w = opening(solve("pressurised_crack", {"x_m=@" + three}));
   REQUIRE(w.size() == 3);
   CHECK(w == opening(solve("pressurised_crack", {"x_m=0,3,-4"})));
@@ -167,6 +192,10 @@ TEST_CASE("a list may come from a file, one number a line") {
   const std::string bad = refusal("pressurised_crack", {"x_m=@" + file("bad.csv", "1\n1,2\nx\n")});
   CHECK_THAT(bad, Contains("bad.csv:2: \"1,2\" is not a number."));
   CHECK_THAT(bad, Contains("bad.csv:3: \"x\" is not a number."));
+  const std::string seven = refusal("pressurised_crack", {"x_m=@" + file("seven.csv", "a\nb\nc\nd\ne\nf\ng\n")});
+  CHECK_THAT(seven, Contains("seven.csv:5: \"e\"") && !Contains("seven.csv:6") && Contains("\n  and 2 lines more."));
+  CHECK_THAT(refusal("pressurised_crack", {"x_m=@" + file("one_bad.csv", "1\nx\n")}), !Contains("more."));
+  CHECK_THAT(refusal("kgd", {"xi=@" + file("xi.csv", "0.5\n1\n")}), Contains("xi.csv:2: 1 is outside (-1, 1)"));
   CHECK_THAT(refusal("pressurised_crack", {"x_m=@" + (folder / "none.csv").string()}), Contains("cannot read"));
   CHECK_THAT(refusal("pressurised_crack", {"x_m=@" + folder.string()}), Contains("cannot read"));
   CHECK_THAT(refusal("pressurised_crack", {"x_m=@" + file("empty.csv", "# nothing\n")}), Contains("holds no number"));

@@ -1,4 +1,6 @@
 // The ramped channel: values, the two forms of the series against each other, limits, and the equation itself.
+#include <gsl/gsl_sf_legendre.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -130,6 +132,16 @@ TEST_CASE("elliptic opening at short times") {
   };
   CHECK(scaled(0.999e-7) == near(scaled(1.001e-7), 1e-9));
   CHECK(scaled(1e-6) == near(4 * i2erfc(0.5), 1e-5));
+  // Beyond it Legendre's series, as far as it reaches, with functions of GSL: P/(r t) = 1 - (ln(1 + xi) - sum)/tau,
+  // sum over odd l of (2l+1) P_(l-1)(0) P_l(xi) e^(-l(l+1) tau)/(l (l+1)^2).
+  for (double at : {1e-5, 1e-4, 1e-3, 1e-2}) {
+    const double xi = std::sin(std::sqrt(at));
+    double sum = 0;
+    for (int l = 1; l * (l + 1.0) * at < 40; l += 2)
+      sum += (2 * l + 1) * gsl_sf_legendre_Pl(l - 1, 0) * gsl_sf_legendre_Pl(l, xi) * std::exp(-l * (l + 1.0) * at) /
+             (l * (l + 1.0) * (l + 1.0));
+    CHECK(scaled(at) == near(1 - (std::log1p(xi) - sum) / at, 1e-14 / at + 1e-11));
+  }
 }
 
 TEST_CASE("arguments out of range are refused") {

@@ -64,7 +64,6 @@ TEST_CASE("closed form and quadrature agree for an asymmetric profile with a jum
 }
 
 TEST_CASE("a steep rise of the pressure is as exact as it says") {
-  // Not down to 0: g++ 12.2 with AVX-512 turns a constant list {p, p, 0, 0} into {p, p, p, p}.
   constexpr double low = 0.1 * p0;
   const LinearlyPressurisedCrack jump(a, stiff.E_prime(), {{-a, 0.7, 0.7, a}, {p0, p0, low, low}});
   for (double width : {1e-3, 1e-5, 1e-7, 1e-9, 1e-12}) {
@@ -80,6 +79,29 @@ TEST_CASE("a steep rise of the pressure is as exact as it says") {
   const PressureKnots rise{{-a, 0, 1e-6, a}, {p0, p0, low, low}};
   REQUIRE(rise.p[2] == low);
   CHECK(profile_error(rise, a) > 1e-9);
+}
+
+TEST_CASE("a steep fall at the tip is as exact as it says") {
+  // K's weight over the fall, sqrt(2a/u) at u from the tip, leaves sqrt(2a) (4/3) sqrt(width) of the pressure out.
+  for (double share : {0.9, 1e-2, 1e-4}) {
+    const double width = share * 1e-8 * a, drop = 0.9 * p0;
+    const PressureKnots knots{{-a, a - width, a}, {p0, p0, p0 - drop}};
+    const double K = p0 * std::sqrt(pi * a) - drop * std::sqrt(2 * width / pi) * 4 / 3;
+    const double K_I = LinearlyPressurisedCrack(a, stiff.E_prime(), knots).K_I().plus;
+    CHECK(std::abs(K_I / K - 1) < profile_error(knots, a));
+    CHECK(profile_error(knots, a) < 0.21 * std::sqrt(share * 1e-8));
+  }
+  // Further inside, the mean does: against the jump, half a width off it costs 1e-9.
+  const PressureKnots inside{{-a, 4, 4 + 1e-8, a}, {p0, p0, 0, 0}};
+  CHECK(profile_error(inside, a) == 1e-8);
+  CHECK(profile_error({{-a, a + 1, a + 1 + 1e-9, a + 2}, {p0, p0, 0, 0}}, a) == 1e-12);
+  // Half of a piece's width inside the crack is the pressure there, not the whole piece's.
+  const double width = 1e-9;
+  const PressureKnots cut{{-a, a - width, a + width}, {p0, p0, -p0}};
+  const auto segments = cut.segments(a);
+  REQUIRE(segments.size() == 2);
+  CHECK(segments[1].at_0 == near(0.5 * p0, 1e-5));
+  CHECK(segments[1].slope == 0);
 }
 
 TEST_CASE("a pair of point forces: K = P/sqrt(pi a) sqrt((a+s)/(a-s))") {
