@@ -6,7 +6,7 @@
 // of heat in solids, chapters 3 and 12).
 // Elliptic opening w = w0 sqrt(1 - (x/a)^2) on 0 < x < a: Legendre's equation (eigenfunctions P_l, l odd, eigenvalues
 // l(l+1)); nothing flows at the tip, where w = 0. Derived here.
-// Valid for any t >= 0. Own error: about 1e-13 of r t.
+// Valid for any t >= 0. Own error: about 1e-13 of r t, 1e-11 under the elliptic opening while kappa t < 1e-4 a^2.
 #pragma once
 
 namespace strata::reference {
@@ -41,7 +41,7 @@ double ramped_channel_by_images(const Channel& channel, FarEnd end, double x, do
 // Pressure at x (m, 0 to a) and t (s), Pa, under the elliptic opening: with xi = x/a, tau = kappa0 t/a^2,
 //   P = r t - (r a^2/kappa0) [ ln(1 + xi) - sum_(l odd) c_l P_l(xi) e^(-l(l+1) tau) ],
 //   c_l = (2l+1) int_0^1 ln(1+s) P_l(s) ds = (2l+1) P_(l-1)(0)/(l (l+1)^2).
-// Below tau = 1e-7, where the terms cancel, the boundary layer's expansion with relative error tau^2 is used instead.
+// Below tau = 1e-5, where the terms cancel, the boundary layer's expansion with relative error tau^2 is used instead.
 // Throws std::invalid_argument as ramped_channel.
 double ramped_ellipse(const Channel& channel, double x, double t);
 

@@ -1,6 +1,7 @@
 // Cracks beside a bonded interface: known values, limits, the published kernel, and continuity across the interface.
 // Changes that were made to the solution and fail here: La 1 % larger in the kernel, the slope's part of a profile's
-// moments with its sign turned, the traction that a profile's closed part sends back with its sign turned.
+// moments with its sign turned or doubled, the traction that a profile's closed part sends back with its sign turned, a
+// profile's closed part counted twice in the jump or left out of the strengths, no mean over steep pieces.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,6 @@
 // Wave speeds, the suddenly pressurised crack and standing waves.
+// Changes that were made to the solution and fail here: 1 - nu for 1 - 2 nu in Freund's constant, half of it, a sign in
+// Rayleigh's function, the two standing waves exchanged.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>

@@ -1,5 +1,7 @@
 // The block's F by a second method that shares nothing with the first: the crack as a line of dislocations, the edges
 // by point forces outside the block (Kelvin's solution), both by least squares.
+// Changes that were made to the first and fail here: K_I halved, a sign in the normal stress, a product's second
+// derivative without the factor 2, ends drawn in at a quarter of their distance.
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,4 +1,6 @@
 // The pressurised crack in an infinite plane against hand numbers, limits, and its own integral equation.
+// Changes that were made to the solution and fail here: signs in a segment's K and moments, half of its volume's slope,
+// the mean over a steep piece doubled or left out, its error at a tip or inside too small.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,7 @@
 // Crack near a spring, frictionless or free interface, against limits, known values and displacement discontinuities.
+// Changes that were made to the solution and fail here: y + t for y + 2t in the kernel, half the shear stiffness, the
+// asymptotic series' terms, the two stiffnesses exchanged under a profile; for the first slip a sign of the field,
+// half its shear, the friction left out of it.
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <cmath>
