@@ -246,12 +246,18 @@ std::vector<Input> pressure_inputs() {
 }
 
 PressureKnots knots_of(const Inputs& inputs) {
+  const std::string& shape = inputs.word("pressure");
+  for (const char* key : {"profile_x_m", "profile_Pa"}) {
+    if (shape != "profile" && inputs.given(key))
+      throw std::invalid_argument(std::string(key) + " is given, but pressure=" + shape +
+                                  " does not use it. Set pressure=profile or leave it out.");
+  }
   const double a = inputs.number("half_length_m");
   const double p = inputs.number("pressure_Pa");
   PressureKnots knots;
-  if (inputs.word("pressure") == "uniform")
+  if (shape == "uniform")
     knots = {{-a, a}, {p, p}};
-  else if (inputs.word("pressure") == "linear")
+  else if (shape == "linear")
     knots = {{-a, 0, a}, {0, p, 0}};
   else
     knots = {inputs.numbers("profile_x_m"), inputs.numbers("profile_Pa")};

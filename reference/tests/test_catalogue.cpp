@@ -206,3 +206,12 @@ TEST_CASE("a list may come from a file, one number a line") {
   CHECK_THAT(refusal("pressurised_crack", {"half_length_m=@" + three}), Contains("takes one number"));
   std::filesystem::remove_all(folder);
 }
+
+// Fails without the refusal in knots_of().
+TEST_CASE("a profile that the pressure does not use is refused") {
+  for (const std::string name : {"pressurised_crack", "bonded_normal", "spring_interface"}) {
+    CHECK_THAT(refusal(name, {"profile_Pa=1e6,1e6,1e6"}), Contains("pressure=uniform does not use it"));
+    CHECK_THAT(refusal(name, {"pressure=linear", "profile_x_m=-5,0,5"}), Contains("pressure=linear does not use it"));
+  }
+  CHECK(refusal("pressurised_crack", {"pressure=profile", "profile_x_m=-5,5", "profile_Pa=1e6,1e6"}) == "accepted");
+}
