@@ -44,12 +44,12 @@ void close_ledger(const Scene& scene, const GridEnergy& grid, const GridEnergyAf
 }  // namespace
 
 void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
-  advance_pressure(scene, state);  // P(s) from the opening at the step's start
-  set_body_acceleration(scene, state.time, state);
-  particles_to_grid(scene, rocks, state);                                       // m_i, mom_i, f_i
-  update_stencil_weights(scene, state);                                         // N_i(x_s) of D
-  add_net_tractions(state);                                                     // f_i += D^T (P n - t_in_situ) A
-  fold_to_masters(state, state.sums);                                           // symmetric and fixed edges
+  advance_pressure(scene, state);                   // P(s) from the opening at the step's start
+  set_body_acceleration(scene, state.time, state);  // b(X_p, t)
+  particles_to_grid(scene, rocks, state);           // m_i, mom_i, f_i
+  update_stencil_weights(scene, state);             // N_i(x_s) of D
+  add_net_tractions(state);                         // f_i += D^T (P n - t_in_situ) A
+  fold_to_masters(state, state.sums);               // symmetric and fixed edges
   const GridEnergy grid = advance_momentum(scene.numerics.damping_1_s, state);  // v_i = mom_i/m_i + dt f_i/m_i
   solve_reactions(scene, rocks, state);  // contact, friction, springs at the step's end
   const GridEnergyAfter after = grid_energy(state);

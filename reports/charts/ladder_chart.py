@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
-from reports.charts.style import FLAG, INK, PALE, new_figure, put_legend, put_title
+from reports.charts.style import FLAG, INK, PALE, panel_grid, put_legend
 from reports.ladder import ConvergenceFigure, CostFigure, Curve, Panel, order_words
 from reports.words import mechanics_name
 
@@ -19,23 +19,15 @@ _LOOKS: tuple[tuple[str, str], ...] = (
     ("#5b8fd9", "X"), ("#7a5230", "<"), ("#6b6b6b", ">"), ("#e0a030", "h"), ("#35a7b5", "*"), ("#e58a66", "p"), ("#78bd8f", "d"),
     ("#c98ab5", "H"), ("#9db4d6", "8"), ("#b9a36a", "."),
 )
-_COLUMNS = 3
 _LABEL_GAP = 0.055  # of the axes' height, between order labels
 
 
 def draw_convergence(data: ConvergenceFigure) -> Figure:
     """A panel a case on common scales of error; lines to orders 1 and 2 in a corner, the finest order beside each curve."""
-    columns = min(_COLUMNS, len(data.panels))
-    rows = -(-len(data.panels) // columns)
-    width = max(8.2, 3.9 * columns)
-    figure = new_figure(width, 1.0 + 3.4 * rows)
-    put_title(figure, data.title, int(10.4 * width))
-    every = [axes for line in figure.subplots(rows, columns, squeeze=False, sharey=True) for axes in line]
+    figure, every, columns = panel_grid(data.title, len(data.panels), 3.4, sharey=True)
     low, high = _decades([error for panel in data.panels for curve in panel.curves for error in (*curve.errors, *curve.gates)])
     looks = {name: _LOOKS[k % len(_LOOKS)] for k, name in enumerate(data.quantities)}
-    for axes in every[len(data.panels):]:
-        axes.set_axis_off()
-    for k, (axes, panel) in enumerate(zip(every, data.panels)):
+    for k, (axes, panel) in enumerate(zip(every, data.panels, strict=True)):
         _size_axes(axes, panel, low, high)
         for curve in panel.curves:
             _draw_curve(axes, curve, *looks[curve.quantity])
@@ -46,22 +38,15 @@ def draw_convergence(data: ConvergenceFigure) -> Figure:
     handles = [Line2D([], [], color=colour, marker=mark, markersize=5, label=name) for name, (colour, mark) in looks.items()]
     handles.append(Line2D([], [], color=PALE, marker="_", markersize=11, linestyle="none", label="gate"))
     handles.append(Line2D([], [], color=FLAG, marker="X", markersize=8, linestyle="none", label="not as its gate asks"))
-    put_legend(figure, handles, _legend_columns(handles, width))
+    put_legend(figure, handles, _legend_columns(handles, figure.get_figwidth()))
     return figure
 
 
 def draw_cost(data: CostFigure) -> Figure:
     """Every case's way down in error with wall time, a panel a family and a colour a mechanics."""
-    columns = min(_COLUMNS, len(data.panels))
-    rows = -(-len(data.panels) // columns)
-    width = max(8.2, 3.9 * columns)
-    figure = new_figure(width, 1.0 + 3.1 * rows)
-    put_title(figure, data.title, int(10.4 * width))
-    every = [axes for line in figure.subplots(rows, columns, squeeze=False, sharey=True, sharex=True) for axes in line]
+    figure, every, columns = panel_grid(data.title, len(data.panels), 3.1, sharey=True, sharex=True)
     looks = {name: _LOOKS[k] for k, name in enumerate(data.mechanics)}
-    for axes in every[len(data.panels):]:
-        axes.set_axis_off()
-    for k, (axes, panel) in enumerate(zip(every, data.panels)):
+    for k, (axes, panel) in enumerate(zip(every, data.panels, strict=True)):
         axes.grid(True, which="major")
         axes.set(xscale="log", yscale="log")
         axes.set_title(panel.heading)
@@ -79,7 +64,7 @@ def draw_cost(data: CostFigure) -> Figure:
     handles = [Line2D([], [], color=colour, marker=mark, markersize=5, label=mechanics_name(name))
                for name, (colour, mark) in looks.items()]
     handles.append(Line2D([], [], color=FLAG, marker="X", markersize=8, linestyle="none", label="not as its gate asks"))
-    put_legend(figure, handles, _legend_columns(handles, width))
+    put_legend(figure, handles, _legend_columns(handles, figure.get_figwidth()))
     return figure
 
 

@@ -9,27 +9,19 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import ScalarFormatter
 
-from reports.charts.style import COLOURS, INK, PALE, new_figure, put_legend, put_title
+from reports.charts.style import COLOURS, INK, PALE, panel_grid, put_legend
 
 if TYPE_CHECKING:  # the other way round at run time: the part of the page draws itself
     from reports.refinement import RefinementFigure, RefinementLine, RefinementPanel
 
 _MARKS: dict[str, str] = {"perfect": "o", "friction": "v", "weak": "s", "soft": "^", "weak_soft": "D", "soft_weak": "P"}
 _WIDTHS: dict[str, float] = {"perfect": 3.4, "weak": 1.9, "friction": 1.0}
-_COLUMNS = 3
 
 
 def draw_refinement(data: RefinementFigure) -> Figure:
     """A panel a quantity: values against (h/h0)^p, and the limit with its uncertainty at 0."""
-    columns = min(_COLUMNS, len(data.panels))
-    rows = -(-len(data.panels) // columns)
-    width = max(8.2, 3.9 * columns)
-    figure = new_figure(width, 1.0 + 2.9 * rows)
-    put_title(figure, data.title, int(10.4 * width))
-    every = [axes for line in figure.subplots(rows, columns, squeeze=False) for axes in line]
-    for axes in every[len(data.panels):]:
-        axes.set_axis_off()
-    for axes, panel in zip(every, data.panels):
+    figure, every, columns = panel_grid(data.title, len(data.panels), 2.9)
+    for axes, panel in zip(every, data.panels, strict=True):
         _draw_panel(axes, panel)
     handles = [Line2D([], [], color=COLOURS.get(name, INK), marker=_MARKS.get(name, "o"), markersize=5, linewidth=1.4,
                       label=name.replace("_", "–")) for name in data.variants]

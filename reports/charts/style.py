@@ -89,6 +89,19 @@ def put_title(figure: Figure, text: str, characters: int) -> None:
     figure.suptitle(wrapped, x=0.008, ha="left", fontsize=11, fontweight="bold")
 
 
+def panel_grid(title: str, panels: int, row_in: float, **share: bool) -> tuple[Figure, list[Axes], int]:
+    """A figure under its title with so many panels in rows of at most three, `row_in` inches each; panels and columns."""
+    columns = min(3, panels)
+    rows = -(-panels // columns)
+    width = max(8.2, 3.9 * columns)  # room for a title even over one panel
+    figure = new_figure(width, 1.0 + row_in * rows)
+    put_title(figure, title, int(10.4 * width))
+    every = [axes for line in figure.subplots(rows, columns, squeeze=False, **share) for axes in line]
+    for axes in every[panels:]:
+        axes.set_axis_off()
+    return figure, every[:panels], columns
+
+
 def line_of(variant: str, beside: bool = False, solid: bool = False) -> dict[str, object]:
     """Colour, width and dashes of a variant's line; thin and dashed where it is beside another mechanics, then solid."""
     if beside:

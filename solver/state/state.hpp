@@ -118,8 +118,7 @@ struct State {
   std::vector<std::vector<SurfaceStencil>> point_stencils, vertex_stencils;  // of each surface
   std::vector<NodeSums> sums;
   std::vector<NodeMotion> motion;
-  std::vector<Vec2>
-      body;  // body force per mass of each particle (m/s^2), set anew at each time; empty where there is none
+  std::vector<Vec2> body;  // force per mass of each particle (m/s^2), set anew at each time; empty: none
 
   const Surface& fracture() const { return surfaces.front(); }
   Surface& fracture() { return surfaces.front(); }

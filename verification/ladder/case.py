@@ -39,12 +39,12 @@ class Sample:
     def error(self) -> float:
         """Relative error: signed for a single number, else sqrt(sum w (value - exact)^2 / sum w exact^2)."""
         off = self.values - self.exact
-        size = self._norm(self.exact) if self.scale is None else self.scale
+        size = self.norm(self.exact) if self.scale is None else self.scale
         if not size > 0.0:
             raise ValueError("the exact values are zero: a sample of them needs a scale")
-        return float(off[0]) / size if off.size == 1 else self._norm(off) / size
+        return float(off[0]) / size if off.size == 1 else self.norm(off) / size
 
-    def _norm(self, values: Array) -> float:
+    def norm(self, values: Array) -> float:
         """Weighted root mean square; for one value its size."""
         weights = np.ones(values.shape) if self.weights is None else self.weights
         return math.sqrt(float(np.sum(weights * values**2)) / float(np.sum(weights)))

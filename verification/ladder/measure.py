@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -133,12 +133,7 @@ def summarised(sample: Sample) -> tuple[float, float]:
         raise ValueError(f"{values.shape} values beside {exact.shape} exact ones")
     if values.size == 1:
         return float(values.flat[0]), float(exact.flat[0])
-    weights = np.ones(values.shape) if sample.weights is None else sample.weights
-
-    def rms(field: np.ndarray) -> float:
-        return math.sqrt(float(np.sum(weights * field**2)) / float(np.sum(weights)))
-
-    return rms(values), rms(exact)
+    return sample.norm(values), sample.norm(exact)
 
 
 def _ladder(rows: list[Row]) -> list[Row]:
@@ -147,7 +142,7 @@ def _ladder(rows: list[Row]) -> list[Row]:
     for coarse, fine in zip(rows, rows[1:]):
         both = not (coarse.failure or fine.failure)
         order = order_of(coarse.error, fine.error, coarse.size / fine.size) if both else None
-        found.append(Row(**{**vars(fine), "order": order}))
+        found.append(replace(fine, order=order))
     return found
 
 

@@ -369,8 +369,8 @@ def own_weight(mechanics: str, shape: str) -> Case:
 
 def spring_jump(run: Run) -> Sample:
     """Opening of the spring (negative: it is pressed) at all its points, m."""
-    name = sorted(frames(run, "interfaces")[-1][1])
-    opening = np.concatenate([frames(run, "interfaces")[-1][1][k] for k in name if k.endswith("/opening_m")])
+    fields = frames(run, "interfaces")[-1][1]
+    opening = np.concatenate([fields[name] for name in sorted(fields) if name.endswith("/opening_m")])
     soft, height = rock_of(run, "soft"), size_m(run)[1]
     load = soft.rho * G * (height - run.interfaces_m[0])
     D = float(run.scene["interface"]["spring"]["normal_stiffness_Pa_m"])
