@@ -27,7 +27,8 @@ double driving_J(const Elasticity& rock, const Tip& tip);
 std::size_t rock_ahead(const Scene& scene, const State& state, const Tip& tip);
 
 /// What leaves a tip no room to grow or to measure J in, "" where nothing does: an edge that it heads for, nearer than
-/// 3 cells, once it has grown; the coarse cells of a graded grid, nearer than 5. Throws nothing but std::bad_alloc.
+/// 3 cells, once it has grown; the coarse cells of a graded grid, nearer than a cell beyond its rings. Throws nothing
+/// but std::bad_alloc.
 std::string what_stops(const Scene& scene, const State& state, const Tip& tip);
 
 /// Whether something stops it so.

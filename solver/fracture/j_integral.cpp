@@ -80,8 +80,8 @@ struct LocalFields {
   Vec2 at;              // position relative to the tip
   double H[2][2] = {};  // displacement gradient, H[i][j] = u_i,j
   Stress s;             // change of stress
-  Vec2 v, a,
-      v_1;  // velocity, acceleration that forces gave but for the body force, derivative of velocity along the fracture
+  Vec2 v, a;            // velocity, acceleration that forces gave but for the body force
+  Vec2 v_1;             // derivative of the velocity along the fracture
   double V = 0.0;
 };
 
