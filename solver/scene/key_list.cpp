@@ -332,6 +332,11 @@ std::vector<Key> numerics_keys() {
           {as("updated", Numerics::Kinematics::updated), as("total", Numerics::Kinematics::total)},
           [](Scene& s, std::size_t) -> Numerics::Kinematics& { return s.numerics.kinematics; },
           "Particles move and weights are computed again, or all stays in its reference place between growth events."),
+      word(
+          "numerics.kernels", {as("fast", Numerics::Kernels::fast), as("plain", Numerics::Kernels::plain)},
+          [](Scene& s, std::size_t) -> Numerics::Kernels& { return s.numerics.kernels; },
+          "How an explicit step is computed: by its fast loops, or by plain ones over particles to check them against; "
+          "results differ by round-off."),
       number(
           "numerics.courant", "", {0.0, 1.0, true, false},
           +[](Scene& s, std::size_t) -> double& { return s.numerics.courant; }, "Time step as c_P dt / cell_m.",

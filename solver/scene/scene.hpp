@@ -146,8 +146,10 @@ struct Numerics {
   enum class Shape { bspline2, linear, gimp };
   enum class Transfer { flip, pic, xpic2 };
   enum class Kinematics { updated, total };
+  enum class Kernels { fast, plain };
   Mechanics mechanics = Mechanics::explicit_dynamics;
   Kinematics kinematics = Kinematics::updated;
+  Kernels kernels = Kernels::fast;
   double cell_m = 0.0;
   std::optional<double> far_cell_m;  // absent: the grid is uniform
   int particles_per_cell = 4;        // 4, 9 or 16

@@ -177,6 +177,11 @@ TEST_CASE("What only explicit runs use stays allowed without inertia") {
   CHECK(good(layered + "time_s = 0\n", "", {"numerics.mechanics=quasistatic"}).stop.time_s == 0.0);
 }
 
+TEST_CASE("Fast kernels are the default, plain ones a choice") {
+  CHECK(good(layered).numerics.kernels == Numerics::Kernels::fast);
+  CHECK(good(layered, "", {"numerics.kernels=plain"}).numerics.kernels == Numerics::Kernels::plain);
+}
+
 TEST_CASE("The inlet's pressure or its rate is given, and the upper of the two counts") {
   const Scene fed = good(fed_at_a_rate());
   CHECK(fed.fluid.rate_m2_s == 1e-4);

@@ -24,6 +24,7 @@ TEST_CASE("A resolved scene reads as the same scene") {
   check_round_trip(good(layered));
   check_round_trip(good(layered + "time_s = 3\ntip_y_m = 70\n[output]\nfields_every_s = 0.01\n"));
   check_round_trip(good(layered + "[variants.v]\nnumerics.cell_m = 0.5\n", "v", {"interface.joint.law=soft"}));
+  check_round_trip(good(layered, "", {"numerics.kernels=plain"}));
   check_round_trip(good(with(layered, "[[40, 0], [40, 5]]", "[[41.3, 7.7], [40.1, 2.2], [40, 0]]")));
 }
 
