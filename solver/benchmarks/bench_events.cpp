@@ -1,0 +1,180 @@
+// What happens now and then in a run: growth, equilibria, steps of flow and rock together, checkpoints, output.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <vector>
+
+#include "advance.hpp"
+#include "advance_fluid.hpp"
+#include "advance_quasistatic.hpp"
+#include "benchmarks/shop.hpp"
+#include "output/recorder.hpp"
+
+namespace strata::bench {
+
+namespace {
+
+std::size_t fracture_points(const State& state) {
+  return state.fracture().points.size();
+}
+
+// Steps from the order's start until the fracture has grown so often; how long those steps took in which it grew, and
+// the others (s, medians). `step` takes one.
+struct Growth {
+  double with = 0.0, without = 0.0;
+};
+
+template <class Step>
+Growth grow_on(State& state, int times, Step step) {
+  constexpr int most_steps = 2000;
+  std::vector<double> with, without;
+  for (int k = 0; k < most_steps && with.size() < static_cast<std::size_t>(times); ++k) {
+    const std::size_t before = fracture_points(state);
+    const Clock::time_point start = Clock::now();
+    step();
+    (fracture_points(state) != before ? with : without).push_back(seconds_since(start));
+  }
+  if (with.size() < static_cast<std::size_t>(times)) throw std::runtime_error("the fracture did not grow");
+  return {median(with), without.empty() ? 0.0 : median(without)};
+}
+
+constexpr int growths = 6;
+
+// An increment in a run with inertia: what the step in which it happens takes beyond the others.
+void add_explicit_growth(Shop& shop, const std::string& kinematics) {
+  const Order order{"growing", {"numerics.kinematics=" + kinematics}};
+  add("growth/explicit/" + kinematics, 1, [&shop, order, kinematics](benchmark::State& bench) {
+    const Workpiece& work = shop.get(order);
+    const About about{"mechanics=explicit kinematics=" + kinematics, 1, 1.0, 0.0, 0.0};
+    time_part(bench, shop, about, [&] {
+      State state = work.state;
+      const Growth taken = grow_on(state, growths, [&] { advance(work.scene, work.rocks, state); });
+      return taken.with - taken.without;
+    });
+  })->UseManualTime();
+}
+
+// An increment in a run without inertia: the whole step in which it happens, with the equilibrium that follows.
+void add_quasistatic_growth(Shop& shop, int cells) {
+  const Order order{"growing", {"numerics.mechanics=quasistatic", cell_setting(cells)}};
+  add(fmt::format("growth/quasistatic/cells{}", cells), 1, [&shop, order, cells](benchmark::State& bench) {
+    const Workpiece& work = shop.get(order);
+    const About about{fmt::format("mechanics=quasistatic cells={}", cells), 1, 1.0, 0.0, 0.0};
+    time_part(bench, shop, about, [&] {
+      State state = work.state;
+      Quasistatic run;
+      start_quasistatic(work.scene, work.rocks, state, run);
+      return grow_on(state, growths, [&] { advance_quasistatic(work.scene, work.rocks, 1.0, state, run); }).with;
+    });
+  })->UseManualTime();
+}
+
+// The start of a run without inertia: factor of the block, condensation, first equilibrium.
+void add_quasistatic_start(Shop& shop, int cells) {
+  const Order order{"", {"numerics.mechanics=quasistatic", cell_setting(cells)}};
+  add(fmt::format("start/quasistatic/cells{}", cells), 1, [&shop, order, cells](benchmark::State& bench) {
+    const Workpiece& work = shop.get(order);
+    const About about{fmt::format("mechanics=quasistatic cells={}", cells), 1, 1.0, 0.0, 0.0};
+    time_part(bench, shop, about, [&] {
+      State state = work.state;
+      Quasistatic run;
+      const Clock::time_point start = Clock::now();
+      start_quasistatic(work.scene, work.rocks, state, run);
+      return seconds_since(start);
+    });
+  })->UseManualTime();
+}
+
+// Changes the pressure on the fracture (Pa) up and down in turn.
+void change_pressure(State& state, double by) {
+  for (SurfacePoint& s : state.fracture().points) s.P += by;
+}
+
+void add_equilibrium(Shop& shop, const std::string& variant, int cells) {
+  const Order order{variant, {"numerics.mechanics=quasistatic", cell_setting(cells)}};
+  const std::string name = fmt::format("contact/quasistatic/{}/cells{}", variant.empty() ? "crack" : variant, cells);
+  add(name, 10, [&shop, order, variant](benchmark::State& bench) {
+    const Workpiece& work = shop.get(order);
+    State state = work.state;
+    Quasistatic run;
+    start_quasistatic(work.scene, work.rocks, state, run);
+    const std::size_t places = run.model.places.size();
+    const About about{fmt::format("variant={} places={}", variant, places), 1, 1.0, 0.0, 0.0};
+    double by = 0.2e6;
+    time_work(bench, shop, about, [&] {
+      change_pressure(state, by);
+      by = -by;
+      find_equilibrium(work.scene, state.time, state, run.model);
+    });
+    bench.counters["places"] = static_cast<double>(places);
+  });
+}
+
+// A step of flow and rock in one system, from the start of the run; only the step itself is timed.
+void add_reynolds(Shop& shop, int cells) {
+  const Order order{"reynolds", {cell_setting(cells)}};
+  add(fmt::format("flow/reynolds/cells{}", cells), 5, [&shop, order](benchmark::State& bench) {
+    const Workpiece& work = shop.get(order);
+    State ready = work.state;
+    Quasistatic run;
+    start_quasistatic(work.scene, work.rocks, ready, run);
+    const About about{fmt::format("law=reynolds vertices={}", ready.fracture().vertices.size()), 1, 1.0, 0.0, 0.0};
+    time_part(bench, shop, about, [&] {
+      State state = ready;
+      const Clock::time_point start = Clock::now();
+      const FluidStep step = advance_fluid(work.scene, 1e-3, state, run.model);
+      const double seconds = seconds_since(start);
+      if (!step.found) throw std::runtime_error(step.reason);
+      return seconds;
+    });
+  })->UseManualTime();
+}
+
+// A folder of this process for what is written, removed at the end.
+class ScratchFolder {
+ public:
+  ScratchFolder() : path_(std::filesystem::temp_directory_path() / fmt::format("strata_bench_{}", getpid())) {}
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+void add_writing(Shop& shop, const std::string& what) {
+  add("write/" + what, 5, [&shop, what](benchmark::State& bench) {
+    const Workpiece& work = shop.get({"", {}});
+    const ScratchFolder scratch;
+    Recorder recorder(create_run_folder(scratch.path()));
+    recorder.output(work.scene, work.state);
+    const About about{"what=" + what, 1, 1.0, 0.0, 0.0};
+    time_work(bench, shop, about, [&] {
+      if (what == "checkpoint") {
+        recorder.checkpoint(work.scene, work.state);
+      } else {
+        recorder.output(work.scene, work.state);
+      }
+    });
+  });
+}
+
+}  // namespace
+
+void add_events(Shop& shop) {
+  for (const std::string kinematics : {"updated", "total"}) add_explicit_growth(shop, kinematics);
+  for (const int cells : {80, 160}) {
+    add_quasistatic_growth(shop, cells);
+    add_quasistatic_start(shop, cells);
+    for (const std::string variant : {"", "soft"}) add_equilibrium(shop, variant, cells);
+    add_reynolds(shop, cells);
+  }
+  add_writing(shop, "checkpoint");
+  add_writing(shop, "output");
+}
+
+}  // namespace strata::bench

@@ -1,0 +1,38 @@
+// Kernels that tell how fast the machine is while something else is timed.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+namespace strata::bench {
+
+// What the machine gives so many threads together.
+struct Rates {
+  double flop_s = 0.0;  // double-precision fused multiply-adds, each two flop (flop/s)
+  double byte_s = 0.0;  // to and from memory, far beyond the caches (B/s)
+};
+
+class Calibration {
+ public:
+  /// Sets up arrays of at least 128 MB and four times the last cache together, touched by `threads` threads as they
+  /// will use them, and finds the width of vector that multiplies and adds fastest.
+  explicit Calibration(int threads);
+
+  /// Measures both for a hundredth of a second each. flop_s: twelve independent chains a = a b + c a thread, enough to
+  /// hide a latency of six cycles at two a cycle. byte_s: a = a/2 + b, which reads two arrays and writes one of them,
+  /// 24 B an element (after McCalpin's STREAM, 1995, but without a write that first reads). Throws nothing.
+  Rates measure() const;
+
+  int threads() const { return threads_; }
+
+ private:
+  double flop_s() const;
+  double byte_s() const;
+  int threads_ = 1;
+  bool widest_ = true;  // 512-bit vectors rather than 256-bit ones, where the processor has both
+  long rounds_ = 0;     // of the chains, for a hundredth of a second
+  std::size_t elements_ = 0;
+  std::unique_ptr<double[]> a_, b_;
+};
+
+}  // namespace strata::bench

@@ -1,0 +1,151 @@
+"""Times kernels, events and whole runs, beside what the machine gives at the same time. See ci/bench --help."""
+from __future__ import annotations
+
+import argparse
+import datetime
+import re
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from verification.benchmarks import kernels, runs
+from verification.benchmarks.figure import Figure
+from verification.benchmarks.judge import BAD, Line, compare, marks
+from verification.benchmarks.machine import Load, busy_processors, this_build, this_machine
+from verification.benchmarks.records import (
+    BadRecord, OtherMachine, Record, append, as_json, last_record, why_not_recorded,
+)  # fmt: skip
+from verification.benchmarks.table import report
+from verification.harness.paths import ROOT
+
+LAST = ROOT / "runs" / "bench" / "last.json"
+REPETITIONS = 5
+OK, WORSE, WRONG_USE, NOT_RECORDED = 0, 1, 2, 4
+
+# What --quick takes of the kernels: the marks on speed, and one of every kind of event.
+QUICK_KERNELS = re.compile(
+    r"step/(updated|total)/(bspline2|gimp|linear)/flip/points4/cells80/|stage/|growth/explicit|contact/.*cells80|flow/.*cells80|write/"
+)
+
+
+def parse(arguments: Sequence[str] | None) -> argparse.Namespace:
+    """The options."""
+    parser = argparse.ArgumentParser(prog="ci/bench", description=__doc__)
+    parser.add_argument("--kernels", action="store_true", help="kernels and events only")
+    parser.add_argument("--runs", action="store_true", help="whole runs only")
+    parser.add_argument("--quick", action="store_true", help="fewer figures in fewer repetitions, under a minute; never recorded")
+    parser.add_argument("--long", action="store_true", help="the experiments at 0.25 m as well, and explicit ones to their end")
+    parser.add_argument("--only", default="", metavar="REGEX", help="figures whose names match")
+    parser.add_argument("--record", action="store_true", help="keep what was measured in verification/benchmarks/records/")
+    parser.add_argument("--force", action="store_true", help="record although the machine is busy")
+    parser.add_argument("--list", action="store_true", help="names of the kernels, nothing run")
+    parser.add_argument("--load", type=float, default=None, help=argparse.SUPPRESS)  # load average when ci/bench began
+    parser.add_argument("--out", type=Path, default=LAST, help="where the figures go (default: runs/bench/last.json)")
+    return parser.parse_args(arguments)
+
+
+class Progress:
+    """Tells what is being timed, with the seconds since the start."""
+
+    def __init__(self) -> None:
+        self.start = time.monotonic()
+
+    def __call__(self, words: str) -> None:
+        """One line."""
+        print(f"[{time.monotonic() - self.start:5.0f} s] {words}", file=sys.stderr, flush=True)
+
+
+def kernel_figures(options: argparse.Namespace, tell: Progress) -> tuple[list[Figure], dict[str, str]]:
+    """Figures of strata_bench, and its context."""
+    chosen = [name for name in kernels.names() if not name.startswith("calibration/") and re.search(options.only, name)]
+    if options.quick:
+        chosen = [name for name in chosen if QUICK_KERNELS.match(name)]
+    if not chosen:
+        return [], {}
+    return kernels.measure(chosen, 2 if options.quick else REPETITIONS, tell)
+
+
+def run_figures(options: argparse.Namespace, tell: Progress) -> list[Figure]:
+    """Figures of whole runs."""
+    quick, repetitions = options.quick, 2 if options.quick else REPETITIONS
+    batches = runs.QUICK if quick else runs.LONG if options.long else runs.DEFAULT
+    parts = [
+        ("crack/", lambda: runs.crack_figures(repetitions, quick, kernels.rates, tell)),
+        ("whole/", lambda: runs.growth_figures(repetitions, quick, kernels.rates, tell)),
+        ("memory/", lambda: runs.memory_figures(quick, tell)),
+        *((f"{batch.name}/", lambda batch=batch: runs.batch_figures(batch, kernels.rates, tell)) for batch in batches),
+    ]
+    return [figure for name, make in parts if re.search(options.only, name) for figure in make()]
+
+
+def take_record(options: argparse.Namespace, tell: Progress) -> Record:
+    """Measure what was asked for."""
+    average = options.load if options.load is not None else float(Path("/proc/loadavg").read_text().split()[0])
+    busy = busy_processors()
+    figures: list[Figure] = []
+    context: dict[str, str] = {}
+    if options.kernels or not options.runs:
+        figures, context = kernel_figures(options, tell)
+    if options.runs or not options.kernels:
+        figures += run_figures(options, tell)
+    part = bool(options.quick or options.only or options.kernels != options.runs)
+    date = datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds")
+    return Record(this_machine(), this_build(context), Load(average, busy, busy_processors()), date, tuple(figures), part)
+
+
+def judge(record: Record) -> tuple[list[Line], Record | None, str]:
+    """Against the last record of this machine; why there is no comparison."""
+    try:
+        then = last_record(record.machine)
+        return (compare(record, then) if then else []), then, ""
+    except (OtherMachine, BadRecord) as error:
+        return [], None, str(error)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Measure, print, compare, record; 0 where nothing is slower, 1 where something is, 2 wrong use, 4 not recorded."""
+    options = parse(arguments)
+    if options.quick and (options.record or options.long):
+        print("ci/bench: --quick goes with neither --record nor --long", file=sys.stderr)
+        return WRONG_USE
+    tell = Progress()
+    try:
+        re.compile(options.only)
+        if options.list:
+            print("\n".join(kernels.names()))
+            return OK
+        record = take_record(options, tell)
+    except (re.error, kernels.NoBenchmark) as error:
+        print(f"ci/bench: {error}", file=sys.stderr)
+        return WRONG_USE
+    if not record.figures:
+        print(f"ci/bench: no figure matches {options.only}", file=sys.stderr)
+        return WRONG_USE
+    lines, then, why = judge(record)
+    print("\n".join(report(record, lines, then, marks(record))))
+    options.out.parent.mkdir(parents=True, exist_ok=True)
+    options.out.write_text(as_json(record) + "\n", encoding="utf-8")
+    print(f"figures: {options.out}")
+    if why:
+        print(f"ci/bench: not compared: {why}", file=sys.stderr)
+    noisy = record.load.noisy
+    if noisy:
+        print(f"ci/bench: {noisy}: these are no results, and nothing is judged by them", file=sys.stderr)
+    kept = keep(record, options) if options.record else OK
+    broken = any(line.verdict in BAD and (not noisy or line.verdict != "slower") for line in lines)
+    return WORSE if broken or any(figure.wrong() and not figure.problem for figure in record.figures) else kept
+
+
+def keep(record: Record, options: argparse.Namespace) -> int:
+    """Record what may be recorded, or say why not; with --force the machine may be busy and figures may be a part."""
+    reasons = why_not_recorded(record)
+    if reasons and not options.force:
+        print(f"ci/bench: not recorded: {'; '.join(reasons)}", file=sys.stderr)
+        return NOT_RECORDED
+    print(f"recorded: {append(record)}")
+    return OK
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,162 @@
+"""What figures say: now against the last record of the same machine, and against the marks."""
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from verification.benchmarks.figure import NONE, Figure, exponent
+from verification.benchmarks.records import Record, check_machine
+
+# A figure is slower where its calibrated cost is more than this times the last record's, and faster below its inverse. On an
+# idle machine medians of five repetitions keep within a few per cent; virtual machines drift by a tenth.
+BAND = 1.25
+ENOUGH = 5  # repetitions on both sides; of fewer a median is no median
+
+SLOWER, FASTER, SAME, NEW, GONE, BROKEN, UNJUDGED = "slower", "faster", "same", "new", "gone", "broken", "not judged"
+BAD = (SLOWER, GONE, BROKEN)
+
+
+@dataclass(frozen=True)
+class Line:
+    """A figure now beside then: ratio of calibrated costs (above 1: slower), the verdict and why."""
+
+    name: str
+    ratio: float
+    verdict: str
+    why: str = ""
+
+
+def _cost(figure: Figure) -> float:
+    """What is compared: the calibrated cost, or the plain one of what no kernel calibrates."""
+    return figure.median if figure.bound == NONE else figure.calibrated
+
+
+def compare_figure(now: Figure | None, then: Figure | None) -> Line:
+    """The verdict on one figure."""
+    if now is None:
+        return Line(then.name if then else "", math.nan, GONE, "it was recorded before and was not measured now")
+    wrong = now.wrong()
+    if wrong and not (now.problem and then is not None and then.problem):
+        return Line(now.name, math.nan, BROKEN, wrong)
+    if then is None or then.wrong():
+        return Line(now.name, math.nan, NEW, "nothing to compare with" if then is None else "it failed when it was recorded")
+    if wrong:
+        return Line(now.name, math.nan, UNJUDGED, wrong)
+    ratio = _cost(now) / _cost(then)
+    if not math.isfinite(ratio) or ratio <= 0.0:
+        return Line(now.name, ratio, BROKEN, "it has no calibration beside it")
+    few = min(len(now.values), len(then.values))
+    if now.bound != NONE and few < ENOUGH:
+        return Line(now.name, ratio, UNJUDGED, f"{few} repetitions are too few")
+    if ratio > BAND:
+        return Line(now.name, ratio, SLOWER, f"{ratio:.2f} times the recorded cost, more than {BAND:g}")
+    return Line(now.name, ratio, FASTER if ratio < 1.0 / BAND else SAME)
+
+
+def compare(now: Record, then: Record) -> list[Line]:
+    """A line a figure; raises OtherMachine where the records are not of the same machine."""
+    check_machine(now.machine, then.machine)
+    lines = [compare_figure(figure, then.figure(figure.name)) for figure in now.figures]
+    if not now.part:
+        here = {figure.name for figure in now.figures}
+        lines += [compare_figure(None, figure) for figure in then.figures if figure.name not in here]
+    return lines
+
+
+@dataclass(frozen=True)
+class Mark:
+    """Something that must be reached on two cores: what, the value wanted and found, and whether that is at least or at most."""
+
+    what: str
+    wanted: float
+    found: float
+    unit: str
+    at_least: bool = False
+    note: str = ""
+
+    @property
+    def reached(self) -> bool:
+        """Whether it is; never where nothing was found."""
+        if not math.isfinite(self.found) or self.found <= 0.0:
+            return False
+        return self.found >= self.wanted if self.at_least else self.found <= self.wanted
+
+
+def _rate(record: Record, name: str) -> float:
+    """Millions of particle-steps a second."""
+    figure = record.figure(name)
+    return 1e-6 / figure.median if figure is not None and figure.values and figure.median > 0.0 else math.nan
+
+
+def _seconds(record: Record, name: str) -> float:
+    """A figure's median; NaN where there is none."""
+    figure = record.figure(name)
+    return figure.median if figure is not None else math.nan
+
+
+def sizes(record: Record, kinematics: str) -> list[tuple[float, float]]:
+    """Points of the explicit block at one thread, and seconds a whole step, in order of size."""
+    found = {}
+    for figure in record.figures:
+        parts = figure.name.split("/")
+        if parts[0] in ("step", "scaling") and parts[1:5] == [kinematics, "bspline2", "flip", "points4"] and parts[-1] == "threads1":
+            if figure.values:
+                found[float(figure.about["particles"])] = figure.median * float(figure.about["particles"])
+    return sorted(found.items())
+
+
+def whole_sizes(record: Record) -> list[tuple[float, float]]:
+    """Points and seconds of the whole run without inertia at several cell sizes, in order of size."""
+    return sorted((float(figure.about["particles"]), figure.median) for figure in record.figures
+                  if figure.name.startswith("whole/quasistatic/") and figure.values)  # fmt: skip
+
+
+def slope(found: Sequence[tuple[float, float]]) -> float:
+    """The exponent of cost against points."""
+    return exponent([points for points, _ in found], [cost for _, cost in found])
+
+
+def best_crack(record: Record, error: float) -> Figure | None:
+    """The fastest setting whose K_I of the crack in the block is within a relative error."""
+    good = [figure for figure in record.figures if figure.name.startswith("crack/") and figure.values
+            and abs(float(figure.about.get("error", math.inf))) <= error]  # fmt: skip
+    return min(good, key=lambda figure: figure.median, default=None)
+
+
+def marks(record: Record) -> list[Mark]:
+    """All marks of which the record has what they are about."""
+    block = "bspline2/flip/points4"
+    best = best_crack(record, 1e-3)
+    rate, total, step = "particle-steps of `updated`", "particle-steps of `total`, equivalent", "step/updated/{}/threads{}"
+    at = [step.format(f"{block}/cells80", threads) for threads in (1, 2)]
+    small, large = sizes(record, "updated"), sizes(record, "total")
+    drop = _rate(record, f"scaling/updated/{block}/cells320/threads1") / _rate(record, at[0])
+    every: list[tuple[bool, Callable[[], Mark]]] = [
+        (record.figure(at[0]) is not None, lambda: Mark(f"{rate}, 1 thread", 60.0, _rate(record, at[0]), "million/s", True)),
+        (record.figure(at[1]) is not None, lambda: Mark(f"{rate}, 2 threads", 110.0, _rate(record, at[1]), "million/s", True)),
+        (math.isfinite(drop), lambda: Mark("the same at 320 x 320 cells, of that at 80 x 80", 0.8, drop, "", True)),
+        (record.figure(at[0].replace("updated", "total")) is not None,
+         lambda: Mark(f"{total}, 1 thread", 300.0, _rate(record, at[0].replace("updated", "total")), "million/s", True)),
+        (len(small) > 2, lambda: Mark("exponent of a step's cost, `updated`", 1.05, slope(small), "", False, _reach(small))),
+        (len(large) > 2, lambda: Mark("exponent of a step's cost, `total`", 1.05, slope(large), "", False, _reach(large))),
+        (len(whole_sizes(record)) > 2, lambda: Mark("exponent of a run without inertia", 1.5, slope(whole_sizes(record)), "",
+                                                    False, _reach(whole_sizes(record)))),
+        (any(figure.name.startswith("crack/") for figure in record.figures),
+         lambda: Mark("K_I of the crack in the block to 0.1 %", 0.1, best.median if best else math.nan, "s", False, best.name if best else "")),
+    ]  # fmt: skip
+    for name, limit in (("quasistatic/cell1m", 10.0), ("explicit/cell1m", 120.0), ("quasistatic/cell0.25m", 300.0)):
+        figure = record.figure(f"experiments/{name}")
+        if figure is not None:
+            every.append((True, _batch_mark(figure, limit)))
+    return [make() for there, make in every if there]
+
+
+def _reach(found: Sequence[tuple[float, float]]) -> str:
+    """From how many points to how many."""
+    return f"{found[0][0]:.3g} to {found[-1][0]:.3g} points"
+
+
+def _batch_mark(figure: Figure, limit_s: float) -> Callable[[], Mark]:
+    """The mark on a batch of experiments."""
+    return lambda: Mark(f"all experiments, {figure.name.removeprefix('experiments/')}", limit_s, figure.median, "s", False, figure.problem)

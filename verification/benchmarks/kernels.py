@@ -1,0 +1,121 @@
+"""Runs strata_bench and reads what it says: a figure a benchmark."""
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import tempfile
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+from verification.benchmarks.figure import CORE, MEMORY, Figure
+from verification.harness.paths import ROOT
+
+# Beyond this working set a step waits for memory rather than for the core (twice a last cache of 32 MB).
+LARGE_B = 64e6
+
+# What a unit of work is, by the first part of a benchmark's name.
+PER = {
+    "step": "particle-step", "scaling": "particle-step", "stage": "particle-step", "growth": "increment", "start": "start",
+    "contact": "solve", "flow": "flow step", "write": "writing", "calibration": "measurement",
+}  # fmt: skip
+
+
+class NoBenchmark(Exception):
+    """strata_bench could not be run, or said nothing that can be read; the message is its own."""
+
+
+def bench_program() -> Path:
+    """The program with the kernels: $STRATA_BENCH, or that of the release build."""
+    return Path(os.environ.get("STRATA_BENCH", ROOT / "build" / "release" / "strata_bench"))
+
+
+def names() -> list[str]:
+    """All benchmarks there are, as strata_bench lists them."""
+    command = [str(bench_program()), "--benchmark_list_tests=true"]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+    except (OSError, subprocess.CalledProcessError) as error:
+        raise NoBenchmark(f"{command[0]}: {error}") from error
+    return [_plain(line) for line in done.stdout.splitlines() if line.strip()]
+
+
+def _plain(name: str) -> str:
+    """A benchmark's name without what Google Benchmark hangs on it (iterations:5, manual_time)."""
+    return "/".join(part for part in name.split("/") if not part.startswith(("iterations:", "repeats:")) and part != "manual_time")
+
+
+def measure(
+    chosen: Iterable[str], repetitions: int, tell: Callable[[str], None]
+) -> tuple[list[Figure], dict[str, Any]]:
+    """Run benchmarks by their names so many times each; the figures, and the context that strata_bench gives (compiler, flags)."""
+    pattern = "^(" + "|".join(re.escape(name) for name in chosen) + ")(/iterations:[0-9]+)?(/manual_time)?$"
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "figures.json"
+        command = [
+            str(bench_program()), f"--benchmark_filter={pattern}", f"--benchmark_repetitions={repetitions}",
+            "--benchmark_display_aggregates_only=true", f"--benchmark_out={out}", "--benchmark_out_format=json",
+        ]  # fmt: skip
+        status = _follow(command, tell)
+        try:
+            content = json.loads(out.read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            raise NoBenchmark(f"{command[0]}: exit {status}, {error}") from error
+    return parse(content), content.get("context", {})
+
+
+def _follow(command: list[str], tell: Callable[[str], None]) -> int:
+    """Run a command, tell the name of each benchmark once as its lines come; its exit status."""
+    environment = {**os.environ, "OMP_PROC_BIND": "true", "OMP_PLACES": "cores"}
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=environment) as process:
+        assert process.stdout is not None
+        last = ""
+        for line in process.stdout:
+            name = _plain(re.sub("_(mean|median|stddev|cv)$", "", line.split(" ")[0]))
+            if "/" in name and name != last:
+                tell(name)
+                last = name
+        return process.wait()
+
+
+def parse(content: dict[str, Any]) -> list[Figure]:
+    """The figures in what Google Benchmark wrote as JSON: repetitions of a name together, means and medians of its own left out."""
+    runs: dict[str, list[dict[str, Any]]] = {}
+    for entry in content.get("benchmarks", []):
+        if entry.get("run_type", "iteration") == "iteration":
+            runs.setdefault(_plain(entry["name"]), []).append(entry)
+    return [figure_of(name, entries) for name, entries in runs.items()]
+
+
+SCALE = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+
+
+def figure_of(name: str, entries: list[dict[str, Any]]) -> Figure:
+    """One figure from its repetitions: seconds a unit of work."""
+    failed = [str(entry.get("error_message", "an error")) for entry in entries if entry.get("error_occurred")]
+    per = PER.get(name.split("/")[0], "unit")
+    if failed:
+        return Figure(name, per, (), problem=failed[0])
+    about: dict[str, Any] = dict(pair.partition("=")[::2] for pair in entries[0].get("label", "").split())
+    for key in ("flop_a_unit", "byte_a_unit", "particles", "places"):
+        if entries[0].get(key):
+            about[key] = float(entries[0][key])
+    if about.get("kinematics") == "total":
+        about["equivalent"] = "flop of the form with particles, which this one need not do"
+    large = about.get("particles", 0.0) * about.get("byte_a_unit", 0.0) > LARGE_B
+    seconds = tuple(float(e["real_time"]) * SCALE[e.get("time_unit", "ns")] / float(e["units"]) for e in entries)
+    return Figure(
+        name, per, seconds, threads=int(entries[0]["threads_used"]), bound=MEMORY if large else CORE,
+        peak_flop_s=tuple(float(e["peak_flop_s"]) for e in entries), stream_B_s=tuple(float(e["stream_B_s"]) for e in entries),
+        about=about,
+    )  # fmt: skip
+
+
+def rates(threads: int = 1) -> tuple[float, float]:
+    """The machine's rates on so many threads now: flop/s and B/s."""
+    found, _ = measure([f"calibration/threads{threads}"], 1, lambda name: None)
+    if not found or found[0].wrong():
+        raise NoBenchmark("strata_bench has no calibration")
+    return found[0].peak_flop_s[0], found[0].stream_B_s[0]

@@ -1,0 +1,137 @@
+"""What was measured, kept as a line of JSON a record in a file a machine."""
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from verification.benchmarks.figure import Figure
+from verification.benchmarks.machine import Build, Load, Machine
+
+RECORDS = Path(__file__).parent / "records"
+FORMAT = 1
+DIGITS = 5  # of stored numbers
+
+
+class OtherMachine(Exception):
+    """A record of another machine: its figures say nothing about this one."""
+
+
+class BadRecord(Exception):
+    """A file of records that cannot be read; the message says where."""
+
+
+@dataclass(frozen=True)
+class Record:
+    """Figures with where, when and of what they were taken."""
+
+    machine: Machine
+    build: Build
+    load: Load
+    date: str
+    figures: tuple[Figure, ...]
+    part: bool = False  # only some of the figures were asked for, or in fewer repetitions
+
+    def figure(self, name: str) -> Figure | None:
+        """A figure by its name."""
+        return next((figure for figure in self.figures if figure.name == name), None)
+
+
+def file_of(machine: Machine, folder: Path = RECORDS) -> Path:
+    """The file that a machine's records are in."""
+    return folder / f"{machine.key}.jsonl"
+
+
+def _short(value: Any) -> Any:
+    """Numbers to a few digits, in lists and tables too."""
+    if isinstance(value, float):
+        return float(f"{value:.{DIGITS}g}")
+    if isinstance(value, (list, tuple)):
+        return [_short(item) for item in value]
+    if isinstance(value, dict):
+        return {key: _short(item) for key, item in value.items()}
+    return value
+
+
+def as_json(record: Record) -> str:
+    """A record as one line; with each figure what is made of its repetitions, for other readers."""
+    content = asdict(record)
+    for kept, figure in zip(content["figures"], record.figures):
+        kept |= {"median": figure.median, "spread": figure.spread, "calibrated": figure.calibrated}
+        for key in ("median", "spread", "calibrated"):
+            if kept[key] != kept[key]:  # NaN is no JSON
+                kept[key] = None
+    return json.dumps({"format": FORMAT, **_short(content)}, allow_nan=False)
+
+
+def from_json(line: str, where: str = "record") -> Record:
+    """A record from its line."""
+    try:
+        content = json.loads(line)
+        if content["format"] != FORMAT:
+            raise BadRecord(f"{where}: format {content['format']}, not {FORMAT}")
+        return Record(
+            Machine(**content["machine"]), Build(**content["build"]), Load(**content["load"]), str(content["date"]),
+            tuple(_figure(item) for item in content["figures"]), bool(content["part"]),
+        )  # fmt: skip
+    except (ValueError, KeyError, TypeError) as error:
+        raise BadRecord(f"{where}: {type(error).__name__}: {error}") from error
+
+
+def _figure(content: dict[str, Any]) -> Figure:
+    """A figure from its table."""
+    lists = {key: tuple(float(value) for value in content[key]) for key in ("values", "peak_flop_s", "stream_B_s")}
+    plain = {key: content[key] for key in ("name", "per", "unit", "threads", "bound", "about", "problem")}
+    return Figure(**plain, **lists)
+
+
+def load_records(path: Path) -> list[Record]:
+    """All records of a file, the oldest first; none where there is no file."""
+    if not path.is_file():
+        return []
+    lines = path.read_text(encoding="utf-8").splitlines()
+    return [from_json(line, f"{path}:{number}") for number, line in enumerate(lines, 1) if line.strip()]
+
+
+def last_record(machine: Machine, folder: Path = RECORDS) -> Record | None:
+    """The last record of a machine; raises OtherMachine where its file holds one of another."""
+    found = load_records(file_of(machine, folder))
+    if not found:
+        return None
+    check_machine(machine, found[-1].machine)
+    return found[-1]
+
+
+def check_machine(here: Machine, there: Machine) -> None:
+    """Raises OtherMachine where two are not the same."""
+    if here != there:
+        raise OtherMachine(f"the record is of {there.cpu}, {there.cores} cores, {there.caches}; "
+                           f"this machine is {here.cpu}, {here.cores} cores, {here.caches}")  # fmt: skip
+
+
+def why_not_recorded(record: Record) -> list[str]:
+    """What speaks against keeping a record: a busy machine, a part only, figures that are none."""
+    reasons = [record.load.noisy] if record.load.noisy else []
+    if record.part:
+        reasons.append("only a part of the figures was taken")
+    broken = [figure.name for figure in record.figures if figure.wrong() and not figure.problem]
+    if broken:
+        reasons.append(f"these are no figures: {', '.join(broken[:5])}")
+    return reasons
+
+
+def append(record: Record, folder: Path = RECORDS) -> Path:
+    """Add a record to its machine's file; returns the file."""
+    path = file_of(record.machine, folder)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("a", encoding="utf-8") as stream:
+        stream.write(as_json(record) + "\n")
+    return path
+
+
+def latest(folder: Path = RECORDS) -> Sequence[Record]:
+    """The last record of each machine, the newest first."""
+    found = [records[-1] for path in sorted(folder.glob("*.jsonl")) if (records := load_records(path))]
+    return sorted(found, key=lambda record: record.date, reverse=True)
