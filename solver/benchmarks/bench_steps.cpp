@@ -11,11 +11,10 @@ namespace strata::bench {
 namespace {
 
 struct StepCase {
-  std::string kinematics = "updated", shape = "bspline2", transfer = "flip";
+  std::string kinematics = "updated", shape = "bspline2", transfer = "flip", kernels = "fast";
   int points = 4;  // a cell
   int cells = 80;  // along each side of the block
   int threads = 1;
-  std::string variant = "";
 };
 
 // Flop that a particle asks for in a step, counted by hand on the formulas of mechanics/transfers.hpp, an addition or
@@ -23,8 +22,8 @@ struct StepCase {
 //   functions of both axes      B-spline 28, uGIMP 28 (middle piece), linear 8
 //   stress and times volume     11
 //   to the nodes                m v 2; a row of nodes 7; a node 14 (m 2, m v 4, f 8)
-//   from the nodes              a row of r nodes: v, dv 4 (2 r - 1), their slopes 2 (2 r - 1); rows together 8 (2 r -
-//   1) its own                     v 4, x 4, u 4, g 8
+//   from the nodes              a row of r nodes: 6 (2 r - 1) for v, dv and slopes of v; all rows together 8 (2 r - 1)
+//   its own                     v 4, x 4, u 4, g 8
 double flop_a_particle(const std::string& shape) {
   const double r = shape == "linear" ? 2.0 : 3.0, functions = shape == "linear" ? 8.0 : 28.0, runs = 2.0 * r - 1.0;
   const double to_nodes = 2.0 + r * 7.0 + r * r * 14.0;
@@ -47,15 +46,15 @@ std::int64_t steps_of(const StepCase& c) {
 }
 
 void add_step(Shop& shop, const std::string& group, const StepCase& c) {
-  const std::string name = fmt::format("{}/{}/{}/{}/points{}/cells{}/threads{}", group, c.kinematics, c.shape,
-                                       c.transfer, c.points, c.cells, c.threads);
-  const Order order{
-      c.variant,
-      {"numerics.kinematics=" + c.kinematics, "numerics.shape=" + c.shape, "numerics.transfer=" + c.transfer,
-       fmt::format("numerics.particles_per_cell={}", c.points), cell_setting(c.cells)}};
-  const std::string label =
-      fmt::format("kinematics={} shape={} transfer={} points_per_cell={} cells={} threads={} precision=double",
-                  c.kinematics, c.shape, c.transfer, c.points, c.cells, c.threads);
+  const std::string name = fmt::format("{}/{}/{}/{}/{}/points{}/cells{}/threads{}", group, c.kinematics, c.shape,
+                                       c.transfer, c.kernels, c.points, c.cells, c.threads);
+  const Order order{"",
+                    {"numerics.kinematics=" + c.kinematics, "numerics.shape=" + c.shape,
+                     "numerics.transfer=" + c.transfer, "numerics.kernels=" + c.kernels,
+                     fmt::format("numerics.particles_per_cell={}", c.points), cell_setting(c.cells)}};
+  const std::string label = fmt::format(
+      "kinematics={} shape={} transfer={} kernels={} points_per_cell={} cells={} threads={} precision=double",
+      c.kinematics, c.shape, c.transfer, c.kernels, c.points, c.cells, c.threads);
   add(name, steps_of(c), [&shop, order, label, c](benchmark::State& bench) {
     Workpiece& work = shop.get(order);
     const auto particles = static_cast<double>(work.state.particles.size());
@@ -71,14 +70,19 @@ void add_steps(Shop& shop) {
   for (const std::string kinematics : {"updated", "total"}) {
     for (const std::string shape : {"bspline2", "gimp", "linear"}) {
       if (kinematics == "total" && shape == "gimp") continue;  // refused: points that stay need no extent
-      for (const int threads : {1, 2}) add_step(shop, "step", {kinematics, shape, "flip", 4, 80, threads});
+      for (const std::string kernels : {"fast", "plain"}) {
+        for (const int threads : {1, 2}) {
+          add_step(shop, "step", {.kinematics = kinematics, .shape = shape, .kernels = kernels, .threads = threads});
+        }
+      }
     }
-    for (const std::string transfer : {"pic", "xpic2"}) add_step(shop, "step", {kinematics, "bspline2", transfer});
-    for (const int points : {9, 16}) add_step(shop, "step", {kinematics, "bspline2", "flip", points});
+    for (const std::string transfer : {"pic", "xpic2"})
+      add_step(shop, "step", {.kinematics = kinematics, .transfer = transfer});
+    for (const int points : {9, 16}) add_step(shop, "step", {.kinematics = kinematics, .points = points});
     // The crack is 5 m of 80 m at all sizes, so its places grow as the root of the points.
     for (const int cells : {50, 160, 320, 640, 1000}) {
-      add_step(shop, "scaling", {kinematics, "bspline2", "flip", 4, cells});
-      if (cells == 320) add_step(shop, "scaling", {kinematics, "bspline2", "flip", 4, cells, 2});
+      add_step(shop, "scaling", {.kinematics = kinematics, .cells = cells});
+      if (cells == 320) add_step(shop, "scaling", {.kinematics = kinematics, .cells = cells, .threads = 2});
     }
   }
 }

@@ -25,7 +25,7 @@ OK, WORSE, WRONG_USE, NOT_RECORDED = 0, 1, 2, 4
 
 # What --quick takes of the kernels: the marks on speed, and one of every kind of event.
 QUICK_KERNELS = re.compile(
-    r"step/(updated|total)/(bspline2|gimp|linear)/flip/points4/cells80/|stage/|growth/explicit|contact/.*cells80|flow/.*cells80|write/"
+    r"step/(updated|total)/(bspline2|gimp|linear)/flip/(fast|plain)/points4/cells80/|stage/|growth/explicit|contact/.*cells80|flow/.*cells80|write/"
 )
 
 

@@ -37,12 +37,11 @@ def compare_figure(now: Figure | None, then: Figure | None) -> Line:
     if now is None:
         return Line(then.name if then else "", math.nan, GONE, "it was recorded before and was not measured now")
     wrong = now.wrong()
-    if wrong and not (now.problem and then is not None and then.problem):
-        return Line(now.name, math.nan, BROKEN, wrong)
+    if wrong:
+        before = now.problem and then is not None and then.problem
+        return Line(now.name, math.nan, UNJUDGED if before else BROKEN, f"as when it was recorded: {wrong}" if before else wrong)
     if then is None or then.wrong():
         return Line(now.name, math.nan, NEW, "nothing to compare with" if then is None else "it failed when it was recorded")
-    if wrong:
-        return Line(now.name, math.nan, UNJUDGED, wrong)
     ratio = _cost(now) / _cost(then)
     if not math.isfinite(ratio) or ratio <= 0.0:
         return Line(now.name, ratio, BROKEN, "it has no calibration beside it")
@@ -100,7 +99,7 @@ def sizes(record: Record, kinematics: str) -> list[tuple[float, float]]:
     found = {}
     for figure in record.figures:
         parts = figure.name.split("/")
-        if parts[0] in ("step", "scaling") and parts[1:5] == [kinematics, "bspline2", "flip", "points4"] and parts[-1] == "threads1":
+        if parts[0] in ("step", "scaling") and parts[1:6] == [kinematics, "bspline2", "flip", "fast", "points4"] and parts[-1] == "threads1":
             if figure.values:
                 found[float(figure.about["particles"])] = figure.median * float(figure.about["particles"])
     return sorted(found.items())
@@ -126,7 +125,7 @@ def best_crack(record: Record, error: float) -> Figure | None:
 
 def marks(record: Record) -> list[Mark]:
     """All marks of which the record has what they are about."""
-    block = "bspline2/flip/points4"
+    block = "bspline2/flip/fast/points4"
     best = best_crack(record, 1e-3)
     rate, total, step = "particle-steps of `updated`", "particle-steps of `total`, equivalent", "step/updated/{}/threads{}"
     at = [step.format(f"{block}/cells80", threads) for threads in (1, 2)]
