@@ -7,7 +7,7 @@ A module of `reports/` that fills a part of that page has one function
 `runs` is the folder of runs (`runs/`), `out` that of the page (`reports/out/`). It reads what it needs below `runs`, draws its
 figures with functions of `reports/charts/` and writes them by `put_figure`, and returns plain data; None where there is nothing
 to show because the command that makes it was not run. What was run and failed is to be said in a row, a caption or the
-intro. Modules in use: `reports.path_check`, `reports.refinement`, `reports.budget`, beside the ladder itself.
+intro. Modules in use: `reports.path_check`, `reports.refinement`, `reports.budget`, `reports.benchmarks`, beside the ladder itself.
 """
 
 from __future__ import annotations

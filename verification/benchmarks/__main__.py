@@ -7,11 +7,12 @@ import re
 import sys
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from verification.benchmarks import kernels, runs
 from verification.benchmarks.figure import Figure
-from verification.benchmarks.judge import BAD, Line, compare, marks
+from verification.benchmarks.judge import BAD, SLOWER, Line, as_plain, compare, marks
 from verification.benchmarks.machine import Load, busy_processors, this_build, this_machine
 from verification.benchmarks.records import (
     BadRecord, OtherMachine, Record, append, as_json, last_record, why_not_recorded,
@@ -122,8 +123,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not record.figures:
         print(f"ci/bench: no figure matches {options.only}", file=sys.stderr)
         return WRONG_USE
+    found = marks(record)
+    record = replace(record, marks=as_plain(found))
     lines, then, why = judge(record)
-    print("\n".join(report(record, lines, then, marks(record))))
+    print("\n".join(report(record, lines, then, found)))
     options.out.parent.mkdir(parents=True, exist_ok=True)
     options.out.write_text(as_json(record) + "\n", encoding="utf-8")
     print(f"figures: {options.out}")
@@ -133,7 +136,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if noisy:
         print(f"ci/bench: {noisy}: these are no results, and nothing is judged by them", file=sys.stderr)
     kept = keep(record, options) if options.record else OK
-    broken = any(line.verdict in BAD and (not noisy or line.verdict != "slower") for line in lines)
+    broken = any(line.verdict in BAD and (not noisy or line.verdict != SLOWER) for line in lines)
     return WORSE if broken or any(figure.wrong() and not figure.problem for figure in record.figures) else kept
 
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 from verification.benchmarks.figure import NONE, Figure, exponent
 from verification.benchmarks.records import Record, check_machine
@@ -80,6 +80,11 @@ class Mark:
         if not math.isfinite(self.found) or self.found <= 0.0:
             return False
         return self.found >= self.wanted if self.at_least else self.found <= self.wanted
+
+
+def as_plain(found: Sequence[Mark]) -> tuple[dict[str, object], ...]:
+    """Marks as tables, with whether each is reached."""
+    return tuple({**asdict(mark), "reached": mark.reached} for mark in found)
 
 
 def _rate(record: Record, name: str) -> float:

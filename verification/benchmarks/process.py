@@ -32,12 +32,11 @@ class Setting:
 
 @dataclass(frozen=True)
 class Taken:
-    """What a run took: seconds from start to end of the process, processor seconds, the most memory it held (B), its summary."""
+    """What a run took: seconds from start to end of the process, processor seconds; its summary."""
 
     setting: Setting
     seconds: float
     cpu_s: float
-    memory_B: float
     summary: Summary | None
     problem: str = ""
 
@@ -59,21 +58,21 @@ def take(setting: Setting, until: float = float("inf")) -> Taken:
         log = Path(folder) / "log.txt"
         start = time.monotonic()
         if start >= until:
-            return Taken(setting, 0.0, 0.0, 0.0, None, "not begun: the time for these runs was over")
+            return Taken(setting, 0.0, 0.0, None, "not begun: the time for these runs was over")
         with log.open("w", encoding="utf-8") as stream:
             process = subprocess.Popen(command_of(setting, out), stdout=stream, stderr=stream)
         status, usage, ended = _wait(process, until)
         seconds = time.monotonic() - start
-        cpu_s, memory_B = usage.ru_utime + usage.ru_stime, 1024.0 * usage.ru_maxrss
+        cpu_s = usage.ru_utime + usage.ru_stime
         if ended:
-            return Taken(setting, seconds, cpu_s, memory_B, None, "ended: the time for these runs was over")
+            return Taken(setting, seconds, cpu_s, None, "ended: the time for these runs was over")
         try:
             summary = read_summary(out / "summary.json")
         except LoadError as error:
             said = " / ".join(log.read_text(encoding="utf-8").strip().splitlines()[-2:])
-            return Taken(setting, seconds, cpu_s, memory_B, None, said or str(error))
+            return Taken(setting, seconds, cpu_s, None, said or str(error))
     problem = "" if status == 0 else f"exit status {status}: {summary.reason}"
-    return Taken(setting, seconds, cpu_s, memory_B, summary, problem)
+    return Taken(setting, seconds, cpu_s, summary, problem)
 
 
 def _wait(process: subprocess.Popen[bytes], until: float) -> tuple[int, Any, bool]:

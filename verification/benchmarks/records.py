@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+import math
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -33,6 +33,7 @@ class Record:
     date: str
     figures: tuple[Figure, ...]
     part: bool = False  # only some of the figures were asked for, or in fewer repetitions
+    marks: tuple[dict[str, Any], ...] = ()  # what the figures reach, for other readers
 
     def figure(self, name: str) -> Figure | None:
         """A figure by its name."""
@@ -45,9 +46,9 @@ def file_of(machine: Machine, folder: Path = RECORDS) -> Path:
 
 
 def _short(value: Any) -> Any:
-    """Numbers to a few digits, in lists and tables too."""
+    """Numbers to a few digits, in lists and tables too; those that are not finite, which JSON has not, as null."""
     if isinstance(value, float):
-        return float(f"{value:.{DIGITS}g}")
+        return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None
     if isinstance(value, (list, tuple)):
         return [_short(item) for item in value]
     if isinstance(value, dict):
@@ -59,10 +60,8 @@ def as_json(record: Record) -> str:
     """A record as one line; with each figure what is made of its repetitions, for other readers."""
     content = asdict(record)
     for kept, figure in zip(content["figures"], record.figures):
-        kept |= {"median": figure.median, "spread": figure.spread, "calibrated": figure.calibrated}
-        for key in ("median", "spread", "calibrated"):
-            if kept[key] != kept[key]:  # NaN is no JSON
-                kept[key] = None
+        kept |= {"median": figure.median, "spread": figure.spread, "calibrated": figure.calibrated,
+                 "share_of_peak": figure.share_of_peak}  # fmt: skip
     return json.dumps({"format": FORMAT, **_short(content)}, allow_nan=False)
 
 
@@ -74,7 +73,7 @@ def from_json(line: str, where: str = "record") -> Record:
             raise BadRecord(f"{where}: format {content['format']}, not {FORMAT}")
         return Record(
             Machine(**content["machine"]), Build(**content["build"]), Load(**content["load"]), str(content["date"]),
-            tuple(_figure(item) for item in content["figures"]), bool(content["part"]),
+            tuple(_figure(item) for item in content["figures"]), bool(content["part"]), tuple(content["marks"]),
         )  # fmt: skip
     except (ValueError, KeyError, TypeError) as error:
         raise BadRecord(f"{where}: {type(error).__name__}: {error}") from error
@@ -130,8 +129,3 @@ def append(record: Record, folder: Path = RECORDS) -> Path:
         stream.write(as_json(record) + "\n")
     return path
 
-
-def latest(folder: Path = RECORDS) -> Sequence[Record]:
-    """The last record of each machine, the newest first."""
-    found = [records[-1] for path in sorted(folder.glob("*.jsonl")) if (records := load_records(path))]
-    return sorted(found, key=lambda record: record.date, reverse=True)

@@ -27,20 +27,21 @@ Tell = Callable[[str], None]
 
 @dataclass(frozen=True)
 class Batch:
-    """All default variants in one mechanics at one cell size, within so many seconds."""
+    """All default variants in one mechanics at one cell size, within so many seconds; `only`: of experiments that begin so."""
 
     mechanics: str
     cell_m: float
     repetitions: int
     limit_s: float
+    only: str = ""
 
     @property
     def name(self) -> str:
         """The figure's name."""
-        return f"experiments/{self.mechanics}/cell{self.cell_m:g}m"
+        return f"experiments/{self.mechanics}/cell{self.cell_m:g}m{f'/{self.only}' if self.only else ''}"
 
 
-QUICK = (Batch("quasistatic", 2.0, 1, 60.0),)
+QUICK = (Batch("quasistatic", 1.0, 1, 60.0, "exp1"),)
 DEFAULT = (Batch("quasistatic", 1.0, 3, 120.0), Batch("explicit", 1.0, 1, 150.0))
 LONG = (Batch("quasistatic", 1.0, 5, 120.0), Batch("explicit", 1.0, 3, 3600.0), Batch("quasistatic", 0.25, 1, 1800.0))
 
@@ -48,7 +49,8 @@ LONG = (Batch("quasistatic", 1.0, 5, 120.0), Batch("explicit", 1.0, 3, 3600.0), 
 def settings_of(batch: Batch) -> list[Setting]:
     """The runs of a batch, those that take longest first."""
     keys = (f"numerics.mechanics={batch.mechanics}", f"numerics.cell_m={batch.cell_m:g}")
-    runs = [Setting(EXPERIMENTS / f"{name}.toml", variant, keys) for name, variants in VARIANTS.items() for variant in variants]
+    runs = [Setting(EXPERIMENTS / f"{name}.toml", variant, keys) for name, variants in VARIANTS.items()
+            if name.startswith(batch.only) for variant in variants]  # fmt: skip
     return sorted(runs, key=lambda run: run.scene.stem not in ("exp5_parallel_interface", "exp6_stress_reversal"))
 
 
@@ -188,7 +190,7 @@ def memory_figures(quick: bool, tell: Tell) -> list[Figure]:
             taken = take(Setting(BLOCK, "", settings))
             problem = problem or taken.problem
             if taken.summary is not None:
-                held.append((float(taken.summary.particles), taken.memory_B))
+                held.append((float(taken.summary.particles), 1e6 * taken.summary.peak_memory_MB))
         figures.append(memory_figure(f"memory/{kind}", held, problem))
         tell(f"memory/{kind}: {figures[-1].problem or f'{figures[-1].median:.0f} B a point'}")
     return figures

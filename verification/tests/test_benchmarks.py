@@ -254,7 +254,7 @@ def test_a_run_is_timed_and_one_that_takes_too_long_is_ended(tmp_path: Path) -> 
     """The equilibrium of the block: seconds, memory, summary. Out of time: not begun, or ended; bad input: its words."""
     good = take(Setting(runs.CRACK, "", ("numerics.cell_m=4",)))
     assert good.problem == "" and good.summary is not None and 0.0 < good.summary.wall_s < good.seconds
-    assert good.memory_B > 5e6 and good.cpu_s > 0.0
+    assert good.summary.peak_memory_MB > 5.0 and good.cpu_s > 0.0
     assert "no.such" in take(Setting(runs.CRACK, "", ("no.such=1",))).problem
     long = Setting(runs.BLOCK, "", ("numerics.cell_m=0.5", "stop.time_s=100"))
     seconds, (ended, late) = take_all([long, long], 1, 0.3, lambda words: None)
