@@ -75,7 +75,8 @@ void make_fracture(const Scene& scene, State& state) {
 std::vector<Vec2> interface_path(const Scene& scene, const Grid& grid, double at) {
   const bool along_x = scene.strata.along == Strata::Along::y;
   const std::vector<double>& knots = along_x ? grid.x_knots : grid.y_knots;
-  std::vector<double> along{0.0, along_x ? scene.domain.width_m : scene.domain.height_m};
+  const Stretch rock = along_x ? scene.domain.along_x() : scene.domain.along_y();
+  std::vector<double> along{rock.from, rock.to};
   if (!knots.empty()) {
     along.clear();
     const int n = along_x ? grid.nx : grid.ny;

@@ -57,9 +57,11 @@ double increment_to_interface(const Scene& scene, const Vec2& tip, const Vec2& d
 // True where a tip at x is too near to an edge that it heads for.
 bool near_edge(const Scene& scene, const Vec2& x, const Vec2& direction, double h) {
   const double keep = edge_cells * h;
-  const bool left = x.x() < keep && direction.x() < 0.0, bottom = x.y() < keep && direction.y() < 0.0;
-  const bool right = x.x() > scene.domain.width_m - keep && direction.x() > 0.0;
-  const bool top = x.y() > scene.domain.height_m - keep && direction.y() > 0.0;
+  const Stretch along_x = scene.domain.along_x(), along_y = scene.domain.along_y();
+  const bool left = x.x() < along_x.from + keep && direction.x() < 0.0;
+  const bool right = x.x() > along_x.to - keep && direction.x() > 0.0;
+  const bool bottom = x.y() < along_y.from + keep && direction.y() < 0.0;
+  const bool top = x.y() > along_y.to - keep && direction.y() > 0.0;
   return left || right || bottom || top;
 }
 

@@ -237,8 +237,9 @@ double ring_radius(const Scene& scene, const State& state, const Tip& tip, const
   const auto keep_off = [&](double distance) {
     radius = std::min(radius, distance - h);
   };  // a node's function reaches on
-  keep_off(at.x()), keep_off(scene.domain.width_m - at.x());
-  keep_off(at.y()), keep_off(scene.domain.height_m - at.y());
+  const Stretch along_x = scene.domain.along_x(), along_y = scene.domain.along_y();
+  keep_off(at.x() - along_x.from), keep_off(along_x.to - at.x());
+  keep_off(at.y() - along_y.from), keep_off(along_y.to - at.y());
   for (const Tip& other : state.tips) {
     if (other.at_back != tip.at_back) keep_off(0.5 * state.fracture().length());
   }

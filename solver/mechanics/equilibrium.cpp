@@ -69,12 +69,13 @@ void load_in_situ(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
   rebuild_copies(loaded, state);
   SparseMatrix K = assemble_stiffness(loaded, rocks, state, state.masters);
   Eigen::VectorXd f = Eigen::VectorXd::Zero(K.rows());
-  const double W = scene.domain.width_m, H = scene.domain.height_m;
-  load_edge(loaded, state, {0.0, 0.0}, {0.0, H}, {scene.in_situ.horizontal_Pa, 0.0}, f);
-  load_edge(loaded, state, {W, 0.0}, {W, H}, {-scene.in_situ.horizontal_Pa, 0.0}, f);
-  load_edge(loaded, state, {0.0, H}, {W, H}, {0.0, -scene.in_situ.vertical_Pa}, f);
+  const Stretch x = scene.domain.along_x(), y = scene.domain.along_y();
+  const Vec2 corners[4] = {{x.from, y.from}, {x.to, y.from}, {x.to, y.to}, {x.from, y.to}};
+  load_edge(loaded, state, corners[0], corners[3], {scene.in_situ.horizontal_Pa, 0.0}, f);
+  load_edge(loaded, state, corners[1], corners[2], {-scene.in_situ.horizontal_Pa, 0.0}, f);
+  load_edge(loaded, state, corners[3], corners[2], {0.0, -scene.in_situ.vertical_Pa}, f);
   if (scene.domain.bottom == Edge::traction)
-    load_edge(loaded, state, {0.0, 0.0}, {W, 0.0}, {0.0, scene.in_situ.vertical_Pa}, f);
+    load_edge(loaded, state, corners[0], corners[1], {0.0, scene.in_situ.vertical_Pa}, f);
   hold_rigid_motion(loaded, state, K, f);
   const Eigen::CholmodSupernodalLLT<SparseMatrix> factor(K);
   if (factor.info() != Eigen::Success)

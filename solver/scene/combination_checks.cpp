@@ -41,6 +41,13 @@ void check_explicit(const Scene& scene, const Positions& positions, Faults& faul
                        number_text(*scene.numerics.far_cell_m)),
            "Leave it out: with mechanics = \"explicit\" all cells are of cell_m.");
   }
+  if (scene.domain.beyond_m > 0.0) {
+    refuse("domain.beyond_m",
+           fmt::format("domain.beyond_m = {} grades the grid beyond the block, and only mechanics = \"quasistatic\" "
+                       "takes a graded one.",
+                       number_text(scene.domain.beyond_m)),
+           "Leave it out, or make the block larger.");
+  }
   if (scene.stop.time_s && *scene.stop.time_s == 0.0) {
     refuse("stop.time_s",
            "stop.time_s = 0 asks for one equilibrium and needs mechanics = \"quasistatic\", but "
@@ -67,6 +74,23 @@ void check_shape_functions(const Scene& scene, const Positions& positions, Fault
              fmt::format("numerics.shape = \"gimp\" is for moving points only, but {} leaves them in their reference "
                          "place, where it is linear. Use shape = \"bspline2\" or \"linear\".",
                          quasistatic ? "mechanics = \"quasistatic\"" : "kinematics = \"total\""));
+}
+
+void check_beyond(const Scene& scene, const Positions& positions, Faults& faults) {
+  const double beyond = scene.domain.beyond_m, cell = scene.numerics.cell_m;
+  if (beyond == 0.0 || !usable(positions, "domain.beyond_m") || !usable(positions, "numerics.cell_m")) return;
+  if (beyond < cell) {
+    faults.add(where_is(positions, "domain.beyond_m"),
+               fmt::format("domain.beyond_m = {} is less than a cell of numerics.cell_m = {}. Give at least a cell, or "
+                           "0: the rock ends at the block's edges.",
+                           number_text(beyond), number_text(cell)));
+  }
+  if (scene.numerics.particles_per_cell == 9 && positions.sound("numerics.particles_per_cell")) {
+    faults.add(where_is(positions, "numerics.particles_per_cell"),
+               fmt::format("numerics.particles_per_cell = 9 is for uniform grids, but domain.beyond_m = {} grades this "
+                           "one. Use 4 or 16, or leave beyond_m out.",
+                           number_text(beyond)));
+  }
 }
 
 void check_far_cell(const Scene& scene, const Positions& positions, Faults& faults) {
@@ -135,6 +159,7 @@ void check_combinations(const Scene& scene, const Positions& positions, Faults& 
     check_shape_functions(scene, positions, faults);
   }
   check_far_cell(scene, positions, faults);
+  check_beyond(scene, positions, faults);
   if (scene.fracture) check_fluid(scene, positions, faults);
   check_numbers(scene, positions, faults);
 }

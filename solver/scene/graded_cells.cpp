@@ -60,14 +60,15 @@ bool rocks_or_law_change(const Scene& scene, std::size_t k) {
 
 // Spans of one stretch of growing cells, for a trial q.
 struct Growth {
-  double h, far;
-  bool to_edge;  // the last span counts half; otherwise spans grow from both ends
+  enum class End { edge, neighbour, fine };  // an edge halves the last span; towards fine cells spans shrink again
+  double h, far, most;                       // most: largest q
+  End end;
   double span(int k, int m, double q) const {
-    return std::min(h * std::pow(q, to_edge ? k : std::min(k, m + 1 - k)), far);
+    return std::min(h * std::pow(q, end == End::fine ? std::min(k, m + 1 - k) : k), far);
   }
   double sum(int m, double q) const {
     double total = 0.0;
-    for (int k = 1; k <= m; ++k) total += (to_edge && k == m ? 0.5 : 1.0) * span(k, m, q);
+    for (int k = 1; k <= m; ++k) total += (end == End::edge && k == m ? 0.5 : 1.0) * span(k, m, q);
     return total;
   }
 };
@@ -76,8 +77,8 @@ struct Growth {
 std::vector<double> growing_spans(const Growth& growth, double length) {
   const double round_off = 1e-9 * growth.h;
   int m = 1;
-  while (growth.sum(m, span_growth) < length - round_off) ++m;
-  double low = 1.0, high = span_growth;
+  while (growth.sum(m, growth.most) < length - round_off) ++m;
+  double low = 1.0, high = growth.most;
   while (high - low > 2e-16 * high) {
     const double q = 0.5 * (low + high);
     if (q <= low || q >= high) break;
@@ -85,6 +86,23 @@ std::vector<double> growing_spans(const Growth& growth, double length) {
   }
   std::vector<double> spans;
   for (int k = 1; k <= m; ++k) spans.push_back(growth.span(k, m, high));
+  return spans;
+}
+
+// Spans from the last fine node, `cells` cells from an end of the block, outwards to the end of the rock.
+std::vector<double> outward_spans(const Grading& axis, long cells, double beyond) {
+  const auto to_edge = static_cast<double>(cells) * axis.h;
+  if (beyond == 0.0) {
+    if (cells == 0) return {};
+    return growing_spans({axis.h, axis.far, span_growth, Growth::End::edge}, to_edge - 0.5 * axis.h);
+  }
+  std::vector<double> spans;
+  if (cells > 0) spans = growing_spans({axis.h, axis.far, span_growth, Growth::End::neighbour}, to_edge);
+  const double last = spans.empty() ? axis.h : spans.back();
+  constexpr double unbounded = std::numeric_limits<double>::infinity();
+  const std::vector<double> more =
+      growing_spans({last, unbounded, span_growth_beyond, Growth::End::edge}, beyond - 0.5 * axis.h);
+  spans.insert(spans.end(), more.begin(), more.end());
   return spans;
 }
 
@@ -141,30 +159,29 @@ std::vector<Stretch> fine_stretches(const Scene& scene, int axis) {
   return merged;
 }
 
-std::vector<double> graded_knots(double extent, double h, double far, const std::vector<Stretch>& fine) {
-  const long cells = std::lround(extent / h);
-  const std::vector<FineNodes> nodes = fine_nodes(h, cells, fine);
+std::vector<double> graded_knots(const Grading& axis) {
+  const double h = axis.h;
+  const long cells = std::lround(axis.extent / h);
+  const std::vector<FineNodes> nodes = fine_nodes(h, cells, axis.fine);
   std::vector<double> t;  // from t_0 on, the lower end of the first node's span
-  if (nodes.front().first > 0) {
-    const double length = (static_cast<double>(nodes.front().first) - 0.5) * h;
-    const std::vector<double> spans = growing_spans({h, far, true}, length);
-    t.push_back(-0.5 * spans.back());
-    for (std::size_t k = spans.size() - 1; k > 0; --k) t.push_back(t.back() + spans[k]);
+  const std::vector<double> down = outward_spans(axis, nodes.front().first, axis.below);
+  if (!down.empty()) {
+    t.push_back(-axis.below - 0.5 * down.back());
+    for (std::size_t k = down.size() - 1; k > 0; --k) t.push_back(t.back() + down[k]);
   }
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     for (long i = nodes[n].first; i <= nodes[n].last + 1; ++i) t.push_back((static_cast<double>(i) - 0.5) * h);
     if (n + 1 == nodes.size()) break;
     const double gap = static_cast<double>(nodes[n + 1].first - nodes[n].last - 1) * h;
-    const std::vector<double> spans = growing_spans({h, far, false}, gap);
+    const std::vector<double> spans = growing_spans({h, axis.far, span_growth, Growth::End::fine}, gap);
     for (std::size_t k = 0; k + 1 < spans.size(); ++k) t.push_back(t.back() + spans[k]);
   }
-  if (nodes.back().last < cells) {
-    const double length = (static_cast<double>(cells - nodes.back().last) - 0.5) * h;
-    const std::vector<double> spans = growing_spans({h, far, true}, length);
-    for (std::size_t k = 0; k + 1 < spans.size(); ++k) t.push_back(t.back() + spans[k]);
-    t.push_back(2.0 * extent - t.back());  // the last node, in the middle, stands on the edge
+  const std::vector<double> up = outward_spans(axis, cells - nodes.back().last, axis.above);
+  if (!up.empty()) {
+    for (std::size_t k = 0; k + 1 < up.size(); ++k) t.push_back(t.back() + up[k]);
+    t.push_back(2.0 * (axis.extent + axis.above) - t.back());  // the last node, in the middle, stands on the edge
   }
-  t[0] = -t[1];  // the first node stands on the edge
+  t[0] = -2.0 * axis.below - t[1];  // the first node stands on the edge
   // Ghosts: node -1 mirrors node 1, node n + 1 mirrors node n - 1.
   t.insert(t.begin(), t[0] - (t[2] - t[1]));
   const std::size_t end = t.size() - 1;
@@ -174,9 +191,13 @@ std::vector<double> graded_knots(double extent, double h, double far, const std:
 
 std::vector<double> scene_knots(const Scene& scene, int axis) {
   const double h = scene.numerics.cell_m, far = scene.numerics.far_cell_m.value_or(h);
-  if (far <= h) return {};
-  const double extent = axis == 0 ? scene.domain.width_m : scene.domain.height_m;
-  return graded_knots(extent, h, far, fine_stretches(scene, axis));
+  const Domain& domain = scene.domain;
+  const bool goes_on = domain.beyond_m > 0.0;
+  if (far <= h && !goes_on) return {};
+  const double extent = axis == 0 ? domain.width_m : domain.height_m;
+  const Stretch rock = axis == 0 ? domain.along_x() : domain.along_y();
+  const std::vector<Stretch> fine = far <= h ? std::vector<Stretch>{{0.0, extent}} : fine_stretches(scene, axis);
+  return graded_knots({extent, h, far, fine, -rock.from, rock.to - extent});
 }
 
 }  // namespace strata

@@ -93,6 +93,11 @@ std::vector<Key> domain_keys() {
       required(number(
           "domain.height_m", "m", positive, +[](Scene& s, std::size_t) -> double& { return s.domain.height_m; },
           "Height of the block.")),
+      number(
+          "domain.beyond_m", "m", not_negative, +[](Scene& s, std::size_t) -> double& { return s.domain.beyond_m; },
+          "How far the rock goes on beyond the block's edges, but not below a symmetry line, in cells that grow by at "
+          "most 1.5 each; what is said of the edges holds where the rock ends. 20 times the block stands for a rock "
+          "without end."),
       word(
           "domain.bottom", {as("symmetry", Edge::symmetry), as("traction", Edge::traction)},
           [](Scene& s, std::size_t) -> Edge& { return s.domain.bottom; },

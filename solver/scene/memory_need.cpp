@@ -19,13 +19,18 @@ struct Cells {
   double x = 0.0, y = 0.0;  // along each axis; doubles, since a slip of the finger may ask for more than an int holds
 };
 
+// Cells of h q, h q^2, ... that fill a length.
+double endless_cells(double length, double h, double q) {
+  return std::log1p(length * (q - 1.0) / (q * h)) / std::log(q);
+}
+
 // Cells over a length from one end of which they grow from h to `far`: k of them with h (q + ... + q^k) = L, q = 1.2,
 // until h q^k = far.
 double growing_cells(double length, double h, double far) {
   const double most = std::log(far / h) / std::log(span_growth);
   const double sum = h * span_growth * (far / h - 1.0) / (span_growth - 1.0);
   if (length > sum) return most + (length - sum) / far;
-  return std::log1p(length * (span_growth - 1.0) / (span_growth * h)) / std::log(span_growth);
+  return endless_cells(length, h, span_growth);
 }
 
 // Along an axis of `extent` m; cells grow from both ends of a gap between fine stretches.
@@ -45,8 +50,11 @@ double graded_cells(const Scene& scene, int axis, double extent, double far) {
 Cells cells_of(const Scene& scene) {
   const double h = scene.numerics.cell_m, far = scene.numerics.far_cell_m.value_or(h);
   const Domain& domain = scene.domain;
-  if (far <= h) return {domain.width_m / h, domain.height_m / h};
-  return {graded_cells(scene, 0, domain.width_m, far), graded_cells(scene, 1, domain.height_m, far)};
+  const double beyond = endless_cells(domain.beyond_m, h, span_growth_beyond);
+  const double ends = domain.bottom == Edge::symmetry ? 1.0 : 2.0;
+  const bool graded = far > h;
+  return {2.0 * beyond + (graded ? graded_cells(scene, 0, domain.width_m, far) : domain.width_m / h),
+          ends * beyond + (graded ? graded_cells(scene, 1, domain.height_m, far) : domain.height_m / h)};
 }
 
 }  // namespace

@@ -17,12 +17,22 @@ enum class Edge { symmetry, fixed, traction };
 // where the key says so of the time t (s).
 using Formulas = std::array<std::string, 2>;
 
+// A stretch along an axis (m).
+struct Stretch {
+  double from = 0.0, to = 0.0;
+};
+
 struct Domain {
   double width_m = 0.0;
   double height_m = 0.0;
   Edge bottom = Edge::symmetry;
   Edge sides = Edge::fixed;
   Edge top = Edge::traction;
+  double beyond_m = 0.0;  // how far the rock goes on beyond the block's edges, but not below a symmetry line
+
+  // From edge to edge of the rock, with what goes on beyond the block.
+  Stretch along_x() const { return {-beyond_m, width_m + beyond_m}; }
+  Stretch along_y() const { return {bottom == Edge::symmetry ? 0.0 : -beyond_m, height_m + beyond_m}; }
 
   // Whether an edge holds the block's motion along x or y; what none holds is free as a whole.
   bool holds_x() const { return sides == Edge::fixed; }

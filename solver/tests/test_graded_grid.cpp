@@ -69,7 +69,7 @@ TEST_CASE("growing cells fill the block") {
   for (const double h : {1.0, 0.5, 0.1}) {
     for (const double far : {1.1 * h, 2.0 * h, 5.0 * h, 40.0 * h}) {
       for (const auto& fine : cases) {
-        const std::vector<double> t = graded_knots(80.0, h, far, fine), s = spans_of(t);
+        const std::vector<double> t = graded_knots({80.0, h, far, fine}), s = spans_of(t);
         CAPTURE(h, far, fine.size(), s.size());
         CHECK(t[1] == -t[2]);
         CHECK(0.5 * (t[t.size() - 3] + t[t.size() - 2]) == Approx(80.0).epsilon(1e-15));
@@ -94,10 +94,47 @@ TEST_CASE("growing cells fill the block") {
   }
 }
 
+// Requires of axes whose rock goes on beyond the block that nodes stand where it ends, spans fill it, within the block
+// none is more than 1.2 times a neighbour or longer than far, beyond it none more than 1.5 times and never shorter than
+// the one before, the fine ones are untouched, and the last is long: 1600 m take fewer than 16 spans a side.
+TEST_CASE("cells grow on beyond the block") {
+  for (const double h : {1.0, 0.5}) {
+    for (const double far : {h, 5.0 * h}) {
+      for (const auto& fine : std::vector<std::vector<Stretch>>{{{0.0, 80.0}}, {{30.0, 42.0}}, {{0.0, 15.0}}}) {
+        for (const double beyond : {h, 40.0, 1600.0}) {
+          for (const double below : {0.0, beyond}) {
+            const std::vector<double> t = graded_knots({80.0, h, far, fine, below, beyond}), s = spans_of(t);
+            CAPTURE(h, far, beyond, below, s.size());
+            CHECK(t[1] + t[2] == Approx(-2.0 * below).epsilon(1e-12));
+            CHECK(0.5 * (t[t.size() - 3] + t[t.size() - 2]) == Approx(80.0 + beyond).epsilon(1e-14));
+            std::size_t past = 0;
+            for (std::size_t k = 0; k + 1 < s.size(); ++k) {
+              const double x = t[k + 2];  // between spans k and k + 1
+              const double ratio = x > 40.0 ? s[k + 1] / s[k] : s[k] / s[k + 1];
+              const bool within = x > -0.4 * h && x < 80.0 + 0.4 * h;
+              CHECK(std::max(ratio, 1.0 / ratio) < (within ? 1.2 : 1.5) * (1.0 + 1e-9));
+              if (within) CHECK(s[k] < far * (1.0 + 1e-9));
+              if (!within) CHECK(ratio > 1.0 - 1e-9);
+              past += x > 80.0 + 0.4 * h ? 1 : 0;
+            }
+            CHECK(past < 17);
+            for (std::size_t k = 0; k < s.size(); ++k) {
+              const double x = 0.5 * (t[k + 1] + t[k + 2]);
+              for (const Stretch& f : fine) {
+                if (x >= f.from && x <= f.to) CHECK(s[k] == Approx(h).epsilon(1e-11));
+              }
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
 // Requires that far cells are reached and save what they are for: 80 m with 12 m of fine cells of 0.5 m and far ones
 // of 5 m take less than 0.4 of the uniform grid's 160 cells, and the longest span is of 5 m within a tenth.
 TEST_CASE("cells become as long as asked for") {
-  const std::vector<double> s = spans_of(graded_knots(80.0, 0.5, 5.0, {{34.0, 46.0}}));
+  const std::vector<double> s = spans_of(graded_knots({80.0, 0.5, 5.0, {{34.0, 46.0}}}));
   CHECK(s.size() < 64);
   CHECK(*std::max_element(s.begin(), s.end()) > 4.5);
 }

@@ -99,7 +99,8 @@ TEST_CASE("graded patch test") {
 }
 
 // Requires that the loaded in-situ state of one rock is uniform, to 1e-9 on a graded and on a uniform grid, both
-// shapes, 4 and 16 points a cell, with the bottom loaded or a symmetry line. Mutations that fail: edges loaded at two
+// shapes, 4 and 16 points a cell, with the bottom loaded or a symmetry line, with and without rock beyond the block.
+// Mutations that fail: edges loaded at two
 // points a cell with 16 (16 %), at quarters of cells where they are graded (1e-3).
 TEST_CASE("loaded in-situ stress of one rock is uniform") {
   for (const auto shape : fixed_shapes) {
@@ -110,8 +111,11 @@ TEST_CASE("loaded in-situ stress of one rock is uniform") {
         if (!graded) scene.numerics.far_cell_m.reset();
         scene.numerics.shape = shape;
         scene.numerics.particles_per_cell = points;
-        CAPTURE(static_cast<int>(shape), points, graded);
-        CHECK(loaded_error(scene) < 1e-9);
+        for (const double beyond : {0.0, 1.0, 200.0}) {
+          scene.domain.beyond_m = beyond;
+          CAPTURE(static_cast<int>(shape), points, graded, beyond);
+          CHECK(loaded_error(scene) < 1e-9);
+        }
       }
     }
   }

@@ -110,6 +110,7 @@ TEST_CASE("A scene without inertia, fed at a rate and on a graded grid reads as 
   std::string text = with(layered, "{start_Pa = 2e6, rate_Pa_s = 0.35e6}", "{rate_m2_s = 1e-4}\nlaw = \"reynolds\"");
   text = with(text, "inlet_Pa = 4e6", "tip_y_m = 70\ntime_s = 0");
   text = with(text, "cell_m = 1", "cell_m = 1\nfar_cell_m = 5\nmechanics = \"quasistatic\"");
+  text = with(text, "width_m = 80\n", "width_m = 80\nbeyond_m = 300\n");
   check_round_trip(good(with(text, "[fracture]\n", "[fracture]\ncrossing_increment_m = 0.5\n")));
 }
 
@@ -131,6 +132,11 @@ TEST_CASE("Memory needed grows with the particles, more so with a factor, and le
   scene.numerics.mechanics = Numerics::Mechanics::quasistatic;
   scene.numerics.far_cell_m = 1.0;
   CHECK(memory_need(scene) == uniform);
+  scene.domain.beyond_m = 300.0;
+  scene.numerics.mechanics = Numerics::Mechanics::explicit_dynamics;
+  CHECK(memory_need(scene) == Approx(260.0 * 4.0 * cells(0) * cells(1)).epsilon(0.05));
+  scene.domain.beyond_m = 0.0;
+  scene.numerics.mechanics = Numerics::Mechanics::quasistatic;
   CHECK_FALSE(too_large(scene, uniform).has_value());
   CHECK_THAT(too_large(scene, 0.5 * uniform).value(), Catch::Contains("0.0289 GB, and 0.0145 GB are available"));
   CHECK(available_memory() > 1e6);

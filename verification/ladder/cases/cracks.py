@@ -183,6 +183,27 @@ def closed_mouth(run: Run) -> Sample:
     return Sample.of(run.summary.mouth_opening_m, 0.0, scale=block(run)["mouth_opening_m"])
 
 
+@lru_cache(maxsize=None)
+def _plane(half_length_m: float) -> dict[str, float]:
+    """The reference for a crack in a plane without end, SI."""
+    return {name: item.value for name, item in reference("pressurised_crack", half_length_m=half_length_m, pressure_Pa=NET_PA).items()}
+
+
+def endless_K_I(run: Run) -> Sample:
+    """K_I against that in a plane without end, Pa sqrt(m)."""
+    return Sample.of(loaded(run).summary.tips[0].K_I_Pa_sqrt_m, _plane(half_length(run))["K_I"])
+
+
+def endless_mouth(run: Run) -> Sample:
+    """Opening at the mouth, m."""
+    return Sample.of(loaded(run).summary.mouth_opening_m, _plane(half_length(run))["mouth_opening_m"])
+
+
+def endless_volume(run: Run) -> Sample:
+    """Volume of the modelled half, m^2."""
+    return Sample.of(loaded(run).summary.fracture_volume_m2, 0.5 * _plane(half_length(run))["volume_m2"])
+
+
 RINGS = "the rings are 4 cells wide at every size: the error of the tip inside them does not fall with the cell"
 SYMMETRY = "round-off: the crack is its own mirror image"
 PLACES = "where in their cells the tips lie differs from size to size"
@@ -214,6 +235,11 @@ SLOPED = (
 RELEASED = (
     Quantity("K by energy, 4 to 6 m", "Pa sqrt(m)", K_by_energy),
     Quantity("G of the last step, 5 to 6 m", "N/m", energy_released),
+)
+ENDLESS = (
+    Quantity("K_I", "Pa sqrt(m)", endless_K_I, RINGS),
+    Quantity("mouth opening", "m", endless_mouth),
+    Quantity("fracture volume", "m^2", endless_volume),
 )
 START = (Quantity("critical net pressure", "Pa", critical, RINGS),)
 CLOSED = (Quantity("J", "N/m", closed_J, BALANCE), Quantity("mouth opening", "m", closed_mouth, BALANCE))
@@ -292,6 +318,7 @@ CASES = (
         "wide", "crack in a block 400 m wide, graded: opening of order 1, since the tip's error is felt in all of it",
         levels(FINEST, "wide", far_graded),
     ),
+    at_rest("endless", "crack in a small block whose rock goes on for 1600 m", levels(FINEST, "endless", graded), ENDLESS),
     *(
         at_rest(
             f"tip_{share:g}", f"tip {share:g} of a cell past a grid line",
