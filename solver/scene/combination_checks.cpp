@@ -1,6 +1,8 @@
 // Keys that are sound each by itself but do not go together.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "scene/keys.hpp"
 #include "scene/scene_checks.hpp"
 
@@ -79,11 +81,12 @@ void check_shape_functions(const Scene& scene, const Positions& positions, Fault
 void check_beyond(const Scene& scene, const Positions& positions, Faults& faults) {
   const double beyond = scene.domain.beyond_m, cell = scene.numerics.cell_m;
   if (beyond == 0.0 || !usable(positions, "domain.beyond_m") || !usable(positions, "numerics.cell_m")) return;
-  if (beyond < cell) {
+  const double least = 2.0 * std::max(cell, scene.numerics.far_cell_m.value_or(cell));  // shorter, cells would shrink
+  if (beyond < least) {
     faults.add(where_is(positions, "domain.beyond_m"),
-               fmt::format("domain.beyond_m = {} is less than a cell of numerics.cell_m = {}. Give at least a cell, or "
-                           "0: the rock ends at the block's edges.",
-                           number_text(beyond), number_text(cell)));
+               fmt::format("domain.beyond_m = {} is less than two of the cells at the block's edges. Give at least {}, "
+                           "or 0: the rock ends there.",
+                           number_text(beyond), number_text(least)));
   }
   if (scene.numerics.particles_per_cell == 9 && positions.sound("numerics.particles_per_cell")) {
     faults.add(where_is(positions, "numerics.particles_per_cell"),

@@ -31,7 +31,7 @@ struct Grading {
   double extent;                    // of the block, from 0 on; a whole number of cells of h
   double h, far;                    // cells of h on the fine stretches and up to far >= h elsewhere
   std::vector<Stretch> fine;        // in order
-  double below = 0.0, above = 0.0;  // how far rock goes on beyond the block's two ends: 0, or at least h
+  double below = 0.0, above = 0.0;  // how far rock goes on beyond the block's two ends: 0, or at least 2 far
 };
 
 /// Knots t_-1 ... t_n+2 (m; see state/grid.hpp) of an axis. Nodes of fine cells stand at multiples of h, as in a
