@@ -12,10 +12,12 @@ sys.path.insert(0, str(ROOT))
 
 from reports.figures import catalogue, make  # noqa: E402  (after the path to the project is known)
 from reports.page import write_page  # noqa: E402
+from reports.precision_page import write_precision  # noqa: E402
 from reports.runs import add_missing, declared_runs, load_runs  # noqa: E402
 from reports.verification import write_verification  # noqa: E402
 from verification.harness.choices import read_points  # noqa: E402
 from verification.harness.claim_data import read_claims  # noqa: E402
+from verification.precision.store import DATA  # noqa: E402
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -25,6 +27,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, default=ROOT / "reports" / "out", help="folder for the page")
     parser.add_argument("--experiments", type=Path, default=ROOT / "experiments",
                         help="scenes whose variants without a run are shown as not run")
+    parser.add_argument("--precision", type=Path, default=DATA, help="folder of the work-precision chart's data")
     parser.add_argument("--strict", action="store_true", help="exit 1 if a figure could not be drawn for a defect")
     options = parser.parse_args(arguments)
     points = read_points(options.experiments)
@@ -32,14 +35,15 @@ def main(arguments: list[str] | None = None) -> int:
     figures = [make(spec, options.out / "figures") for spec in catalogue(runs, points)]
     verified = write_verification(options.runs, options.out, with_index=True)
     said = verified.headline if verified else ""
-    page = write_page(options.out, runs, read_claims(options.runs / "claims.json"), figures, points, said)
-    for defect in verified.defects if verified else []:
+    chart = write_precision(options.out, options.precision)
+    page = write_page(options.out, runs, read_claims(options.runs / "claims.json"), figures, points, said, chart)
+    for defect in [*(verified.defects if verified else []), *filter(None, [chart.defect])]:
         print(defect, file=sys.stderr)
     for made in figures:
         if made.reason:
             print(f"{made.label}: {made.reason}\n{made.defect}", file=sys.stderr)
     print(f"{page}: {sum(made.ok for made in figures)} of {len(figures)} figures, {len(runs)} runs")
-    broken = any(made.defect for made in figures) or bool(verified and verified.defects)
+    broken = any(made.defect for made in figures) or bool(verified and verified.defects) or bool(chart.defect)
     return 1 if options.strict and broken else 0
 
 

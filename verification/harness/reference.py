@@ -61,3 +61,8 @@ def value(name: str, quantity: str, **settings: float | str | list[float]) -> fl
     if quantity not in found:
         raise NoReference(f"{name} has no {quantity}; it has {', '.join(sorted(found))}")
     return found[quantity].value
+
+
+def relative_error(name: str, **settings: float | str | list[float]) -> float:
+    """The relative error that a named reference solution gives of itself."""
+    return float(json.loads(_ask(name, _settings(settings)))["error_estimate"]["relative"])

@@ -23,6 +23,7 @@ OUTCOME = "outcome.json"
 # What the solver's exit status means (0 done, 3 numerics failed); only these two are the solver's word on the scene.
 MEANING = {0: "completed", 1: "a bug in the solver", 2: "bad input", 3: "numerics failed", 130: "interrupted"}
 FINAL = (0, 3)
+TOO_LONG = 124  # a run that was killed since it took longer than was asked for
 
 
 @dataclass(frozen=True)
@@ -123,8 +124,20 @@ def reason_of(folder: Path, exit_status: int, log: str) -> str:
     return reason or " / ".join(log.strip().splitlines()[-3:]) or meaning
 
 
-def run(job: Job, binary: Path | None = None, force: bool = False) -> Outcome:
-    """Run a job unless its folder has it already; the outcome says how it ended and never raises for a failed run."""
+def ended(command: list[str], limit_s: float | None) -> tuple[int, str]:
+    """Exit status and what was said; a command that takes longer than the limit is killed (TOO_LONG, with that as its word)."""
+    try:
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False, timeout=limit_s)
+    except subprocess.TimeoutExpired:
+        return TOO_LONG, f"not done after {limit_s:g} s"
+    return done.returncode, done.stdout
+
+
+def run(job: Job, binary: Path | None = None, force: bool = False, limit_s: float | None = None) -> Outcome:
+    """Run a job unless its folder has it already; the outcome says how it ended and never raises for a failed run.
+
+    A run that takes longer than limit_s is killed: it failed, with exit status TOO_LONG.
+    """
     binary = binary or solver()
     key = key_of(job, binary)
     before = None if force else done_before(job, key)
@@ -132,16 +145,17 @@ def run(job: Job, binary: Path | None = None, force: bool = False) -> Outcome:
         return Outcome(**{**asdict(before), "settings": before.settings, "skipped": True})
     clear(job.out)
     start = time.monotonic()
-    done = subprocess.run(command_of(job, binary), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
-    (job.out / "log.txt").write_text(done.stdout, encoding="utf-8")
-    complete = done.returncode == 0 and (job.out / "summary.json").is_file()
+    exit_status, said = ended(command_of(job, binary), limit_s)
+    wall_s = time.monotonic() - start
+    (job.out / "log.txt").write_text(said, encoding="utf-8")
+    complete = exit_status == 0 and (job.out / "summary.json").is_file()
     outcome = Outcome(
         scene=job.scene.stem,
         variant=job.variant,
         status="completed" if complete else "failed",
-        exit_status=done.returncode,
-        reason="" if complete else reason_of(job.out, done.returncode, done.stdout),
-        wall_s=round(time.monotonic() - start, 3),
+        exit_status=exit_status,
+        reason="" if complete else reason_of(job.out, exit_status, said),
+        wall_s=round(wall_s, 6),
         key=key,
         settings=job.settings,
     )

@@ -1,0 +1,159 @@
+"""Draws error against wall time: panels of curves with Pareto front, marks of accuracy, uncertainty of the reference, failures."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from reports.charts.style import FLAG, INK, PALE, new_figure, panel_grid, put_legend, put_title
+
+if TYPE_CHECKING:  # the other way round at run time: the part of the page draws itself
+    from reports.precision import CurveShown, Look, PanelShown, PrecisionFigure
+
+_COLOURS = {"quasistatic": "#0067a5", "updated": "#d04a00", "total": "#a3397f", "elements": "#00845f"}
+_NAMES = {
+    "quasistatic": "quasi-static", "updated": "explicit, updated", "total": "explicit, total",
+    "elements": "boundary elements and collocation (strata-reference)",
+}  # fmt: skip
+_MARKS = {"bspline2": "o", "gimp": "^", "linear": "s", "elements": "D"}
+_SHAPES = {"bspline2": "quadratic B-spline", "gimp": "GIMP", "linear": "linear"}
+_LINES: dict[str, object] = {"-": "-", "--": (0, (4, 1.6)), ":": (0, (1, 1.4)), "-.": (0, (4, 1.4, 1, 1.4))}
+_DASHES = {"--": "16 points a cell", ":": "9 points a cell", "-.": "another transfer, Courant number, kernel or flow step"}
+_STRIP = 0.075  # height of the strip of failures, in shares of the axes
+_CHOSEN = "#c8a200"
+
+
+def draw_front(data: PrecisionFigure) -> Figure:
+    """All panels, three in a row; methods of the background pale."""
+    figure, every, columns = panel_grid(data.title, len(data.panels), 3.75)
+    for k, (axes, panel) in enumerate(zip(every, data.panels, strict=True)):
+        _draw_panel(axes, panel, pale=True)
+        _advice(axes, panel)
+        if k % columns == 0:
+            axes.set_ylabel("relative error")
+        if k + columns >= len(data.panels):
+            axes.set_xlabel("wall time (s)")
+    put_legend(figure, _legend(data.panels), 3)
+    return figure
+
+
+def draw_full(data: PrecisionFigure) -> Figure:
+    """One panel with every method named beside it."""
+    figure = new_figure(11.4, 6.4)
+    put_title(figure, data.title, 118)
+    (panel,) = data.panels
+    axes = figure.subplots()
+    _draw_panel(axes, panel, pale=False)
+    axes.set_xlabel("wall time (s)")
+    axes.set_ylabel("relative error")
+    handles = [_handle(curve) for curve in panel.curves]
+    axes.legend(handles=handles, loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=7.6)
+    return figure
+
+
+def _draw_panel(axes: Axes, panel: PanelShown, pale: bool) -> None:
+    """Axes, band, lines, curves, front, failures."""
+    axes.set(xscale="log", yscale="log")
+    axes.grid(True, which="major")
+    if not panel.curves:
+        axes.annotate("nothing measured", (0.5, 0.5), xycoords="axes fraction", ha="center", color=FLAG)
+        axes.set(xlim=(0.01, 100.0), ylim=(1e-4, 1.0))
+        _strip(axes, panel)
+        return
+    _limits(axes, panel)
+    for error in (0.05, 0.01, 0.001):
+        axes.axhline(error, color=INK if error == 0.01 else PALE, linewidth=1.0, linestyle=(0, (4, 2)), zorder=1)
+    if panel.uncertainty > axes.get_ylim()[0]:
+        axes.axhspan(axes.get_ylim()[0], panel.uncertainty, color="#c9d6e6", alpha=0.55, linewidth=0, zorder=0.5)
+        axes.annotate("uncertainty of the reference", (0.985, panel.uncertainty), xycoords=("axes fraction", "data"), xytext=(0, -9),
+                      textcoords="offset points", ha="right", fontsize=6.8, color="#3b5878")  # fmt: skip
+    times, errors = panel.front
+    if times:
+        axes.plot((*times, axes.get_xlim()[1]), (*errors, errors[-1]), drawstyle="steps-post", color="#f0d468", linewidth=6.5, alpha=0.75,
+                  solid_capstyle="butt", zorder=1.5)  # fmt: skip
+    for curve in panel.curves:
+        _draw_curve(axes, curve, pale and not curve.main)
+    for time, error in panel.chosen:
+        axes.plot([time], [error], marker="o", markersize=12, markerfacecolor="none", markeredgecolor=INK, markeredgewidth=1.4, zorder=6)
+    _strip(axes, panel)
+
+
+def _limits(axes: Axes, panel: PanelShown) -> None:
+    """Ranges with room for the strip of failures, errors as percentages."""
+    low, high = min(panel.errors[0], 6e-4) / 1.6, max(panel.errors[1], 0.06) * 1.5
+    axes.set_ylim(low, low * (high / low) ** (1.0 / (1.0 - _STRIP)))
+    axes.set_xlim(panel.times_s[0] / 1.7, panel.times_s[1] * 1.7)
+    axes.yaxis.set_major_locator(LogLocator(base=10.0, numticks=20))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100.0 * value:g} %"))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.yaxis.set_minor_formatter(NullFormatter())
+    axes.xaxis.set_minor_formatter(NullFormatter())
+
+
+def _draw_curve(axes: Axes, curve: CurveShown, pale: bool) -> None:
+    """A method's way down; errors that are small by luck hang below their marks."""
+    if pale:
+        axes.plot(curve.times_s, curve.errors, color="#bdbdbd", linewidth=0.7, marker=".", markersize=3, zorder=2)
+        return
+    colour = _COLOURS[curve.look.family]
+    axes.plot(curve.times_s, curve.errors, color=colour, linewidth=1.3, linestyle=_LINES[curve.look.dashes], marker=_MARKS[curve.look.shape],
+              markersize=4.8, markerfacecolor=colour if curve.look.filled else "white", markeredgecolor=colour, zorder=4)  # fmt: skip
+    for time, error, lucky in zip(curve.times_s, curve.errors, curve.lucky):
+        if lucky is not None:
+            axes.plot([time, time], [error, lucky], color=colour, linewidth=0.7, linestyle=":", zorder=3)
+            axes.plot([time], [lucky], color=colour, marker="_", markersize=5, zorder=3)
+
+
+def _strip(axes: Axes, panel: PanelShown) -> None:
+    """What has nothing to show: a cross at the time spent, in a strip above the curves, with their count by how they ended."""
+    if not panel.lacks:
+        return
+    axes.axhspan(1.0 - _STRIP, 1.0, xmin=0.0, xmax=1.0, transform=axes.get_yaxis_transform(), color="#fbe4e2", linewidth=0, zorder=2)
+    left, right = axes.get_xlim()
+    for lack in panel.lacks:
+        place = min(max(lack.time_s, left * 1.08), right / 1.08)
+        axes.plot([place], [1.0 - 0.5 * _STRIP], transform=axes.get_xaxis_transform(), marker="x", markersize=4.5, markeredgewidth=1.3,
+                  color=_COLOURS[lack.look.family], zorder=5)  # fmt: skip
+    axes.annotate(panel.lacks_words, (0.985, 1.0 - 0.5 * _STRIP), xycoords="axes fraction", ha="right", va="center", fontsize=7,
+                  color=FLAG, zorder=6)  # fmt: skip
+
+
+def _advice(axes: Axes, panel: PanelShown) -> None:
+    """The heading with what to use for 1 % and 0.1 % below it."""
+    axes.set_title(panel.heading, pad=8 + 9.5 * len(panel.advice))
+    for k, line in enumerate(panel.advice):
+        words = axes.annotate(line, (0.0, 1.0), xycoords="axes fraction", xytext=(0, 4 + 9.5 * (len(panel.advice) - 1 - k)), textcoords="offset points",
+                      fontsize=6.9, color=INK, ha="left", va="bottom", annotation_clip=False)  # fmt: skip
+        words.set_in_layout(False)
+
+
+def _handle(curve: CurveShown) -> Line2D:
+    """A method in a legend."""
+    colour = _COLOURS[curve.look.family]
+    return Line2D([], [], color=colour, linestyle=_LINES[curve.look.dashes], linewidth=1.3, marker=_MARKS[curve.look.shape], markersize=4.8,
+                  markerfacecolor=colour if curve.look.filled else "white", label=curve.label)  # fmt: skip
+
+
+def _legend(panels: tuple[PanelShown, ...]) -> list[Line2D]:
+    """What colours, marks, fillings and lines mean, of those in use."""
+    looks: list[Look] = [curve.look for panel in panels for curve in panel.curves if curve.main]
+    found = [Line2D([], [], color=colour, linewidth=2.2, label=_NAMES[name]) for name, colour in _COLOURS.items() if _has(looks, "family", name)]
+    found += [Line2D([], [], color=INK, marker=_MARKS[name], linestyle="none", markersize=5, label=words)
+              for name, words in _SHAPES.items() if _has(looks, "shape", name)]  # fmt: skip
+    found.append(Line2D([], [], color=INK, marker="o", linestyle="none", markerfacecolor="white", markersize=5, label="hollow: uniform grid; filled: graded"))
+    found += [Line2D([], [], color=INK, linewidth=1.3, linestyle=_LINES[name], label=words) for name, words in _DASHES.items() if _has(looks, "dashes", name)]
+    found.append(Line2D([], [], color="#f0d468", linewidth=6, label="Pareto front of the solver"))
+    found.append(Line2D([], [], color=INK, marker="o", markerfacecolor="none", markersize=10, linestyle="none", label="cheapest within 1 % and 0.1 %"))
+    found.append(Line2D([], [], color="#bdbdbd", marker=".", linewidth=0.8, label="other settings (named on the page of all settings)"))
+    found.append(Line2D([], [], color=PALE, marker="_", linestyle=":", label="hangs below: smaller by luck, not counted"))
+    found.append(Line2D([], [], color=FLAG, marker="x", linestyle="none", markersize=5, label="refused, failed, too long or without a value"))
+    return found
+
+
+def _has(looks: list[Look], key: str, name: str) -> bool:
+    """Whether any look has a property."""
+    return any(getattr(look, key) == name for look in looks)

@@ -1,0 +1,195 @@
+"""Measures error and wall time of every method and setting: the data of the work-precision chart.
+
+usage: ci/chart [--only block,weak] [--methods qs_graded,ex_total] [--quick] [--once] [--list] [--force] [--fresh] [--out DIR]
+
+One run at a time on an idle machine: where the load average is above 0.35 it waits a while and then refuses, unless --force is given,
+whose points are marked as disturbed. What was measured before with the same scene, settings, program and machine is not measured
+again (--fresh does). Points are written as they come to verification/precision/data/PROBLEM.json, so that a campaign that was stopped
+goes on where it was. --quick measures coarse sizes of a few methods once, into runs/precision/quick. --list says what is to be
+measured, what is known and how long it will take.
+Exit status: 0 done (failures of methods are results), 2 wrong use or no idle machine.
+"""
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from verification.harness.cost import cost_of
+from verification.harness.paths import reference_program, solver
+from verification.harness.refine import content_of
+from verification.ladder.case import Level
+from verification.precision import machine, store
+from verification.precision.measure import LONG_S, REPEATS, RUNS, SOME, WARM_S, key_of, measured
+from verification.precision.problem import STRATA, Method, Problem, thinned
+from verification.precision.problems import PROBLEMS
+from verification.precision.store import Point, Sheet
+
+QUICK = RUNS / "quick"
+
+
+@dataclass(frozen=True)
+class Task:
+    """A point of a problem that is to be measured, with what is known of it (of another program or machine too)."""
+
+    problem: Problem
+    method: Method
+    level: Level
+    known: Point | None
+    fresh: bool  # what is known is of this scene, program and machine
+
+    @property
+    def name(self) -> str:
+        """Problem, method and level."""
+        return f"{self.problem.name}/{self.method.name} {self.level.label}"
+
+    def expected_s(self) -> float:
+        """How long one run may take, s: as before, or by what such runs cost elsewhere."""
+        if self.known is not None and self.known.wall_s:
+            return self.known.time_s
+        if self.method.program != STRATA or self.method.setting is None:
+            return 0.1
+        assert isinstance(self.method.source, Path)
+        content = content_of(self.method.source, self.level.variant, self.level.settings)
+        return min(cost_of(content, self.method.setting.mechanics).seconds, self.problem.limit_s)
+
+    def expected_total_s(self, once: bool) -> float:
+        """How long all runs of the point may take, s; one that failed before ends at its first."""
+        one = self.expected_s()
+        if once or one > LONG_S or (self.known is not None and not self.known.ok):
+            return one
+        return one * (SOME if one > WARM_S else REPEATS + 1)
+
+
+def parser() -> argparse.ArgumentParser:
+    """The options."""
+    options = argparse.ArgumentParser("ci/chart", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options.add_argument("--only", default="", help="problems, comma-separated (default: all)")
+    options.add_argument("--methods", default="", help="methods by the beginnings of their names, comma-separated (default: all)")
+    options.add_argument("--quick", action="store_true", help="coarse sizes of a few methods, once each, to try it out")
+    options.add_argument("--once", action="store_true", help="run each point once, without a warm-up")
+    options.add_argument("--list", action="store_true", help="say what is to be measured and how long it takes; run nothing")
+    options.add_argument("--force", action="store_true", help="measure even if the machine is not idle")
+    options.add_argument("--fresh", action="store_true", help="measure again what is known")
+    options.add_argument("--out", type=Path, help="folder of the data (default: verification/precision/data)")
+    return options
+
+
+def chosen(options: argparse.Namespace) -> list[Problem]:
+    """The problems and methods that are asked for; raises ValueError for names that are not there."""
+    wanted = [name for name in options.only.split(",") if name]
+    strangers = [name for name in wanted if all(problem.name != name for problem in PROBLEMS)]
+    if strangers:
+        raise ValueError(f"no problem {', '.join(strangers)}; there are {', '.join(problem.name for problem in PROBLEMS)}")
+    found = [problem for problem in PROBLEMS if not wanted or problem.name in wanted]
+    if options.quick:
+        found = [thinned(problem) for problem in found]
+    starts = tuple(name for name in options.methods.split(",") if name)
+    if starts:
+        found = [replace(one, methods=tuple(method for method in one.methods if method.name.startswith(starts))) for one in found]
+    if not any(problem.methods for problem in found):
+        raise ValueError(f"no method begins with {' or '.join(starts)}")
+    return found
+
+
+def tasks_of(problem: Problem, sheet: Sheet | None, here: machine.Machine, fresh: bool) -> list[Task]:
+    """All points of a problem, with what is known of them."""
+    same = sheet is not None and machine.Machine(**sheet.machine).identity == here.identity
+    tasks = []
+    for method in problem.methods:
+        for level in method.levels:
+            known = sheet.point(method.name, level.label) if sheet is not None else None
+            done = same and not fresh and known is not None and known.key == key_of(method, level)
+            tasks.append(Task(problem, method, level, known, done))
+    return tasks
+
+
+def minutes(seconds: float) -> str:
+    """A time span in minutes."""
+    return f"{seconds / 60.0:.1f} min"
+
+
+def show(tasks: Sequence[Task], once: bool) -> None:
+    """Print what is to be measured, and how long it will take."""
+    for name in dict.fromkeys(task.problem.name for task in tasks):
+        own = [task for task in tasks if task.problem.name == name]
+        left = [task for task in own if not task.fresh]
+        total = sum(task.expected_total_s(once) for task in left)
+        print(f"{name}: {own[0].problem.says}: {len(own)} points, {len(left)} to measure, {minutes(total)}")
+        for task in own:
+            about = "measured" if task.fresh else f"about {task.expected_s():.2g} s a run"
+            was = f" ({task.known.status})" if task.known is not None and not task.known.ok else ""
+            print(f"  {task.method.label}, {task.level.label}: {about}{was}")
+    left_s = sum(task.expected_total_s(once) for task in tasks if not task.fresh)
+    print(f"{len(tasks)} points, {sum(not task.fresh for task in tasks)} to measure, in about {minutes(left_s)}")
+
+
+def words(point: Point) -> str:
+    """A point in a line."""
+    if not point.ok:
+        return f"{point.status}: {point.reason[:140]}"
+    told = []
+    for name, found in point.found.items():
+        error = found.failure[:90] if found.failure else f"{100.0 * found.error:+.4g} %" if found.error is not None else f"{found.value:.8g}"
+        told.append(f"{name} {error}")
+    cpu = f", CPU {min(point.cpu_s):.3g} s" if point.cpu_s else ""
+    beside = " (disturbed)" if point.disturbed else ""
+    return f"{point.time_s:.4g} s{cpu}{beside}; {', '.join(told)}"
+
+
+def measure_all(tasks: Sequence[Task], sheets: dict[str, Sheet], folder: Path, runs: Path, once: bool) -> None:
+    """Measure the points that are not known, and write each as it comes."""
+    left = [task for task in tasks if not task.fresh]
+    remaining = sum(task.expected_total_s(once) for task in left)
+    for k, task in enumerate(left, 1):
+        point = measured(task.problem, task.method, task.level, runs, once)
+        sheets[task.problem.name] = sheets[task.problem.name].with_point(point)
+        order = [method.name for problem in PROBLEMS if problem.name == task.problem.name for method in problem.methods]
+        store.write(sheets[task.problem.name], folder, order)
+        remaining -= task.expected_total_s(once)
+        print(f"[{k:3d}/{len(left)}, {minutes(max(remaining, 0.0))} left] {task.name}: {words(point)}", flush=True)
+
+
+def sheet_for(problem: Problem, known: Sheet | None, here: machine.Machine) -> Sheet:
+    """What the points of a problem are added to: what is known from this machine, else nothing; points of methods gone are dropped."""
+    if known is None or machine.Machine(**known.machine).identity != here.identity:
+        return Sheet(problem.name, here.as_json(), ())
+    every = next(one for one in PROBLEMS if one.name == problem.name)
+    names = {(method.name, level.label) for method in every.methods for level in method.levels}
+    return Sheet(problem.name, here.as_json(), tuple(point for point in known.points if (point.method, point.level) in names))
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Measure what is asked for."""
+    command = parser()
+    options = command.parse_args(arguments)
+    try:
+        problems = chosen(options)
+    except ValueError as error:
+        command.error(str(error))
+    for program in (solver(), reference_program()):
+        if not program.is_file():
+            command.error(f"there is no {program}: build it first (ci/chart does)")
+    folder, runs = options.out or (QUICK / "data" if options.quick else store.DATA), QUICK if options.quick else RUNS
+    if options.out:
+        runs = options.out / "runs"
+    once = options.quick or options.once
+    here = machine.this_machine()
+    known = {problem.name: store.read(problem.name, folder) for problem in problems}
+    tasks = [task for problem in problems for task in tasks_of(problem, known[problem.name], here, options.fresh)]
+    if options.list:
+        show(tasks, once)
+        return 0
+    if not (options.force or options.quick or machine.becomes_idle()):
+        print(f"the machine is not idle: load average {machine.load():.2f}; --force measures all the same", file=sys.stderr)
+        return 2
+    sheets = {problem.name: sheet_for(problem, known[problem.name], here) for problem in problems}
+    measure_all(tasks, sheets, folder, runs, once)
+    print(f"{len(tasks)} points of {len(problems)} problems are in {folder}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,142 @@
+"""What the work-precision chart measures: problems with a reference, and methods that solve them at several sizes.
+
+A problem and its methods only describe; measuring (measure.py), judging (judge.py) and drawing (reports/precision.py) are elsewhere.
+Scenes, samples and references are the ladder's (verification/ladder/case.py).
+"""
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from verification.harness.load import Run
+from verification.ladder.case import Level, Sample
+
+STRATA, ELEMENTS = "strata", "strata-reference"  # the programs that solve a problem
+
+Answer = Mapping[str, float]  # the values of strata-reference by their names, SI
+
+
+@dataclass(frozen=True)
+class Setting:
+    """How the solver goes about a problem: the keys of a scene's [numerics], and what `further` sets besides.
+
+    graded: cells far away so many times as large, 0 for a uniform grid. kernels: empty for the solver's default.
+    """
+
+    mechanics: str = "quasistatic"
+    shape: str = "bspline2"
+    points: int = 4
+    graded: float = 0.0
+    kinematics: str = ""  # the others: of explicit runs only
+    transfer: str = ""
+    courant: float = 0.5
+    kernels: str = ""
+    damping_1_s: float | None = None
+    further: tuple[str, ...] = ()
+
+    def keys(self, cell_m: float) -> tuple[str, ...]:
+        """Scene settings for cells of a size, m."""
+        found = [f"numerics.mechanics={self.mechanics}", f"numerics.cell_m={cell_m!r}", f"numerics.shape={self.shape}",
+                 f"numerics.particles_per_cell={self.points}"]  # fmt: skip
+        if self.graded > 0.0:
+            found.append(f"numerics.far_cell_m={self.graded * cell_m!r}")
+        if self.mechanics == "explicit":
+            found.append(f"numerics.courant={self.courant!r}")
+            words = {"kinematics": self.kinematics, "transfer": self.transfer, "kernels": self.kernels}
+            found += [f"numerics.{key}={word}" for key, word in words.items() if word]
+            if self.damping_1_s is not None:
+                found.append(f"numerics.damping_1_s={self.damping_1_s!r}")
+        return (*found, *self.further)
+
+
+@dataclass(frozen=True)
+class Method:
+    """A way to solve a problem, a curve of the chart: coarse to fine.
+
+    source: the scene of the solver's runs, or the name of a solution of strata-reference, whose settings are then the levels'.
+    """
+
+    name: str  # unique in its problem, as in a file name
+    label: str  # for legends
+    program: str
+    source: Path | str
+    levels: tuple[Level, ...]
+    setting: Setting | None = None
+    main: bool = False  # drawn in the foreground of the front page
+    quick: int = 0  # so many coarse levels are enough to try the chart out
+    threads: int = 1
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """A number that a problem asks for: a panel of the chart.
+
+    sample: of a run (LoadError where there is none). answer: the same of what strata-reference says. Where the reference is the limit
+    of the sizes of a method (`limit_of`), samples hold values alone and errors are relative to limit - base; `steps_of` is that method with
+    steps of time twice as long.
+    """
+
+    name: str  # unique over all problems, as in a file name
+    title: str
+    unit: str
+    says: str  # what an error of 1 % is, and what the reference is
+    sample: Callable[[Run], Sample]
+    answer: Callable[[Answer], Sample] | None = None
+    limit_of: str = ""
+    steps_of: str = ""
+    base: float = 0.0
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A problem with its methods; `experiments` are those whose settings follow from it, `shipped` is the method (name, level) that
+    their scenes ask for."""
+
+    name: str
+    says: str
+    wanted: tuple[Wanted, ...]
+    methods: tuple[Method, ...]
+    experiments: tuple[int, ...] = ()
+    shipped: tuple[str, str] = ("", "")
+    limit_s: float = 90.0  # runs that take longer are failures
+
+
+class BadProblem(Exception):
+    """A problem that the chart cannot use; the message says which and why."""
+
+
+def checked(problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
+    """The problems, if names are unique, sizes fall and limits name a method; raises BadProblem otherwise."""
+    _unique("problems", [problem.name for problem in problems])
+    _unique("quantities", [wanted.name for problem in problems for wanted in problem.wanted])
+    for problem in problems:
+        _unique(f"{problem.name}: methods", [method.name for method in problem.methods])
+        for method in problem.methods:
+            where = f"{problem.name}/{method.name}"
+            _unique(f"{where}: levels", [level.label for level in method.levels])
+            sizes = [level.size for level in method.levels]
+            if not sizes or any(fine >= coarse for coarse, fine in zip(sizes, sizes[1:])):
+                raise BadProblem(f"{where}: sizes {sizes} do not fall")
+            if isinstance(method.source, Path) and not method.source.is_file():
+                raise BadProblem(f"{where}: no scene {method.source}")
+        for wanted in problem.wanted:
+            for name in filter(None, (wanted.limit_of, wanted.steps_of)):
+                if all(method.name != name for method in problem.methods):
+                    raise BadProblem(f"{problem.name}: {wanted.name} is to be the limit of {name}, which is no method")
+    return problems
+
+
+def _unique(what: str, names: list[str]) -> None:
+    """Raise BadProblem where a name stands twice."""
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise BadProblem(f"{what} of the same name: {', '.join(twice)}")
+
+
+def thinned(problem: Problem) -> Problem:
+    """A problem with those methods and coarse levels alone that are enough to try the chart out."""
+    return replace(
+        problem, methods=tuple(replace(one, levels=one.levels[: one.quick]) for one in problem.methods if one.quick > 0),
+        wanted=tuple(one for one in problem.wanted if not one.limit_of),
+    )  # fmt: skip

@@ -1,0 +1,179 @@
+"""What becomes of growing fractures: Experiment 1 with a weak interface, the path of Experiment 6, fractures fed at a rate."""
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from verification.harness.crack_paths import INTERFACE_M, exact_path, farthest, grown
+from verification.harness.load import LoadError, Run
+from verification.harness.observables import pressure_at_height, start_Pa
+from verification.harness.paths import ANALYTIC, EXPERIMENTS
+from verification.ladder.case import Array, Sample
+from verification.ladder.cases import kgd, paths
+from verification.precision.methods import FAR, MOVING, RESTING, STILL, Curve, methods, uniform_still, with_inertia, without_inertia
+from verification.precision.problem import Problem, Setting, Wanted
+
+SHIPPED = ("ex_updated", "1 m")  # what the experiments' scenes ask for
+
+# --- Experiment 1, weak interface
+
+CLOSING_PA = 2.0e6
+DRIVEN_ON_M = 12.0  # the interface is at 10 m; past it the tip is held at 11 m
+PASSED_M = 13.0
+WEAK_M = (1.0, 0.5, 0.25, 0.125)  # increments of 1 m are whole cells, the first tip and the interface on grid lines
+WEAK_DAMPING_1_S = 20.0  # the experiment's
+
+
+def weak(setting: Setting, _: float) -> tuple[str, tuple[str, ...]]:
+    """The experiment as it is, until the fracture is through the interface."""
+    return "weak", (f"stop.tip_y_m={PASSED_M!r}",)
+
+
+def only(value: float) -> Sample:
+    """A value whose reference is the limit of a method's sizes."""
+    return Sample.of(value, float("nan"))
+
+
+def start(run: Run) -> Sample:
+    """Net pressure of the first growth, Pa."""
+    found = start_Pa(run, None, {})
+    if not found.exact:
+        raise LoadError(found.note or "no growth starts")
+    return only(found.low)
+
+
+def restart(run: Run) -> Sample:
+    """Inlet pressure that drives the tip on from the increment past the interface, where it is held, Pa."""
+    found = pressure_at_height(run, DRIVEN_ON_M)
+    if not found.exact:
+        raise LoadError(found.note or f"the tip does not reach {DRIVEN_ON_M:g} m")
+    return only(found.low)
+
+
+_LIMIT = (
+    "relative to the net pressure; the reference is the limit of graded quasi-static runs with short steps of flow as their cells shrink,"
+    " increment and rule of growth fixed, with its grid convergence index as uncertainty"
+)
+LIMIT = replace(STILL, graded=FAR, further=("numerics.flow_change=0.01",))
+LIMIT_STEPS = replace(LIMIT, further=("numerics.flow_change=0.02",))
+WEAK = Problem(
+    "weak", "Experiment 1 with a weak interface, from the start of the ramp until the tip is past the interface",
+    (
+        Wanted("weak_start", "start of growth, Exp. 1 weak", "Pa", _LIMIT, start, None, "qs_limit", "qs_limit_steps", CLOSING_PA),
+        Wanted("weak_restart", "restart at the interface, Exp. 1 weak", "Pa",
+               "of the pressure that drives the tip on from 11 m, an increment past the interface, where it is held; " + _LIMIT, restart,
+               None, "qs_limit", "qs_limit_steps", CLOSING_PA),
+    ),
+    methods(EXPERIMENTS / "exp1_single_interface.toml", weak, [
+        *without_inertia(WEAK_M, (1.0, 0.5)),
+        Curve("qs_limit", "quasi-static, graded, short steps of flow", LIMIT, WEAK_M, True),
+        Curve("qs_limit_steps", "quasi-static, graded, less short steps of flow", LIMIT_STEPS, (0.25,)),
+        *with_inertia((1.0, 0.5), (1.0,), (1.0,), WEAK_DAMPING_1_S),
+        Curve("ex_undamped", "explicit, updated, undamped", replace(MOVING, damping_1_s=0.0), (1.0,), True),
+    ]), experiments=(1, 2, 3, 4), shipped=SHIPPED, limit_s=150.0,
+)  # fmt: skip
+
+# --- the path of Experiment 6
+
+PATH_M = (1.0, 0.5, 0.25)
+INCREMENT_CELLS = 3.0  # fewer and the solver turns by a share of maximum hoop stress only
+CONVERGED_M = 0.125  # increment of the finest path of boundary elements
+KEPT_OFF_M = 0.5  # from the interface, to which paths are compared
+
+
+def turning(setting: Setting, cell_m: float) -> tuple[str, tuple[str, ...]]:
+    """A block that stands for the infinite plane where the grid is graded, the study's own elsewhere."""
+    increment = (f"fracture.increment_m={INCREMENT_CELLS * cell_m!r}",)
+    if setting.mechanics == "explicit":
+        return "block_explicit", increment
+    if setting.graded == 0.0:
+        return "block", (*increment, f"numerics.far_cell_m={cell_m!r}")
+    return "", (*increment, "numerics.far_cell_m=8.0")
+
+
+def off(exact: Callable[[Run], Array], own_error: float = 0.0) -> Callable[[Run], Sample]:
+    """Largest distance from a path, up to half a metre from the interface, against the growth followed, 20 m."""
+
+    def sample(run: Run) -> Sample:
+        tips = grown(run)
+        inside = tips[tips[:, 0] < INTERFACE_M - KEPT_OFF_M]
+        return Sample.of(farthest(inside, exact(run)), 0.0, paths.GROWTH_M, own_error)
+
+    return sample
+
+
+def converged(_: Run | None = None) -> Array:
+    """The path of boundary elements with the smallest increment."""
+    return exact_path(6, CONVERGED_M, "forward", paths.GROWTH_M)
+
+
+def settled_to() -> float:
+    """How far the converged path still is from its limit (first order: as far as halving the increment moved it), share of 20 m."""
+    return farthest(exact_path(6, 2.0 * CONVERGED_M, "forward", paths.GROWTH_M), converged()) / paths.GROWTH_M
+
+
+PATH = Problem(
+    "path", "Experiment 6 with a perfect interface and the inlet's pressure everywhere: the path over 20 m of growth",
+    (
+        Wanted("path_same", "path of Exp. 6, same increments", "m",
+               "largest distance from the boundary elements' path in the run's own increments, over 20 m of growth", off(paths.same_6)),
+        Wanted("path_converged", "path of Exp. 6, all errors", "m",
+               "largest distance from the boundary elements' path in increments of 0.125 m, over 20 m of growth: increments of 3 cells are"
+               " part of the error", lambda run: off(converged, settled_to())(run)),
+    ),
+    methods(paths.ANALYTIC / "path_exp6.toml", turning, [
+        Curve("qs_graded", "quasi-static, graded", replace(STILL, graded=8.0), PATH_M, True),
+        Curve("qs_graded_linear", "quasi-static, graded, linear", replace(STILL, graded=8.0, shape="linear"), PATH_M, True),
+        Curve("qs_uniform", "quasi-static, uniform, block of 80 m", STILL, (1.0, 0.5), True),
+        *with_inertia((1.0, 0.5), (1.0,), (1.0,), 20.0),
+    ]), experiments=(5, 6), shipped=SHIPPED,
+)  # fmt: skip
+
+# --- fractures fed at a rate
+
+KGD_M = (1.0, 0.5, 0.25, 0.125)
+
+
+def fed(variant: str):  # type: ignore[no-untyped-def]
+    """A cell a step of growth."""
+
+    def base(setting: Setting, cell_m: float) -> tuple[str, tuple[str, ...]]:
+        """Variant, increment and first length; the scene's own cells far away where the grid is graded."""
+        keys = [f"fracture.increment_m={cell_m!r}", "fracture.path_m=[[120.0, 0.0], [120.0, 1.0]]"]
+        if setting.mechanics == "quasistatic":
+            keys.append(f"numerics.far_cell_m={10.0 if setting.graded > 0.0 else cell_m!r}")
+        return variant, tuple(keys)
+
+    return base
+
+
+def kgd_curves() -> list[Curve]:
+    """Flow that conserves volume is quasi-static only: the explicit curve is there to say so."""
+    graded = replace(STILL, graded=8.0)
+    return [
+        *without_inertia(KGD_M, (1.0,))[:3],
+        *uniform_still((1.0,))[:1],
+        Curve("qs_graded_coarse_flow", "quasi-static, graded, coarse steps of flow",
+              replace(graded, further=("numerics.flow_error=0.01", "numerics.flow_change=0.3")), KGD_M, True),
+        Curve("qs_graded_fine_flow", "quasi-static, graded, fine steps of flow",
+              replace(graded, further=("numerics.flow_error=1e-4", "numerics.flow_change=0.075")), KGD_M[:-1], True),
+        Curve("ex_updated", "explicit, updated", MOVING, (1.0,)),
+        Curve("ex_total", "explicit, total", RESTING, (1.0,)),
+    ]  # fmt: skip
+
+
+def kgd_problem(variant: str, solution: str, words: str) -> Problem:
+    """The length of a fracture fed at a rate, near one of its vertices."""
+    course = Wanted(
+        f"kgd_{variant}", f"KGD length, {variant}", "m",
+        f"root mean square of the relative errors of length at 10, 20 .. 100 s against strata-reference {solution}",
+        kgd.course(solution, "half_length_m"),
+    )  # fmt: skip
+    return Problem(f"kgd_{variant}", f"A fracture fed at 1e-4 m^2/s for 100 s, {words}", (course,), methods(kgd.SCENE, fed(variant), kgd_curves()))
+
+
+PROBLEMS = (
+    WEAK, PATH, kgd_problem("toughness", kgd.TOUGHNESS, "toughness number 13.6"), kgd_problem("viscosity", kgd.VISCOSITY, "no toughness"),
+)  # fmt: skip
