@@ -259,13 +259,14 @@ double ring_radius(const Scene& scene, const State& state, const Tip& tip, const
 }
 
 // The share of the maximum-hoop kink that one increment turns by. A kink over less than about three cells is not
-// resolved: particles beside it keep their sides, K_II is read off a fracture that has hardly turned, and a path that
-// takes the whole kink at once zigzags ever more (K_II/K_I answers a turn with about 0.9 of it, the kink is twice
-// that). The path of local symmetry, K_II = 0, does not depend on the share (Cotterell & Rice 1980); the length in
-// which it is reached does.
+// resolved: particles beside it keep their sides, and K_II is read off a fracture that has hardly turned. K_II/K_I
+// answers a turn with about 0.9 of it, and the kink is twice K_II/K_I: a path that takes the whole of it overshoots by
+// 0.8 and comes to rest slowly; where the new point is dry it zigzags ever more. About half of the kink ends with K_II
+// = 0 at once. The path of local symmetry does not depend on the share (Cotterell & Rice 1980); the length in which it
+// is reached does.
 double turn_taken(const Scene& scene) {
   constexpr double resolved_cells = 3.0;
-  return std::min(1.0, scene.fracture->increment_m / (resolved_cells * scene.numerics.cell_m));
+  return std::min(scene.fracture->turn_share, scene.fracture->increment_m / (resolved_cells * scene.numerics.cell_m));
 }
 
 // Direction from the place a distance `back` (m) behind the tip to the tip. K is a property of the fracture as the

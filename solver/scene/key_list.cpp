@@ -238,6 +238,10 @@ std::vector<Key> fracture_keys() {
           {as("straight", Fracture::Direction::straight), as("max_hoop", Fracture::Direction::max_hoop)},
           [](Scene& s, std::size_t) -> Fracture::Direction& { return s.fracture->direction; },
           "Ahead, or normal to the largest hoop stress by K_I and K_II."),
+      number(
+          "fracture.turn_share", "1", {0.05, 1.0, false, false},
+          +[](Scene& s, std::size_t) -> double& { return s.fracture->turn_share; },
+          "Most of the kink of max_hoop that one increment turns by; less where it has fewer than 3 cells."),
       word(
           "fracture.crossing", {as("J", Fracture::Crossing::J), as("energy", Fracture::Crossing::energy)},
           [](Scene& s, std::size_t) -> Fracture::Crossing& { return s.fracture->crossing; },

@@ -124,6 +124,7 @@ struct Fracture {
   std::vector<std::array<double, 2>> path_m;  // an end on the symmetry line comes first
   Growth growth = Growth::J;
   double increment_m = 1.0;
+  double turn_share = 0.5;  // largest share of the maximum-hoop kink that an increment turns by
   Direction direction = Direction::straight;
   Crossing crossing = Crossing::J;             // left out of a quasi-static scene: energy
   std::optional<double> crossing_increment_m;  // absent: increment_m
