@@ -120,6 +120,12 @@ InputValue read_value(const Input& input, const std::string& text) {
 
 }  // namespace
 
+int Inputs::count(const std::string& key) const {
+  const double value = number(key);
+  if (value != std::floor(value)) throw std::invalid_argument(key + " must be a whole number");
+  return static_cast<int>(value);
+}
+
 std::vector<double> Inputs::numbers(const std::string& key) const {
   const InputValue& value = values_.at(key);
   if (const double* one = std::get_if<double>(&value)) return {*one};

@@ -36,6 +36,8 @@ class Inputs {
  public:
   double number(const std::string& key) const { return std::get<double>(values_.at(key)); }
   const std::string& word(const std::string& key) const { return std::get<std::string>(values_.at(key)); }
+  // A whole number. Throws std::invalid_argument for another.
+  int count(const std::string& key) const;
   // The numbers of a list; one for a single number.
   std::vector<double> numbers(const std::string& key) const;
   const InputValue& operator[](const std::string& key) const { return values_.at(key); }

@@ -1,6 +1,7 @@
 // The catalogue's entries for cracks beside an interface.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <stdexcept>
 
@@ -23,7 +24,8 @@ std::vector<Input> crack_inputs(const char* distance_help, double distance) {
   return joined(joined({positive_input("half_length_m", "a; the crack is 2a long", 5),
                         positive_input("distance_m", distance_help, distance)},
                        pressure_inputs()),
-                {list_input("x_m", "where the opening is wanted, along the crack from its middle", 0.0)});
+                {list_input("x_m", "where the opening is wanted, along the crack from its middle", 0.0),
+                 number_input("nodes", "on the crack; 0: as many as settle K", 0, 0, 512)});
 }
 
 // Everything that is read off a crack line; the ratio is to uniform pressure pressure_Pa in the infinite plane.
@@ -50,20 +52,37 @@ std::vector<Value> line_values(const Inputs& inputs, const CrackLine& line, doub
   return values;
 }
 
-// Round-off where a profile is steep comes on top of the line's own estimate.
-Answer line_answer(const Inputs& inputs, const CrackLine& line, std::vector<Value> values) {
-  return {std::move(values),
-          std::max({line.error(), 1e-10, profile_error(knots_of(inputs), inputs.number("half_length_m"))}),
-          "change of K from half the nodes, over |K|; round-off"};
+// Change of K at the tips from one solution to another, over the larger |K|.
+double change_of_K(const CrackLine& line, const CrackLine& other) {
+  double change = 0, size = 1e-300;
+  for (const auto& [K, K_other] :
+       {std::pair{line.at_minus(), other.at_minus()}, std::pair{line.at_plus(), other.at_plus()}}) {
+    change = std::max(change, std::hypot(K.K_I - K_other.K_I, K.K_II - K_other.K_II));
+    size = std::max(size, std::hypot(K_other.K_I, K_other.K_II));
+  }
+  return change / size;
+}
+
+// The answer of a crack line that `solve` gives for a number of nodes, 0 for as many as settle it. Round-off where a
+// profile is steep comes on top of the line's own estimate.
+Answer line_answer(const Inputs& inputs, double E_prime, const char* minus, const char* plus,
+                   const std::function<CrackLine(int)>& solve) {
+  const int nodes = inputs.count("nodes");
+  const CrackLine line = solve(nodes);
+  const double change = nodes > 0 ? 2 * change_of_K(line, solve(2 * nodes)) : line.error();
+  return {line_values(inputs, line, E_prime, minus, plus),
+          std::max({change, 1e-10, profile_error(knots_of(inputs), inputs.number("half_length_m"))}),
+          "change of K from half the nodes (given nodes: twice the change to twice as many), over |K|; round-off"};
 }
 
 Answer solve_bonded(const Inputs& inputs, bool normal, const char* minus, const char* plus) {
   const double a = inputs.number("half_length_m");
   const double d = inputs.number("distance_m");
   const Rock rock = rock_of(inputs, "");
-  const BondedCrack crack({a, normal ? d + a : d, normal ? pi / 2 : 0.0}, rock, rock_of(inputs, "beyond_"),
-                          knots_of(inputs));
-  return line_answer(inputs, crack.line(), line_values(inputs, crack.line(), rock.E_prime(), minus, plus));
+  const BondedCrack::Geometry geometry{a, normal ? d + a : d, normal ? pi / 2 : 0.0};
+  return line_answer(inputs, rock.E_prime(), minus, plus, [&](int nodes) {
+    return BondedCrack(geometry, rock, rock_of(inputs, "beyond_"), knots_of(inputs), nodes).line();
+  });
 }
 
 Entry bonded_normal() {
@@ -135,9 +154,10 @@ Entry spring_interface() {
       "is the near tip; F = K/(pressure_Pa sqrt(pi a)); distance > about a/1000",
       [](const Inputs& in) {
         const double E_prime = rock_of(in, "").E_prime();
-        const CrackLine line = spring_interface_crack(interface_of(in), in.number("half_length_m"),
-                                                      in.number("distance_m"), E_prime, knots_of(in));
-        return line_answer(in, line, line_values(in, line, E_prime, "_near", "_far"));
+        return line_answer(in, E_prime, "_near", "_far", [&](int nodes) {
+          return spring_interface_crack(interface_of(in), in.number("half_length_m"), in.number("distance_m"), E_prime,
+                                        knots_of(in), nodes);
+        });
       }};
 }
 

@@ -47,7 +47,7 @@ Answer solve_curved(const Inputs& inputs) {
   const CrackPlane plane = plane_of(inputs, inputs.word("mirror") == "y=0");
   const double P = inputs.number("pressure_Pa");
   const PathLoad load = in_situ_load([P](double) { return P; }, inputs.number("s_xx_Pa"), inputs.number("s_yy_Pa"));
-  const CurvedCrack crack(path, plane);
+  const CurvedCrack crack(path, plane, inputs.count("refine"));
   const auto solution = crack.solve(load);
   std::vector<Value> values;
   add_tip(values, "", solution.last, plane.rock.E_prime());
@@ -68,7 +68,8 @@ Entry curved_crack() {
               list_input("y_m", "points of the path", std::vector<double>{0, 5, 8}),
               word_input("mirror", "y=0: the image (x, -y) is cracked too; or none", {"y=0", "none"}),
               number_input("pressure_Pa", "fluid pressure", 2.5e6, -1e12, 1e12),
-              list_input("s_m", "where the opening is wanted, along the path from its first point", 2.5)}),
+              list_input("s_m", "where the opening is wanted, along the path from its first point", 2.5),
+              number_input("refine", "so many times shorter elements", 1, 1, 16)}),
       "Suo 1989; elements of higher order: Crawford & Curran 1982; Crouch & Starfield 1983",
       "open and clear of the interface; the tip without suffix is the path's last point, K_II > 0 and kink < 0 turn it "
       "clockwise; _first: its first point (0 on the symmetry line); a smooth curve needs short end pieces",

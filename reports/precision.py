@@ -101,8 +101,8 @@ def recipe(sheets: Sequence[store.Sheet]) -> tuple[tuple[str, str], ...]:
         return "; ".join(dict.fromkeys(", ".join(str(one[key]) for key in keys) for one in machines))
 
     return (
-        ("processor", f"{each('processor')}; {each('cores')} cores, {each('memory_GB')} GB; {each('system')}"),
-        ("compiler", f"{each('compiler')}, {each('build')}"),
+        ("processor", f"{each('processor')}, {each('cores')} cores, {each('caches')}, {each('memory_GB')} GB; {each('system')}"),
+        ("compiler", f"{each('compiler')}, {each('flags')}"),
         ("solver", f"strata {each('version')}, revision {each('revision')}"),
         ("measured", f"{dates[0]} to {dates[-1]} UTC, {len(points)} points, {sum(len(point.wall_s) for point in points)} runs that count"),
         ("recipe", "wall time of the whole process on one thread, start and output included, one run at a time on an idle machine; median of"

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <set>
+#include <tuple>
 
 #include "catalogue.hpp"
 
@@ -95,6 +96,28 @@ TEST_CASE("settings reach the solution") {
   const auto pressures = std::get<std::vector<double>>(list.values.front().value);
   REQUIRE(pressures.size() == 2);
   CHECK(pressures[1] == Approx(380203.53).epsilon(1e-8));
+}
+
+TEST_CASE("numbers of unknowns reach the solution, and its error estimate holds for them") {
+  const auto off = [](const std::string& name, const std::string& of, const std::string& setting) {
+    const Answer asked = solve(name, {setting});
+    const double error = std::abs(value_of(asked, of) / value_of(solve(name), of) - 1);
+    INFO(name << " " << setting << ": " << error << ", estimate " << asked.relative_error);
+    CHECK(error < asked.relative_error);
+    return error;
+  };
+  for (const auto& [name, of, key] :
+       {std::tuple{"block_crack", "K_I", "terms"}, std::tuple{"bonded_normal", "K_I_near", "nodes"},
+        std::tuple{"bonded_parallel", "K_I", "nodes"}, std::tuple{"spring_interface", "K_I_near", "nodes"}}) {
+    const std::string setting = std::string(key) + "=";
+    const double coarse = off(name, of, setting + "4"), fine = off(name, of, setting + "16");
+    CHECK(coarse > 1e-4);
+    CHECK(fine < 1e-4);
+    CHECK(fine < 0.01 * coarse);
+  }
+  CHECK(solve("curved_crack", {"refine=2"}).relative_error < 0.6 * solve("curved_crack").relative_error);
+  CHECK_THAT(refusal("block_crack", {"terms=4.5"}), Contains("terms must be a whole number"));
+  CHECK_THAT(refusal("spring_interface", {"nodes=-1"}), Contains("nodes"));
 }
 
 TEST_CASE("the error estimate speaks where accuracy is lost") {

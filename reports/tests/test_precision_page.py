@@ -15,10 +15,9 @@ from verification.precision.problems import PROBLEMS
 from verification.precision.store import FAILED, OK, REFUSED, Found, Point, Sheet
 
 MACHINE = {
-    "processor": "a processor", "cores": 2, "memory_GB": 8.0, "system": "a system", "compiler": "a compiler", "build": "Release",
-    "version": "0", "revision": "abc",
+    "processor": "a processor", "cores": 2, "caches": "L1 1K", "memory_GB": 8.0, "system": "a system", "compiler": "a compiler",
+    "flags": "-O3", "version": "0", "revision": "abc",
 }  # fmt: skip
-PRESSURES = {"qs_limit": 400.0e3, "qs_limit_steps": 400.1e3}
 
 
 def made_up(problem: Problem, error: float = 0.02) -> Sheet:

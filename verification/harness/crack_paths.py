@@ -23,14 +23,14 @@ def _column(quantity: str, settings: str) -> Array:
     return values("crack_path", quantity, **json.loads(settings))
 
 
-def _settings(experiment: int, increment_m: float, turning: str, growth_m: float) -> str:
-    """The settings of crack_path for Experiment 5 or 6 (JSON)."""
+def path_settings(experiment: int, increment_m: float, turning: str, growth_m: float) -> dict[str, float | str]:
+    """The settings of crack_path for Experiment 5 or 6."""
     crack, beyond = (_SOFT, _STIFF) if experiment == 5 else (_STIFF, _SOFT)
-    return json.dumps({
+    return {
         **crack, "beyond_youngs_modulus_Pa": beyond["youngs_modulus_Pa"], "interface_x_m": INTERFACE_M, "s_xx_Pa": _ACROSS_PA,
         "s_yy_Pa": _ALONG_PA[experiment], "half_length_m": FIRST_TIP_M, "increment_m": increment_m, "turning": turning,
         "stop_growth_m": growth_m, "stop_height_m": 1000.0,
-    })  # fmt: skip
+    }  # fmt: skip
 
 
 def exact_path(experiment: int, increment_m: float, turning: str, growth_m: float) -> Array:
@@ -38,13 +38,13 @@ def exact_path(experiment: int, increment_m: float, turning: str, growth_m: floa
 
     Perfect interface, pressure everywhere that of the start of growth; x from the first crack; shape (n, 2), m.
     """
-    settings = _settings(experiment, increment_m, turning, growth_m)
+    settings = json.dumps(path_settings(experiment, increment_m, turning, growth_m))
     return np.column_stack([_column(axis, settings) for axis in ("x_m", "y_m")])
 
 
 def first_kink_deg(experiment: int) -> float:
     """Direction of maximum hoop stress of the first crack when it starts to grow, degrees anticlockwise from its own."""
-    return float(_column("kink_deg", _settings(experiment, 1.0, "forward", 1.0))[0])
+    return float(_column("kink_deg", json.dumps(path_settings(experiment, 1.0, "forward", 1.0)))[0])
 
 
 def leaving_m() -> float:

@@ -2,8 +2,8 @@
 
 usage: ci/chart [--only block,weak] [--methods qs_graded,ex_total] [--quick] [--once] [--list] [--force] [--fresh] [--out DIR]
 
-One run at a time on an idle machine: where the load average is above 0.35 it waits a while and then refuses, unless --force is given,
-whose points are marked as disturbed. What was measured before with the same scene, settings, program and machine is not measured
+One run at a time on an idle machine: where others are at work it waits a while and then refuses, unless --force is given; points
+beside which something ran are marked as disturbed. What was measured before with the same scene, settings, program and machine is not measured
 again (--fresh does). Points are written as they come to verification/precision/data/PROBLEM.json, so that a campaign that was stopped
 goes on where it was. --quick measures coarse sizes of a few methods once, into runs/precision/quick. --list says what is to be
 measured, what is known and how long it will take.
@@ -96,7 +96,7 @@ def chosen(options: argparse.Namespace) -> list[Problem]:
 
 def tasks_of(problem: Problem, sheet: Sheet | None, here: machine.Machine, fresh: bool) -> list[Task]:
     """All points of a problem, with what is known of them."""
-    same = sheet is not None and machine.Machine(**sheet.machine).identity == here.identity
+    same = sheet is not None and machine.made_here(sheet.machine, here)
     tasks = []
     for method in problem.methods:
         for level in method.levels:
@@ -132,8 +132,8 @@ def words(point: Point) -> str:
         return f"{point.status}: {point.reason[:140]}"
     told = []
     for name, found in point.found.items():
-        error = found.failure[:90] if found.failure else f"{100.0 * found.error:+.4g} %" if found.error is not None else f"{found.value:.8g}"
-        told.append(f"{name} {error}")
+        value = f"{100.0 * found.error:+.4g} %" if found.error is not None else f"{found.value}"
+        told.append(f"{name} {found.failure[:90] or value}")
     cpu = f", CPU {min(point.cpu_s):.3g} s" if point.cpu_s else ""
     beside = " (disturbed)" if point.disturbed else ""
     return f"{point.time_s:.4g} s{cpu}{beside}; {', '.join(told)}"
@@ -153,8 +153,8 @@ def measure_all(tasks: Sequence[Task], sheets: dict[str, Sheet], folder: Path, r
 
 
 def sheet_for(problem: Problem, known: Sheet | None, here: machine.Machine) -> Sheet:
-    """What the points of a problem are added to: what is known from this machine, else nothing; points of methods gone are dropped."""
-    if known is None or machine.Machine(**known.machine).identity != here.identity:
+    """What the points of a problem are added to: what is known from this machine, without methods that are gone; else nothing."""
+    if known is None or not machine.made_here(known.machine, here):
         return Sheet(problem.name, here.as_json(), ())
     every = next(one for one in PROBLEMS if one.name == problem.name)
     names = {(method.name, level.label) for method in every.methods for level in method.levels}
@@ -183,7 +183,7 @@ def main(arguments: list[str] | None = None) -> int:
         show(tasks, once)
         return 0
     if not (options.force or options.quick or machine.becomes_idle()):
-        print(f"the machine is not idle: load average {machine.load():.2f}; --force measures all the same", file=sys.stderr)
+        print("others are at work on this machine; --force measures all the same", file=sys.stderr)
         return 2
     sheets = {problem.name: sheet_for(problem, known[problem.name], here) for problem in problems}
     measure_all(tasks, sheets, folder, runs, once)

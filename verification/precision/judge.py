@@ -3,8 +3,8 @@
 An error counts only as far as it lasts. Three things make a small one worthless, and each raises the error that is judged:
 - the reference is not known that well: no error is taken to be below the reference's own uncertainty;
 - a finer size of the same method is farther off: a size counts with the largest error from it on;
-- it has another sign than at the size before, so that it fell faster than any order of the method allows: it counts with what third
-  order would have left.
+- it has another sign than at the size before, so that it fell faster than any order of the method allows: it counts with what
+  third order would have left.
 """
 from __future__ import annotations
 
@@ -86,7 +86,8 @@ def limit_of(sizes: Sequence[float], values: Sequence[float]) -> Limit | None:
     found = estimate(sizes, values)
     if found.kind == "clean" and found.extrapolate is not None and found.uncertainty is not None:
         return Limit(found.extrapolate, found.uncertainty, found.says)
-    return Limit(values[-1], found.spread or 0.0, f"{found.says}; the finest is taken, uncertain by the spread of the finest three")
+    says = f"{found.says}; the finest is taken, uncertain by the spread of the finest three"
+    return Limit(values[-1], found.spread or 0.0, says)
 
 
 def values_of(sheet: Sheet, method: str, wanted: Wanted) -> dict[float, float]:
@@ -119,7 +120,8 @@ def with_reference(found: Found, wanted: Wanted, limit: Limit | None) -> Found:
     if limit is None:
         return replace(found, failure="no reference: fewer than three sizes of the method whose limit it is")
     size = limit.value - wanted.base
-    return replace(found, reference=limit.value, error=(found.value - limit.value) / size, reference_error=limit.uncertainty / abs(size))
+    error, uncertainty = (found.value - limit.value) / size, limit.uncertainty / abs(size)
+    return replace(found, reference=limit.value, error=error, reference_error=uncertainty)
 
 
 def judged(errors: Sequence[float], uncertainties: Sequence[float], sizes: Sequence[float], by_order: bool = True) -> list[float]:
@@ -203,7 +205,7 @@ def in_group(dot: Dot, group: str) -> bool:
 
 @dataclass(frozen=True)
 class Advice:
-    """A row of the table: for a wanted number and a group of methods the cheapest dot within each tolerance, and the best there is."""
+    """A row of the table: for a wanted number and a group of methods the cheapest dot within each tolerance, and the best one."""
 
     panel: Panel
     group: str

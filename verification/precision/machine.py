@@ -1,4 +1,4 @@
-"""The machine that measures: what it is, and whether anything else is at work on it."""
+"""The machine that measures: what it is, what was built on it, and whether anything else is at work on it."""
 from __future__ import annotations
 
 import os
@@ -6,49 +6,53 @@ import platform
 import re
 import subprocess
 import time
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from datetime import datetime, timezone
 from pathlib import Path
+from typing import Any
 
-from verification.harness.paths import ROOT, solver
+from verification.benchmarks.machine import LARGEST_BUSY, LARGEST_LOAD, Build, busy_processors, this_build
+from verification.benchmarks.machine import Machine as Hardware
+from verification.benchmarks.machine import this_machine as this_hardware
+from verification.harness.paths import solver
 
-IDLE_LOAD = 0.35  # load average over a minute below which nothing else is at work
-WAIT_S = 90.0  # how long to wait for that
+WAIT_S = 90.0  # how long to wait for an idle machine
 
 
 @dataclass(frozen=True)
 class Machine:
-    """Hardware, system and program of a measurement."""
+    """Where a measurement was made: hardware, memory, system, compiler with its flags, version and revision of the solver."""
 
     processor: str
     cores: int
+    caches: str
     memory_GB: float
     system: str
     compiler: str
-    build: str
+    flags: str
     version: str
     revision: str
 
     @property
     def identity(self) -> str:
-        """What tells one machine from another: processor, cores and system."""
-        return f"{self.processor}, {self.cores} cores, {self.system}"
+        """What tells one machine from another: the hardware."""
+        return Hardware(self.processor, self.cores, self.caches).key
 
     def as_json(self) -> dict[str, object]:
         """As plain data."""
         return asdict(self)
 
 
-def said_by(*command: str) -> str:
-    """First line of what a command prints; nothing where it cannot be run."""
+def made_here(sheet_machine: Mapping[str, Any], here: Machine) -> bool:
+    """Whether measurements come from this hardware; those of which that cannot be told do not."""
     try:
-        done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
-    except OSError:
-        return ""
-    return done.stdout.strip().splitlines()[0] if done.returncode == 0 and done.stdout.strip() else ""
+        return Machine(**sheet_machine).identity == here.identity
+    except TypeError:
+        return False
 
 
-def _first(pattern: str, file: Path) -> str:
+def first(pattern: str, file: Path) -> str:
     """The first match of a pattern's group in a file; nothing where there is none."""
     try:
         found = re.search(pattern, file.read_text(encoding="utf-8", errors="replace"), re.MULTILINE)
@@ -57,21 +61,24 @@ def _first(pattern: str, file: Path) -> str:
     return found.group(1).strip() if found else ""
 
 
+def built_with(cache: Path) -> dict[str, str]:
+    """Compiler and flags of a build folder's CMakeCache.txt, as this_build takes them."""
+    compiler, kind = (first(rf"^{key}:[A-Z]+=(.*)$", cache) for key in ("CMAKE_CXX_COMPILER", "CMAKE_BUILD_TYPE"))
+    flags = " ".join(first(rf"^{key}:[A-Z]+=(.*)$", cache) for key in ("CMAKE_CXX_FLAGS", f"CMAKE_CXX_FLAGS_{kind.upper()}"))
+    try:
+        said = subprocess.run([compiler or "c++", "--version"], capture_output=True, text=True, check=True).stdout
+    except (OSError, subprocess.CalledProcessError):
+        said = ""
+    return {"compiler": said.splitlines()[0] if said else compiler, "flags": flags}
+
+
 def this_machine() -> Machine:
     """This machine, the solver and the compiler that built it."""
-    cache = solver().parent / "CMakeCache.txt"
-    compiler = _first(r"^CMAKE_CXX_COMPILER:[A-Z]+=(.*)$", cache)
-    dirty = "+" if said_by("git", "status", "--porcelain", "--untracked-files=no", "--", "solver", "reference", "CMakeLists.txt") else ""
-    return Machine(
-        processor=_first(r"^model name\s*:\s*(.*)$", Path("/proc/cpuinfo")) or platform.processor() or platform.machine(),
-        cores=os.cpu_count() or 1,
-        memory_GB=round(int(_first(r"^MemTotal:\s*(\d+)", Path("/proc/meminfo")) or 0) / 1048576, 1),
-        system=f"{platform.system()} {platform.release()}",
-        compiler=said_by(compiler or "c++", "--version"),
-        build=_first(r"^CMAKE_BUILD_TYPE:[A-Z]+=(.*)$", cache),
-        version=said_by(str(solver()), "--version"),
-        revision=f"{said_by('git', 'rev-parse', '--short', 'HEAD')}{dirty}",
-    )  # fmt: skip
+    hardware: Hardware = this_hardware()
+    build: Build = this_build(built_with(solver().parent / "CMakeCache.txt"))
+    memory = int(first(r"^MemTotal:\s*(\d+)", Path("/proc/meminfo")) or 0) / 1048576
+    return Machine(hardware.cpu, hardware.cores, hardware.caches, round(memory, 1), f"{platform.system()} {platform.release()}",
+                   build.compiler, build.flags, build.version, build.commit)  # fmt: skip
 
 
 def now() -> str:
@@ -79,21 +86,15 @@ def now() -> str:
     return datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M:%S")
 
 
-def load() -> float:
-    """Load average over the last minute."""
-    return os.getloadavg()[0]
-
-
 def others_running() -> int:
     """Threads that run or want to, besides the one that asks."""
-    return max(int(_first(r"^procs_running (\d+)", Path("/proc/stat")) or 1) - 1, 0)
+    return max(int(first(r"^procs_running (\d+)", Path("/proc/stat")) or 1) - 1, 0)
 
 
 def becomes_idle(wait_s: float = WAIT_S) -> bool:
-    """Wait until the machine is idle; False where it is not within wait_s."""
+    """Wait until nothing else is at work; False where that takes more than wait_s."""
     start = time.monotonic()
-    while load() > IDLE_LOAD:
+    while busy_processors() > LARGEST_BUSY or os.getloadavg()[0] > LARGEST_LOAD:
         if time.monotonic() - start > wait_s:
             return False
-        time.sleep(2.0)
     return True

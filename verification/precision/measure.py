@@ -30,7 +30,8 @@ from verification.precision.store import FAILED, OK, REFUSED, TOO_LONG, Found, P
 RUNS = ROOT / "runs" / "precision"
 WARM_S, LONG_S = 2.0, 20.0
 REPEATS, SOME = 5, 3
-DISTURBED = 1.15  # wall time over CPU time of the quickest run, above which something else had the processor
+# Wall time over CPU time of the quickest run, and beyond it (s), above which something else had the processor.
+DISTURBED, WAITING_S = 1.15, 0.05
 
 Timed = tuple[float, float]  # wall and CPU time, s
 
@@ -134,7 +135,7 @@ def measured(problem: Problem, method: Method, level: Level, runs: Path = RUNS, 
     except LoadError as failure:
         return replace(point, status=FAILED, reason=str(failure))
     wall, cpu = zip(*times)
-    disturbed = others > 0 or min(wall) > DISTURBED * min(cpu) + 0.02
+    disturbed = min(others, machine.others_running()) > 0 or min(wall) > DISTURBED * min(cpu) + WAITING_S
     return replace(point, wall_s=tuple(round(t, 5) for t in wall), cpu_s=tuple(round(t, 5) for t in cpu),
                    disturbed=disturbed, once=len(times) == 1)  # fmt: skip
 

@@ -34,11 +34,6 @@ MOVING = Setting("explicit", kinematics="updated", transfer="flip")
 RESTING = replace(MOVING, kinematics="total")
 
 
-def at(cells_m: tuple[float, ...], *cells: float) -> tuple[float, ...]:
-    """Those sizes of a list that are asked for and in it."""
-    return tuple(cell for cell in cells_m if cell in cells)
-
-
 def without_inertia(fine: tuple[float, ...], uniform: tuple[float, ...], far: float = FAR) -> list[Curve]:
     """The quasi-static curves: graded ones at `fine` cells, uniform ones at `uniform` cells (m)."""
     graded = replace(STILL, graded=far)
@@ -47,6 +42,15 @@ def without_inertia(fine: tuple[float, ...], uniform: tuple[float, ...], far: fl
         Curve("qs_graded_16", "quasi-static, graded, 16 points a cell", replace(graded, points=16), fine[:-1], True),
         Curve("qs_graded_linear", "quasi-static, graded, linear", replace(graded, shape="linear"), fine, True),
         *uniform_still(uniform),
+    ]
+
+
+def endless(cells: tuple[float, ...], beyond_m: float) -> list[Curve]:
+    """Quasi-static in a small block whose rock goes on, at `cells` (m)."""
+    setting = replace(STILL, beyond_m=beyond_m)
+    return [
+        Curve("qs_beyond", "quasi-static, small block in endless rock", setting, cells, True),
+        Curve("qs_beyond_linear", "quasi-static, small block in endless rock, linear", replace(setting, shape="linear"), cells),
     ]
 
 
@@ -61,9 +65,9 @@ def uniform_still(uniform: tuple[float, ...]) -> list[Curve]:
 
 
 def with_inertia(cells: tuple[float, ...], some: tuple[float, ...], one: tuple[float, ...], damping_1_s: float) -> list[Curve]:
-    """The explicit curves damped so (1/s): the main ones at all `cells` (m), others at `some`, single choices at `one` size."""
+    """The explicit curves damped so (1/s): the main ones at all `cells` (m), others at `some`, single choices at `one` size, if any."""
     updated, total = (replace(setting, damping_1_s=damping_1_s) for setting in (MOVING, RESTING))
-    return [
+    curves = [
         Curve("ex_updated", "explicit, updated", updated, cells, True, 1),
         Curve("ex_total", "explicit, total", total, cells, True, 1),
         Curve("ex_updated_gimp", "explicit, updated, GIMP", replace(updated, shape="gimp"), some, True),
@@ -83,6 +87,7 @@ def with_inertia(cells: tuple[float, ...], some: tuple[float, ...], one: tuple[f
         Curve("ex_updated_graded", "explicit, updated, graded", replace(updated, graded=FAR), cells),
         Curve("ex_total_graded", "explicit, total, graded", replace(total, graded=FAR), cells, True),
     ]
+    return [curve for curve in curves if curve.cells_m]
 
 
 def methods(scene: Path, base: Base, curves: list[Curve]) -> tuple[Method, ...]:

@@ -8,26 +8,28 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from verification.harness.load import Run
 from verification.ladder.case import Level, Sample
 
 STRATA, ELEMENTS = "strata", "strata-reference"  # the programs that solve a problem
 
-Answer = Mapping[str, float]  # the values of strata-reference by their names, SI
+Answer = Mapping[str, Any]  # the values of strata-reference by their names, SI: numbers and lists
 
 
 @dataclass(frozen=True)
 class Setting:
     """How the solver goes about a problem: the keys of a scene's [numerics], and what `further` sets besides.
 
-    graded: cells far away so many times as large, 0 for a uniform grid. kernels: empty for the solver's default.
+    graded: cells far away so many times as large, 0 for a uniform grid. beyond_m: rock beyond a block that is then small. kernels: empty for the solver's default.
     """
 
     mechanics: str = "quasistatic"
     shape: str = "bspline2"
     points: int = 4
     graded: float = 0.0
+    beyond_m: float = 0.0
     kinematics: str = ""  # the others: of explicit runs only
     transfer: str = ""
     courant: float = 0.5
@@ -41,6 +43,8 @@ class Setting:
                  f"numerics.particles_per_cell={self.points}"]  # fmt: skip
         if self.graded > 0.0:
             found.append(f"numerics.far_cell_m={self.graded * cell_m!r}")
+        if self.beyond_m > 0.0:
+            found.append(f"domain.beyond_m={self.beyond_m!r}")
         if self.mechanics == "explicit":
             found.append(f"numerics.courant={self.courant!r}")
             words = {"kinematics": self.kinematics, "transfer": self.transfer, "kernels": self.kernels}

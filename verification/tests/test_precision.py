@@ -22,7 +22,7 @@ from verification.precision.problems import PROBLEMS
 from verification.precision.store import FAILED, OK, REFUSED, Found, Point, Sheet
 
 SCENE = ANALYTIC / "static_quasistatic.toml"
-MACHINE = Machine("a processor", 2, 8.0, "a system", "a compiler", "Release", "0", "abc").as_json()
+MACHINE = Machine("a processor", 2, "L1 1K", 8.0, "a system", "a compiler", "-O3", "0", "abc").as_json()
 EXACT = 4.0
 
 

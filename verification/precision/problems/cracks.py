@@ -1,11 +1,13 @@
 """K_I of a pressurised crack in the study's block, near a bonded and near a soft interface, against analytic references."""
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from verification.harness.paths import ANALYTIC
 from verification.harness.reference import relative_error, value
 from verification.ladder.case import Level, Sample, cell_levels
 from verification.ladder.cases import cracks, interfaces
-from verification.precision.methods import MOVING, Curve, methods, with_inertia, without_inertia
+from verification.precision.methods import Curve, endless, methods, with_inertia, without_inertia
 from verification.precision.problem import ELEMENTS, Answer, Method, Problem, Setting, Wanted
 
 # All have the tip on a grid line, 5 m up, and divide the block of 80 m.
@@ -15,6 +17,21 @@ EXPLICIT_M = (2.5, 1.25, 1.0, 0.5)
 # The block's slowest mode is near 41 rad/s: twice that settles soonest, to 1e-7 of it within 0.5 s.
 SETTLING_1_S, SETTLED_S = 80.0, 0.5
 SHAKEN_1_S = 20.0  # the experiments' own damping, which leaves 1 % of the slowest mode by then
+
+UNKNOWNS = (4, 8, 12, 16, 24)
+
+
+def asked(settings: Mapping[str, object], key: str, counts: tuple[int, ...]) -> tuple[Level, ...]:
+    """Levels of a solution of strata-reference by a number of unknowns under a key."""
+    given = tuple(f"{name}={number if isinstance(number, str) else repr(number)}" for name, number in settings.items())
+    return tuple(Level(f"{key} {count}", 1.0 / count, (*given, f"{key}={count}")) for count in counts)
+
+
+def collocation(name: str, key: str, settings: Mapping[str, object], counts: tuple[int, ...]) -> Method:
+    """A solution of strata-reference by so many unknowns of one kind."""
+    return Method(f"be_{name}", f"{'dislocations' if key == 'nodes' else 'collocation'} ({name})", ELEMENTS, name,
+                  asked(settings, key, counts), main=True)  # fmt: skip
+
 
 BLOCK_SETTINGS = {"width_m": 80.0, "half_height_m": 80.0, "half_length_m": 5.0, "pressure_Pa": cracks.NET_PA}
 
@@ -48,7 +65,7 @@ BLOCK = Problem(
     "block", "A crack of 5 m under 0.3 MPa net pressure in the study's block of 80 m, at rest",
     (Wanted("block_K_I", "K_I in the block", "Pa sqrt(m)", "relative to K_I of the same block (strata-reference block_crack)",
             exact_block_K_I, block_K_I),),
-    methods(cracks.AT_REST, in_block, BLOCK_CURVES),
+    (*methods(cracks.AT_REST, in_block, BLOCK_CURVES), collocation("block_crack", "terms", BLOCK_SETTINGS, UNKNOWNS)),
 )  # fmt: skip
 
 # --- near an interface: 2.5 m from it, so that a uniform grid with inertia has cells that see it
@@ -56,7 +73,7 @@ BLOCK = Problem(
 DISTANCE_M = 2.5
 NEAR_M = (1.25, 0.625, 0.3125, 0.15625)
 NEAR_EXPLICIT_M = (1.25, 0.625)
-WIDE_M, NARROW_M = 1600.0, 160.0  # blocks for graded grids and for uniform ones
+WIDE_M, NARROW_M, SMALL_M = 1600.0, 160.0, 40.0  # blocks for graded grids, for uniform ones, and for rock beyond them
 FAR_CELL_M = 100.0
 NEAR_SETTLING_1_S, NEAR_SETTLED_S = 35.0, 1.0  # of the block of 160 m, as in the ladder
 SOFT = interfaces.stiffness_settings(1.0)  # D a/E' = 1
@@ -67,14 +84,15 @@ def near(layers: tuple[str, str], laws: tuple[str, ...] = ()):  # type: ignore[n
 
     def base(setting: Setting, cell_m: float) -> tuple[str, tuple[str, ...]]:
         """Block, layers and crack."""
-        width = WIDE_M if setting.graded > 0.0 and setting.mechanics == "quasistatic" else NARROW_M
+        wide = setting.graded > 0.0 and setting.mechanics == "quasistatic"
+        width = SMALL_M if setting.beyond_m > 0.0 else WIDE_M if wide else NARROW_M
         middle = 0.5 * width
         keys = [f"domain.width_m={width!r}", f"domain.height_m={width!r}",
                 f'strata.layers=[{{rock="{layers[0]}",thickness_m={middle!r}}},{{rock="{layers[1]}"}}]',
                 interfaces.path_setting(DISTANCE_M, False, middle), *laws]  # fmt: skip
         if setting.mechanics == "explicit":
             keys += [f"stop.time_s={NEAR_SETTLED_S!r}", f"output.fields_every_s={NEAR_SETTLED_S!r}"]
-        elif setting.graded == 0.0:
+        elif setting.graded == 0.0:  # the scene's grid is graded
             keys.append(f"numerics.far_cell_m={cell_m!r}")
         else:
             keys.append(f"numerics.far_cell_m={FAR_CELL_M!r}")
@@ -83,10 +101,13 @@ def near(layers: tuple[str, str], laws: tuple[str, ...] = ()):  # type: ignore[n
     return base
 
 
-NEAR_CURVES = [
-    *without_inertia(NEAR_M, NEAR_EXPLICIT_M),
-    *with_inertia(NEAR_EXPLICIT_M, (1.25,), (1.25,), NEAR_SETTLING_1_S),
-]
+
+
+def near_curves(single_choices: tuple[float, ...]) -> list[Curve]:
+    """The curves near an interface; single choices at these cell sizes (m), if any."""
+    still = [*without_inertia(NEAR_M, NEAR_EXPLICIT_M), *endless(NEAR_M, WIDE_M)]
+    return [*still, *with_inertia(NEAR_EXPLICIT_M, (1.25,), single_choices, NEAR_SETTLING_1_S)]
+
 
 
 def near_tip(reference: interfaces.Reference, name: str, title: str, says: str, exact: dict[str, float]) -> Wanted:
@@ -119,23 +140,28 @@ SOFT_K = near_tip(
 )  # fmt: skip
 
 
-def asked(name: str, settings: dict[str, float], key: str, counts: tuple[int, ...]) -> tuple[Level, ...]:
-    """Levels of a solution of strata-reference by a number of unknowns (0 there: as many as settle it)."""
-    given = tuple(f"{name}={number!r}" for name, number in settings.items())
-    return tuple(Level(f"{count} {key}", 1.0 / count, (*given, f"{key}={count}")) for count in counts)
-
-
-def elements(name: str, label: str, levels: tuple[Level, ...], quick: int = 0) -> Method:
-    """A curve of boundary elements."""
-    return Method(f"be_{name}", label, ELEMENTS, name, levels, main=True, quick=quick)
+def elements_near() -> dict[str, object]:
+    """The crack before the bonded interface x = 0 as straight boundary elements take it; its last point is the near tip."""
+    a, d = CRACK["half_length_m"], CRACK["distance_m"]
+    return ROCKS | {
+        "x_m": [-(d + 2.0 * a), -d], "y_m": [0.0, 0.0], "interface_x_m": 0.0, "mirror": "none", "s_xx_Pa": 0.0, "s_yy_Pa": 0.0,
+        "pressure_Pa": CRACK["pressure_Pa"],
+    }  # fmt: skip
 
 
 BONDED = Problem(
     "bonded", "A crack of 10 m in stiff rock, normal to soft rock bonded to it 2.5 m ahead", (BONDED_K,),
-    methods(interfaces.BONDED, near(("stiff", "soft")), NEAR_CURVES),
+    (
+        *methods(interfaces.BONDED, near(("stiff", "soft")), near_curves((1.25,))), collocation("bonded_normal", "nodes", ROCKS | CRACK, UNKNOWNS),
+        Method("be_curved_crack", "boundary elements (curved_crack)", ELEMENTS, "curved_crack", asked(elements_near(), "refine", (1, 2, 4)),
+               main=True),
+    ),
 )  # fmt: skip
 SPRUNG = Problem(
     "soft", "A crack of 10 m, normal to a soft interface (D a/E' = 1) 2.5 m ahead", (SOFT_K,),
-    methods(interfaces.SPRINGS, near(("stiff", "stiff"), SOFT), NEAR_CURVES),
+    (
+        *methods(interfaces.SPRINGS, near(("stiff", "stiff"), SOFT), near_curves(())),
+        collocation("spring_interface", "nodes", SPRINGS | CRACK, UNKNOWNS),
+    ),
 )  # fmt: skip
 PROBLEMS = (BLOCK, BONDED, SPRUNG)

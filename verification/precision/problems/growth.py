@@ -6,14 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from verification.harness.crack_paths import INTERFACE_M, exact_path, farthest, grown
+from verification.harness.crack_paths import INTERFACE_M, exact_path, farthest, grown, path_settings
 from verification.harness.load import LoadError, Run
 from verification.harness.observables import pressure_at_height, start_Pa
 from verification.harness.paths import ANALYTIC, EXPERIMENTS
-from verification.ladder.case import Array, Sample
+from verification.ladder.case import Array, Level, Sample
 from verification.ladder.cases import kgd, paths
-from verification.precision.methods import FAR, MOVING, RESTING, STILL, Curve, methods, uniform_still, with_inertia, without_inertia
-from verification.precision.problem import Problem, Setting, Wanted
+from verification.precision.methods import (
+    FAR, MOVING, RESTING, STILL, Curve, endless, methods, uniform_still, with_inertia, without_inertia,
+)  # fmt: skip
+from verification.precision.problem import ELEMENTS, Answer, Method, Problem, Setting, Wanted
 
 SHIPPED = ("ex_updated", "1 m")  # what the experiments' scenes ask for
 
@@ -80,6 +82,10 @@ WEAK = Problem(
 PATH_M = (1.0, 0.5, 0.25)
 INCREMENT_CELLS = 3.0  # fewer and the solver turns by a share of maximum hoop stress only
 CONVERGED_M = 0.125  # increment of the finest path of boundary elements
+SMALL_BLOCK = (
+    "domain.width_m=48", "domain.height_m=36", 'strata.layers=[{rock="stiff",thickness_m=29},{rock="soft"}]',
+    "fracture.path_m=[[24.0, 0.0], [24.0, 5.0]]",
+)  # fmt: skip
 KEPT_OFF_M = 0.5  # from the interface, to which paths are compared
 
 
@@ -88,6 +94,8 @@ def turning(setting: Setting, cell_m: float) -> tuple[str, tuple[str, ...]]:
     increment = (f"fracture.increment_m={INCREMENT_CELLS * cell_m!r}",)
     if setting.mechanics == "explicit":
         return "block_explicit", increment
+    if setting.beyond_m > 0.0:
+        return "", (*increment, f"numerics.far_cell_m={cell_m!r}", *SMALL_BLOCK)
     if setting.graded == 0.0:
         return "block", (*increment, f"numerics.far_cell_m={cell_m!r}")
     return "", (*increment, "numerics.far_cell_m=8.0")
@@ -102,6 +110,22 @@ def off(exact: Callable[[Run], Array], own_error: float = 0.0) -> Callable[[Run]
         return Sample.of(farthest(inside, exact(run)), 0.0, paths.GROWTH_M, own_error)
 
     return sample
+
+
+def elements_off(answer: Answer) -> Sample:
+    """The same of a path of boundary elements, from the converged one."""
+    tips = np.column_stack([answer["x_m"], answer["y_m"]])
+    inside = tips[tips[:, 0] < INTERFACE_M - KEPT_OFF_M]
+    return Sample.of(farthest(inside, converged()), 0.0, paths.GROWTH_M, settled_to())
+
+
+def increments(*sizes_m: float) -> tuple[Level, ...]:
+    """Levels of paths of boundary elements by their increments."""
+    return tuple(
+        Level(f"increments {size:g} m", size, tuple(f"{key}={given if isinstance(given, str) else repr(given)}"
+              for key, given in path_settings(6, size, "forward", paths.GROWTH_M).items()))
+        for size in sizes_m
+    )  # fmt: skip
 
 
 def converged(_: Run | None = None) -> Array:
@@ -121,14 +145,18 @@ PATH = Problem(
                "largest distance from the boundary elements' path in the run's own increments, over 20 m of growth", off(paths.same_6)),
         Wanted("path_converged", "path of Exp. 6, all errors", "m",
                "largest distance from the boundary elements' path in increments of 0.125 m, over 20 m of growth: increments of 3 cells are"
-               " part of the error", lambda run: off(converged, settled_to())(run)),
+               " part of the error", lambda run: off(converged, settled_to())(run), elements_off),
     ),
-    methods(paths.ANALYTIC / "path_exp6.toml", turning, [
-        Curve("qs_graded", "quasi-static, graded", replace(STILL, graded=8.0), PATH_M, True),
-        Curve("qs_graded_linear", "quasi-static, graded, linear", replace(STILL, graded=8.0, shape="linear"), PATH_M, True),
-        Curve("qs_uniform", "quasi-static, uniform, block of 80 m", STILL, (1.0, 0.5), True),
-        *with_inertia((1.0, 0.5), (1.0,), (1.0,), 20.0),
-    ]), experiments=(5, 6), shipped=SHIPPED,
+    (
+        Method("be_crack_path", "boundary elements (crack_path)", ELEMENTS, "crack_path", increments(3.0, 1.5, 0.75, 0.375), main=True),
+        *methods(ANALYTIC / "path_exp6.toml", turning, [
+            Curve("qs_graded", "quasi-static, graded", replace(STILL, graded=FAR), PATH_M, True),
+            Curve("qs_graded_linear", "quasi-static, graded, linear", replace(STILL, graded=FAR, shape="linear"), PATH_M, True),
+            *endless(PATH_M, 800.0)[:1],
+            Curve("qs_uniform", "quasi-static, uniform, block of 80 m", STILL, (1.0, 0.5), True),
+            *with_inertia((1.0, 0.5), (1.0,), (), 20.0),
+        ]),
+    ), experiments=(5, 6), shipped=SHIPPED,
 )  # fmt: skip
 
 # --- fractures fed at a rate
@@ -151,14 +179,14 @@ def fed(variant: str):  # type: ignore[no-untyped-def]
 
 def kgd_curves() -> list[Curve]:
     """Flow that conserves volume is quasi-static only: the explicit curve is there to say so."""
-    graded = replace(STILL, graded=8.0)
+    graded = replace(STILL, graded=FAR)
     return [
         *without_inertia(KGD_M, (1.0,))[:3],
         *uniform_still((1.0,))[:1],
         Curve("qs_graded_coarse_flow", "quasi-static, graded, coarse steps of flow",
               replace(graded, further=("numerics.flow_error=0.01", "numerics.flow_change=0.3")), KGD_M, True),
         Curve("qs_graded_fine_flow", "quasi-static, graded, fine steps of flow",
-              replace(graded, further=("numerics.flow_error=1e-4", "numerics.flow_change=0.075")), KGD_M[:-1], True),
+              replace(graded, further=("numerics.flow_error=1e-4", "numerics.flow_change=0.075")), KGD_M[:2], True),
         Curve("ex_updated", "explicit, updated", MOVING, (1.0,)),
         Curve("ex_total", "explicit, total", RESTING, (1.0,)),
     ]  # fmt: skip
