@@ -107,6 +107,7 @@ def test_the_page_shows_the_newest_record(tmp_path: Path) -> None:
                   "71.4 million/s", "falls short", "3 of 23 runs came to their end", "K_I -0.040", "benchmark_rates.svg"):  # fmt: skip
         assert words in page, words
     assert page.count('<tr class="wrong">') == 2, "a mark and a batch"
+    assert '<tr class="wrong"><td>all experiments, explicit/cell1m' in page and '<tr class="wrong"><td>experiments/explicit' in page
     for name in ("rates", "scaling", "events"):
         assert (tmp_path / "out" / "figures" / f"benchmark_{name}.png").is_file()
 
