@@ -217,9 +217,7 @@ def event_figure(figures: Figures) -> EventFigure:
         if kind in _EVENT_KINDS:
             found.append((f"{_EVENT_KINDS[kind]}: {_event_words(rest)}", *_bounds(figure)))
         elif name == "stage/measure_tips/threads1":
-            units = float(figure["about"]["particles"])  # recorded a particle-step, as all stages
-            middle, low, high = _bounds(figure)
-            found.append(("J and K at a tip", units * middle, units * low, units * high))
+            found.append(("J and K at a tip", *_bounds(figure)))
     found.sort(key=lambda item: -item[1])
     growth = {name: figures[f"growth/{name}"]["median"] for name in ("explicit/updated", "explicit/total", "quasistatic/cells80")
               if f"growth/{name}" in figures}  # fmt: skip

@@ -39,7 +39,7 @@ def some_figures(factor: float = 1.0) -> list[dict[str, Any]]:
     events = {"growth/explicit/updated": 4e-3, "growth/explicit/total": 2e-3, "growth/quasistatic/cells80": 1.1e-2,
               "contact/explicit/soft/cells80": 5e-4, "flow/paper/cells80": 8e-7, "write/checkpoint": 6e-3}  # fmt: skip
     found += [a_figure(name, factor * seconds, "event") for name, seconds in events.items()]
-    found.append(a_figure("stage/measure_tips/threads1", factor * 4e-9, about={"particles": 25600.0}))
+    found.append(a_figure("stage/measure_tips/threads1", factor * 1e-4, "call"))
     found.append(a_figure("crack/graded/cell0.5m", factor * 0.08, "run", about={"error": -4e-4, "particles": 9e3}))
     gone = {"values": [], "median": None, "spread": None, "problem": "3 of 23 runs came to their end in 150 s"}
     found.append(a_figure("experiments/explicit/cell1m", 1.0, "all variants", **gone))
@@ -83,7 +83,7 @@ def test_titles_and_bars_follow_the_record() -> None:
         assert curves[0].points == (1e4, 25600.0, 102400.0, 409600.0, 4e6) and list(curves[0].seconds) == sorted(curves[0].seconds)
     assert event_figure(once).title.startswith("An increment of growth costs 4\u00a0ms (explicit, updated)")
     assert "8\u00a0ms" in event_figure(twice).title
-    assert event_figure(once).events[0][0].startswith("growth") and ("J and K at a tip", pytest.approx(25600 * 4e-9)) in [
+    assert event_figure(once).events[0][0].startswith("growth") and ("J and K at a tip", pytest.approx(1e-4)) in [
         (name, middle) for name, middle, *_ in event_figure(once).events]
 
 

@@ -38,11 +38,14 @@ double bytes_a_particle(int points) {
   return 10 * 16.0 + 3 * 8.0 + 1.0 + (2 * sizeof(NodeSums) + 2 * sizeof(NodeMotion)) / static_cast<double>(points);
 }
 
-// Steps that are timed together: a period of rebuild() where particles are few, else what takes about a second.
+// Steps that are timed together: a period of what is done now and then (rebuild() every 250 steps, particles brought up
+// to date every 500 under kinematics = "total") where particles are few, else what takes about a second.
 std::int64_t steps_of(const StepCase& c) {
-  constexpr double enough = 2e7;  // particle-steps
+  const bool total = c.kinematics == "total";
+  const double enough = total ? 6e7 : 2e7;  // particle-steps
   const double particles = static_cast<double>(c.cells) * c.cells * c.points;
-  return std::clamp(static_cast<std::int64_t>(enough / particles), std::int64_t{5}, steps_between_rebuilds);
+  return std::clamp(static_cast<std::int64_t>(enough / particles), std::int64_t{5},
+                    (total ? 2 : 1) * steps_between_rebuilds);
 }
 
 void add_step(Shop& shop, const std::string& group, const StepCase& c) {

@@ -22,6 +22,9 @@ PER = {
     "contact": "solve", "flow": "flow step", "write": "writing", "calibration": "measurement",
 }  # fmt: skip
 
+# Stages that do not pass over all particles: their unit is a call.
+CALLS = ("stage/momentum", "stage/surfaces", "stage/measure_tips")
+
 
 class NoBenchmark(Exception):
     """strata_bench could not be run, or said nothing that can be read; the message is its own."""
@@ -95,7 +98,8 @@ SCALE = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 def figure_of(name: str, entries: list[dict[str, Any]]) -> Figure:
     """One figure from its repetitions: seconds a unit of work."""
     failed = [str(entry.get("error_message", "an error")) for entry in entries if entry.get("error_occurred")]
-    per = PER.get(name.split("/")[0], "unit")
+    a_call = name.startswith(CALLS)
+    per = "call" if a_call else PER.get(name.split("/")[0], "unit")
     if failed:
         return Figure(name, per, (), problem=failed[0])
     about: dict[str, Any] = dict(pair.partition("=")[::2] for pair in entries[0].get("label", "").split())
@@ -105,7 +109,8 @@ def figure_of(name: str, entries: list[dict[str, Any]]) -> Figure:
     if about.get("kinematics") == "total":
         about["equivalent"] = "flop of the form with particles, which this one need not do"
     large = about.get("particles", 0.0) * about.get("byte_a_unit", 0.0) > LARGE_B
-    seconds = tuple(float(e["real_time"]) * SCALE[e.get("time_unit", "ns")] / float(e["units"]) for e in entries)
+    seconds = tuple(
+        float(e["real_time"]) * SCALE[e.get("time_unit", "ns")] / (1.0 if a_call else float(e["units"])) for e in entries)
     return Figure(
         name, per, seconds, threads=int(entries[0]["threads_used"]), bound=MEMORY if large else CORE,
         peak_flop_s=tuple(float(e["peak_flop_s"]) for e in entries), stream_B_s=tuple(float(e["stream_B_s"]) for e in entries),

@@ -94,6 +94,8 @@ def test_repetitions_of_google_benchmark_become_one_figure() -> None:
     assert small.name == "step/updated/x" and small.values == pytest.approx((2e-5, 3e-5, 4e-5)) and small.bound == CORE
     assert small.per == "particle-step" and small.threads == 2 and small.peak_flop_s == (5e10,) * 3
     assert small.about["kinematics"] == "updated" and small.about["flop_a_unit"] == 340.0
+    call = kernels.figure_of("stage/surfaces/threads1", [an_entry("stage/surfaces/threads1", 1.0)])
+    assert call.per == "call" and call.values == (1e-3,)
     assert large.name == "scaling/x" and large.bound == MEMORY and large.values == pytest.approx((1e-8,))
 
 
