@@ -105,16 +105,17 @@ def section(runs: Path, out: Path) -> Section | None:
 
 
 _RATE_CAPTION = (
-    "Explicit steps of a block of 80 × 80 cells of 4 points with a pressurised crack: medians, with least and most as whiskers; above each bar the"
-    " share of the cores' peak that the counted flop make (of the total formulation: those of its form with points). Dashes: the marks."
+    "Explicit steps of a block of 80 × 80 cells of 4 points with a pressurised crack: medians, with least and most as whiskers; above"
+    " each bar the share of the cores' peak that the counted flop make (of the total formulation: those of its form with points)."
+    " Dashes: the marks."
 )
 _SCALING_CAPTION = (
     "Cost against the number of points, both logarithmic, with the exponent of a power law fitted to all sizes. Dashed, from the"
     " smallest size: linear growth for a step, the power 1.5 for a run without inertia, neither to be exceeded."
 )
 _EVENT_CAPTION = (
-    "What happens now and then in a run, on one thread, on a block of 80 × 80 cells and of more: medians (dots) with least and most. Growth with inertia: the step in"
-    " which the fracture grows less an ordinary one; without: the whole step, with its equilibria."
+    "What happens now and then in a run, on one thread, on a block of 80 × 80 cells and of more: medians (dots) with least and most."
+    " Growth with inertia: the step in which the fracture grows less an ordinary one; without: the whole step, with its equilibria."
 )
 
 
@@ -176,8 +177,8 @@ def _rate_title(panels: list[RatePanel]) -> str:
 def scaling_figure(figures: Figures) -> ScalingFigure:
     """Explicit steps by kinematics, and whole runs without inertia."""
     steps = [curve for kinematics in ("updated", "total") if (curve := _step_curve(figures, kinematics)) is not None]
-    whole = _curve("Experiment 1, soft interface", [
-        (float(figure["about"]["particles"]), figure["median"]) for name, figure in figures.items() if name.startswith("whole/quasistatic/")])
+    runs = [figure for name, figure in figures.items() if name.startswith("whole/quasistatic/")]
+    whole = _curve("Experiment 1, soft interface", [(float(figure["about"]["particles"]), figure["median"]) for figure in runs])
     panels = [ScalingPanel("a step with inertia, 1 thread", tuple(steps), 1.0)] if steps else []
     panels += [ScalingPanel("a run without inertia", (whole,), 1.5)] if whole else []
     told = [f"{curve.exponent:.2f} ({curve.label})" for panel in panels for curve in panel.curves]
@@ -189,7 +190,8 @@ def _step_curve(figures: Figures, kinematics: str) -> Curve | None:
     found = []
     for name, figure in figures.items():
         parts = name.split("/")
-        if parts[0] in ("step", "scaling") and parts[1:6] == [kinematics, "bspline2", "flip", "fast", "points4"] and parts[-1] == "threads1":
+        own = parts[1:6] == [kinematics, "bspline2", "flip", "fast", "points4"] and parts[-1] == "threads1"
+        if parts[0] in ("step", "scaling") and own:
             points = float(figure["about"]["particles"])
             found.append((points, figure["median"] * points))
     return _curve(kinematics, found)

@@ -28,8 +28,8 @@ def draw_rates(data: RateFigure) -> Figure:
         _draw_rates(axes, panel)
     every[0].set_ylabel("million particle-steps a second")
     kinds = dict.fromkeys((bar.kernels, bar.threads) for panel in data.panels for _, bars in panel.shapes for bar in bars)
-    handles: list[Patch | Line2D] = [
-        Patch(color=_COLOURS[kind], label=f"{kind[0]}, {kind[1]} thread{'s' if kind[1] > 1 else ''}") for kind in _COLOURS if kind in kinds]
+    names = {kind: f"{kind[0]}, {kind[1]} thread{'s' if kind[1] > 1 else ''}" for kind in _COLOURS if kind in kinds}
+    handles: list[Patch | Line2D] = [Patch(color=_COLOURS[kind], label=name) for kind, name in names.items()]
     handles.append(Line2D([], [], color=FLAG, linestyle=(0, (4, 2)), linewidth=1.2, label="mark (threads)"))
     put_legend(figure, handles, 5)
     return figure
@@ -46,7 +46,8 @@ def _draw_rates(axes: Axes, panel: RatePanel) -> None:
             axes.bar(x, bar.rate, 0.92 * width, color=_COLOURS[bar.kernels, bar.threads], zorder=3)
             axes.plot([x, x], [bar.low, bar.high], color=INK, linewidth=0.9, zorder=4)
             share = "" if bar.share is None else f"\n{100.0 * bar.share:.0f}\u202f%"
-            axes.annotate(f"{bar.rate:.0f}{share}", (x, bar.high), (0, 2), textcoords="offset points", ha="center", va="bottom", fontsize=6.5)
+            axes.annotate(f"{bar.rate:.0f}{share}", (x, bar.high), (0, 2), textcoords="offset points", ha="center", va="bottom",
+                          fontsize=6.5)  # fmt: skip
     for threads, mark in panel.marks.items():
         axes.axhline(mark, color=FLAG, linestyle=(0, (4, 2)), linewidth=1.2, zorder=2)
         axes.annotate(f"{mark:g} ({threads})", (1.0, mark), (2, 0), xycoords=("axes fraction", "data"), textcoords="offset points",

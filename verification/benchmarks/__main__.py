@@ -26,7 +26,7 @@ OK, WORSE, WRONG_USE, NOT_RECORDED = 0, 1, 2, 4
 
 # What --quick takes of the kernels: the marks on speed, and one of every kind of event.
 QUICK_KERNELS = re.compile(
-    r"step/(updated|total)/(bspline2|gimp|linear)/flip/(fast|plain)/points4/cells80/|stage/|growth/explicit|contact/.*cells80|flow/.*cells80|write/"
+    r"step/\w+/\w+/flip/\w+/points4/cells80/|stage/|growth/explicit|contact/.*cells80|flow/.*cells80|write/"
 )
 
 
@@ -71,11 +71,16 @@ def run_figures(options: argparse.Namespace, tell: Progress) -> list[Figure]:
     """Figures of whole runs."""
     quick, repetitions = options.quick, 2 if options.quick else REPETITIONS
     batches = runs.QUICK if quick else runs.LONG if options.long else runs.DEFAULT
+
+    def both() -> tuple[float, float]:
+        """Rates of as many threads as a batch has runs side by side."""
+        return kernels.rates(runs.JOBS)
+
     parts = [
         ("crack/", lambda: runs.crack_figures(repetitions, quick, kernels.rates, tell)),
         ("whole/", lambda: runs.growth_figures(repetitions, quick, kernels.rates, tell)),
         ("memory/", lambda: runs.memory_figures(quick, tell)),
-        *((f"{batch.name}/", lambda batch=batch: runs.batch_figures(batch, kernels.rates, tell)) for batch in batches),
+        *((f"{batch.name}/", lambda batch=batch: runs.batch_figures(batch, both, tell)) for batch in batches),
     ]
     return [figure for name, make in parts if re.search(options.only, name) for figure in make()]
 

@@ -104,9 +104,9 @@ def sizes(record: Record, kinematics: str) -> list[tuple[float, float]]:
     found = {}
     for figure in record.figures:
         parts = figure.name.split("/")
-        if parts[0] in ("step", "scaling") and parts[1:6] == [kinematics, "bspline2", "flip", "fast", "points4"] and parts[-1] == "threads1":
-            if figure.values:
-                found[float(figure.about["particles"])] = figure.median * float(figure.about["particles"])
+        own = parts[1:6] == [kinematics, "bspline2", "flip", "fast", "points4"] and parts[-1] == "threads1"
+        if parts[0] in ("step", "scaling") and own and figure.values:
+            found[float(figure.about["particles"])] = figure.median * float(figure.about["particles"])
     return sorted(found.items())
 
 
@@ -147,7 +147,8 @@ def marks(record: Record) -> list[Mark]:
         (len(whole_sizes(record)) > 2, lambda: Mark("exponent of a run without inertia", 1.5, slope(whole_sizes(record)), "",
                                                     False, _reach(whole_sizes(record)))),
         (any(figure.name.startswith("crack/") for figure in record.figures),
-         lambda: Mark("K_I of the crack in the block to 0.1 %", 0.1, best.median if best else math.nan, "s", False, best.name if best else "")),
+         lambda: Mark("K_I of the crack in the block to 0.1 %", 0.1, best.median if best else math.nan, "s",
+                      note=best.name if best else "")),
     ]  # fmt: skip
     for name, limit in (("quasistatic/cell1m", 10.0), ("explicit/cell1m", 120.0), ("quasistatic/cell0.25m", 300.0)):
         figure = record.figure(f"experiments/{name}")
@@ -163,4 +164,5 @@ def _reach(found: Sequence[tuple[float, float]]) -> str:
 
 def _batch_mark(figure: Figure, limit_s: float) -> Callable[[], Mark]:
     """The mark on a batch of experiments."""
-    return lambda: Mark(f"all experiments, {figure.name.removeprefix('experiments/')}", limit_s, figure.median, "s", False, figure.problem)
+    what = f"all experiments, {figure.name.removeprefix('experiments/')}"
+    return lambda: Mark(what, limit_s, figure.median, "s", note=figure.problem)

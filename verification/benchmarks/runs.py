@@ -5,7 +5,7 @@ import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from verification.benchmarks.figure import CORE, NONE, Figure
+from verification.benchmarks.figure import NONE, Figure
 from verification.benchmarks.process import Setting, Taken, take, take_all
 from verification.harness.paths import ANALYTIC, EXPERIMENTS, ROOT
 from verification.harness.reference import value
@@ -20,6 +20,9 @@ VARIANTS: dict[str, tuple[str, ...]] = {
         "exp1_single_interface", "exp2_soft_above", "exp4_soft_between", "exp5_parallel_interface", "exp6_stress_reversal")},
     "exp3_two_interfaces": ("perfect", "weak_soft", "soft_weak"),
 }  # fmt: skip
+
+# Runs side by side in a batch: two, as the marks are for two cores.
+JOBS = min(2, os.cpu_count() or 1)
 
 Rates = Callable[[], tuple[float, float]]
 Tell = Callable[[str], None]
@@ -63,16 +66,15 @@ def beside(work: Callable[[], list[float]], rates: Rates) -> tuple[list[float], 
 
 
 def batch_figures(batch: Batch, rates: Rates, tell: Tell) -> list[Figure]:
-    """The time from the first run's start to the last one's end, as many runs at a time as there are cores, and each run's own."""
+    """The time from the first run's start to the last one's end, JOBS at a time, and each run's own."""
     every: list[list[Taken]] = []
     elapsed: list[float] = []
     peaks: list[float] = []
     streams: list[float] = []
-    cores = os.cpu_count() or 1
     for repetition in range(batch.repetitions):
 
         def once() -> list[float]:
-            seconds, taken = take_all(settings_of(batch), cores, batch.limit_s, lambda words: tell(f"{batch.name}: {words}"))
+            seconds, taken = take_all(settings_of(batch), JOBS, batch.limit_s, lambda words: tell(f"{batch.name}: {words}"))
             every.append(taken)
             return [seconds]
 
@@ -84,10 +86,10 @@ def batch_figures(batch: Batch, rates: Rates, tell: Tell) -> list[Figure]:
             break
     problems = [f"{run.setting.name}: {run.problem}" for run in every[-1] if run.problem]
     done = len(every[-1]) - len(problems)
-    about = {"runs": len(every[-1]), "completed": done, "cores": cores, "limit_s": batch.limit_s,
+    about = {"runs": len(every[-1]), "completed": done, "jobs": JOBS, "limit_s": batch.limit_s,
              "cpu_s": round(sum(run.cpu_s for run in every[-1]), 2)}  # fmt: skip
     problem = f"{done} of {len(every[-1])} runs came to their end in {elapsed[-1]:.0f} s; {problems[0]}" if problems else ""
-    whole = Figure(batch.name, "all variants", () if problem else tuple(elapsed), bound=CORE, about=about, problem=problem,
+    whole = Figure(batch.name, "all variants", () if problem else tuple(elapsed), threads=JOBS, about=about, problem=problem,
                    peak_flop_s=() if problem else tuple(peaks), stream_B_s=() if problem else tuple(streams))  # fmt: skip
     return [whole, *_each(batch, every, peaks, streams)]
 
@@ -99,11 +101,13 @@ def _each(batch: Batch, every: Sequence[list[Taken]], peaks: list[float], stream
         good = [run for run in runs if run.summary is not None and not run.problem]
         complete = len(good) == len(every)
         about = {"particles": good[0].summary.particles, "steps": good[0].summary.steps} if complete and good[0].summary else {}
-        figures.append(Figure(
-            f"{batch.name}/{runs[0].setting.name}", "run", tuple(run.summary.wall_s for run in good if run.summary) if complete else (),
-            peak_flop_s=tuple(peaks) if complete else (), stream_B_s=tuple(streams) if complete else (), about=about,
-            problem=next((run.problem for run in runs if run.problem), ""),
-        ))  # fmt: skip
+        seconds = tuple(run.summary.wall_s for run in good if run.summary)
+        name, problem = f"{batch.name}/{runs[0].setting.name}", next((run.problem for run in runs if run.problem), "")
+        if complete:
+            rates = {"peak_flop_s": tuple(peaks), "stream_B_s": tuple(streams)}
+            figures.append(Figure(name, "run", seconds, threads=JOBS, about=about, **rates))
+        else:
+            figures.append(Figure(name, "run", (), threads=JOBS, problem=problem))
     return figures
 
 
@@ -125,8 +129,8 @@ def repeated(name: str, per: str, setting: Setting, repetitions: int, rates: Rat
     if last.problem:
         return Figure(name, per, (), problem=last.problem), last
     found, peak, stream = beside(again, rates)
-    figure = Figure(name, per, tuple(found), peak_flop_s=(peak,) * len(found), stream_B_s=(stream,) * len(found), problem=last.problem)
-    return figure, last
+    count = len(found)
+    return Figure(name, per, tuple(found), peak_flop_s=(peak,) * count, stream_B_s=(stream,) * count, problem=last.problem), last
 
 
 def crack_settings(quick: bool) -> dict[str, Setting]:
@@ -204,5 +208,6 @@ def memory_figure(name: str, held: Sequence[tuple[float, float]], problem: str =
     if problem or len(held) < 2:
         return Figure(name, "point", (), unit="B", bound=NONE, problem=problem or "no two runs")
     (few, small), (many, large) = held[0], held[-1]
-    return Figure(name, "point", ((large - small) / (many - few),), unit="B", bound=NONE, about={"points": many, "held_MB": large / 1e6})
+    about = {"points": many, "held_MB": large / 1e6}
+    return Figure(name, "point", ((large - small) / (many - few),), unit="B", bound=NONE, about=about)
 

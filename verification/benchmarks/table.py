@@ -97,12 +97,14 @@ def report(record: Record, lines: Sequence[Line], then: Record | None, marks: Se
     if any(figure.peak_flop_s for figure in record.figures):
         said.append(calibration_line(record))
     said += ["", *table(HEADER, [figure_row(figure, of.get(figure.name)) for figure in record.figures])]
-    said += [""] + (table(["mark (2 cores)", "found", "wanted", "", ""], [mark_row(mark) for mark in marks]) if marks else ["no marks: they need more figures"])
+    rows = [mark_row(mark) for mark in marks]
+    said += ["", *(table(["mark (2 cores)", "found", "wanted", "", ""], rows) if rows else ["no marks: they need more figures"])]
     if then is None:
         said += ["", "nothing recorded on this machine to compare with"]
     else:
         bad = [line for line in lines if line.verdict in BAD]
-        told_build = "" if (then.build.compiler, then.build.flags) == (record.build.compiler, record.build.flags) else ", by another compiler or flags"
-        said += ["", f"against {then.date}, {then.build.version} {then.build.commit}{told_build}: calibrated costs, band {BAND:g}"]
+        same = (then.build.compiler, then.build.flags) == (record.build.compiler, record.build.flags)
+        built = f"{then.build.version} {then.build.commit}{'' if same else ', by another compiler or flags'}"
+        said += ["", f"against {then.date}, {built}: calibrated costs, band {BAND:g}"]
         said += [f"  {line.verdict.upper()}: {line.name}: {line.why}" for line in bad] or ["  nothing slower, nothing missing"]
     return said
