@@ -38,7 +38,7 @@ Growth grow_on(State& state, int times, Step step) {
   return {median(with), without.empty() ? 0.0 : median(without)};
 }
 
-constexpr int growths = 6;
+constexpr int growths = 4;
 
 // An increment in a run with inertia: what the step in which it happens takes beyond the others.
 void add_explicit_growth(Shop& shop, const std::string& kinematics) {

@@ -57,7 +57,7 @@ double solve_once(Workpiece& work) {
 void add_contact(Shop& shop, const std::string& variant, int cells) {
   const std::string name = fmt::format("contact/explicit/{}/cells{}", variant.empty() ? "crack" : variant, cells);
   const Order order{variant, {cell_setting(cells)}};
-  add(name, 20, [&shop, order, variant](benchmark::State& bench) {
+  add(name, 10, [&shop, order, variant](benchmark::State& bench) {
     Workpiece& work = shop.get(order);
     const std::size_t places = places_of(work.state);
     const About about{fmt::format("variant={} places={}", variant, places), 1, 1.0, 0.0, 0.0};
