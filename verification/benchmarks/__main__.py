@@ -15,7 +15,7 @@ from verification.benchmarks.figure import Figure
 from verification.benchmarks.judge import BAD, SLOWER, Line, as_plain, compare, marks
 from verification.benchmarks.machine import Load, busy_processors, this_build, this_machine
 from verification.benchmarks.records import (
-    BadRecord, OtherMachine, Record, append, as_json, last_record, why_not_recorded,
+    BadRecord, OtherMachine, Record, append, as_json, broken, last_record, why_not_recorded,
 )  # fmt: skip
 from verification.benchmarks.table import report
 from verification.harness.paths import ROOT
@@ -141,8 +141,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if noisy:
         print(f"ci/bench: {noisy}: these are no results, and nothing is judged by them", file=sys.stderr)
     kept = keep(record, options) if options.record else OK
-    broken = any(line.verdict in BAD and (not noisy or line.verdict != SLOWER) for line in lines)
-    return WORSE if broken or any(figure.wrong() and not figure.problem for figure in record.figures) else kept
+    worse = any(line.verdict in BAD and (not noisy or line.verdict != SLOWER) for line in lines)
+    return WORSE if worse or broken(record) else kept
 
 
 def keep(record: Record, options: argparse.Namespace) -> int:

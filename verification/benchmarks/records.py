@@ -110,14 +110,19 @@ def check_machine(here: Machine, there: Machine) -> None:
                            f"this machine is {here.cpu}, {here.cores} cores, {here.caches}")  # fmt: skip
 
 
+def broken(record: Record) -> list[str]:
+    """Names of what is no figure; experiments that do not come to their end in time are a finding and not broken."""
+    return [figure.name for figure in record.figures
+            if figure.wrong() and not (figure.problem and figure.name.startswith("experiments/"))]  # fmt: skip
+
+
 def why_not_recorded(record: Record) -> list[str]:
     """What speaks against keeping a record: a busy machine, a part only, figures that are none."""
     reasons = [record.load.noisy] if record.load.noisy else []
     if record.part:
         reasons.append("only a part of the figures was taken")
-    broken = [figure.name for figure in record.figures if figure.wrong() and not figure.problem]
-    if broken:
-        reasons.append(f"these are no figures: {', '.join(broken[:5])}")
+    if broken(record):
+        reasons.append(f"these are no figures: {', '.join(broken(record)[:5])}")
     return reasons
 
 

@@ -177,7 +177,9 @@ def test_a_record_comes_back_as_it_was(tmp_path: Path) -> None:
 
 def test_a_busy_machine_a_part_and_broken_figures_are_not_recorded() -> None:
     """Each is a reason; a run that was ended in time is none, it is a finding."""
-    assert why_not_recorded(a_record(a_figure(), replace(a_figure("b"), values=(), problem="ended"))) == []
+    assert why_not_recorded(a_record(a_figure(), Figure("experiments/b", "run", (), problem="ended"))) == []
+    assert "no figures: step/b" in why_not_recorded(a_record(a_figure(), Figure("step/b", "run", (), problem="no such key")))[0]
+    assert "experiments/c" in why_not_recorded(a_record(replace(a_figure("experiments/c"), values=(0.0,))))[0]
     for load in (Load(2.0, 0.0), Load(0.0, 0.9), Load(0.0, 0.0, 0.9)):
         assert len(why_not_recorded(a_record(a_figure(), load=load))) == 1
     assert "part" in why_not_recorded(a_record(part=True))[0]
