@@ -106,7 +106,7 @@ def recipe(sheets: Sequence[store.Sheet]) -> tuple[tuple[str, str], ...]:
         ("solver", f"strata {each('version')}, revision {each('revision')}"),
         ("measured", f"{dates[0]} to {dates[-1]} UTC, {len(points)} points, {sum(len(point.wall_s) for point in points)} runs that count"),
         ("recipe", "wall time of the whole process on one thread, start and output included, one run at a time on an idle machine; median of"
-                   " five runs after a warm-up, of three above 2 s, a single run above 20 s (then marked)"),
+                   " five runs after a warm-up, of three above 2 s, a single run above 10 s (then marked)"),
     )  # fmt: skip
 
 
@@ -185,8 +185,9 @@ def look_of(method: Method) -> Look:
         return Look("elements", "elements", True, "-")
     still = setting.mechanics == "quasistatic"
     family = "quasistatic" if still else "total" if setting.kinematics == "total" else "updated"
-    plain = (setting.points, setting.courant, setting.kernels) == (4, 0.5, "") and setting.transfer in ("", "flip") and not setting.further
-    return Look(family, setting.shape, setting.graded > 0.0, "-" if plain else {9: ":", 16: "--"}.get(setting.points, "-."))
+    usual = (setting.points, setting.courant, setting.kernels, setting.further) == (4, 0.5, "", ())
+    plain = usual and setting.transfer in ("", "flip")
+    return Look(family, setting.shape, max(setting.graded, setting.beyond_m) > 0.0, "-" if plain else {9: ":", 16: "--"}.get(setting.points, "-."))
 
 
 def panel_shown(panel: Panel, spread: tuple[float, float] | None = None) -> PanelShown:

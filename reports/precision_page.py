@@ -27,7 +27,7 @@ CAPTION = (
     " smaller error is luck and hangs below. Yellow: what no other run of the solver beats in both. Circles: the cheapest within 1 % and"
     " 0.1 %. Blue ground: the reference is not known better. Pink: methods that were refused, failed, took too long or have no value."
 )
-FULL_CAPTION = "Every method and setting; filled: graded grid, hollow: uniform. Circles: the cheapest within 1 % and 0.1 %."
+FULL_CAPTION = "Every method and setting, its number beside its finest size; filled: graded grid, hollow: uniform. Circles: the cheapest within 1 % and 0.1 %."
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,8 @@ def recommendations(panels: Sequence[Panel]) -> list[str]:
         if choice is None:
             continue
         heading = f"Experiments {listed(numbers)}: {choice.name}, {seconds(choice.time_s)} a run"
-        reason = "the cheapest within 1 %, or the reference's uncertainty," if choice.within else "none is within 1 % in all; this comes nearest,"
+        nearest = "none is within 1 % in all; this comes nearest,"
+        reason = "the cheapest within 1 %, or the reference's uncertainty," if choice.within else nearest
         told.append(f"{heading}; {reason} with errors of {_errors(choice.dots, own)}. {_shipped(own)}")
     return told
 
@@ -110,4 +111,5 @@ def _shipped(panels: Sequence[Panel]) -> str:
     dots = run_at(panels, method, level)
     if dots is None:
         return f"The scenes' own setting ({label}, {level}) has not been measured, or has no value."
-    return f"The scenes' own setting ({label}, {level}) takes {seconds(dots[0].time_s)}, with errors of {_errors(dots, panels)}; it has inertia."
+    took = seconds(dots[0].time_s)
+    return f"The scenes' own setting ({label}, {level}) takes {took}, with errors of {_errors(dots, panels)}; it has inertia."

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from reports.charts.style import FLAG, INK, PALE, new_figure, panel_grid, put_legend, put_title
@@ -22,9 +23,9 @@ _NAMES = {
 _MARKS = {"bspline2": "o", "gimp": "^", "linear": "s", "elements": "D"}
 _SHAPES = {"bspline2": "quadratic B-spline", "gimp": "GIMP", "linear": "linear"}
 _LINES: dict[str, object] = {"-": "-", "--": (0, (4, 1.6)), ":": (0, (1, 1.4)), "-.": (0, (4, 1.4, 1, 1.4))}
+_FRONT, _OTHERS = "#f0d468", "#bdbdbd"  # colours of the Pareto front and of methods in the background
 _DASHES = {"--": "16 points a cell", ":": "9 points a cell", "-.": "another transfer, Courant number, kernel or flow step"}
 _STRIP = 0.075  # height of the strip of failures, in shares of the axes
-_CHOSEN = "#c8a200"
 
 
 def draw_front(data: PrecisionFigure) -> Figure:
@@ -50,7 +51,10 @@ def draw_full(data: PrecisionFigure) -> Figure:
     _draw_panel(axes, panel, pale=False)
     axes.set_xlabel("wall time (s)")
     axes.set_ylabel("relative error")
-    handles = [_handle(curve) for curve in panel.curves]
+    handles = [_handle(curve, k) for k, curve in enumerate(panel.curves, 1)]
+    for k, curve in enumerate(panel.curves, 1):
+        axes.annotate(f"{k}", (curve.times_s[-1], curve.errors[-1]), xytext=(5, 4), textcoords="offset points", fontsize=7.2,
+                      color=_COLOURS[curve.look.family], zorder=7)  # fmt: skip
     axes.legend(handles=handles, loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=7.6)
     return figure
 
@@ -73,7 +77,7 @@ def _draw_panel(axes: Axes, panel: PanelShown, pale: bool) -> None:
                       textcoords="offset points", ha="right", fontsize=6.8, color="#3b5878")  # fmt: skip
     times, errors = panel.front
     if times:
-        axes.plot((*times, axes.get_xlim()[1]), (*errors, errors[-1]), drawstyle="steps-post", color="#f0d468", linewidth=6.5, alpha=0.75,
+        axes.plot((*times, axes.get_xlim()[1]), (*errors, errors[-1]), drawstyle="steps-post", color=_FRONT, linewidth=6.5, alpha=0.75,
                   solid_capstyle="butt", zorder=1.5)  # fmt: skip
     for curve in panel.curves:
         _draw_curve(axes, curve, pale and not curve.main)
@@ -97,7 +101,7 @@ def _limits(axes: Axes, panel: PanelShown) -> None:
 def _draw_curve(axes: Axes, curve: CurveShown, pale: bool) -> None:
     """A method's way down; errors that are small by luck hang below their marks."""
     if pale:
-        axes.plot(curve.times_s, curve.errors, color="#bdbdbd", linewidth=0.7, marker=".", markersize=3, zorder=2)
+        axes.plot(curve.times_s, curve.errors, color=_OTHERS, linewidth=0.7, marker=".", markersize=3, zorder=2)
         return
     colour = _COLOURS[curve.look.family]
     axes.plot(curve.times_s, curve.errors, color=colour, linewidth=1.3, linestyle=_LINES[curve.look.dashes], marker=_MARKS[curve.look.shape],
@@ -112,13 +116,14 @@ def _strip(axes: Axes, panel: PanelShown) -> None:
     """What has nothing to show: a cross at the time spent, in a strip above the curves, with their count by how they ended."""
     if not panel.lacks:
         return
-    axes.axhspan(1.0 - _STRIP, 1.0, xmin=0.0, xmax=1.0, transform=axes.get_yaxis_transform(), color="#fbe4e2", linewidth=0, zorder=2)
+    place = Rectangle((0.0, 1.0 - _STRIP), 1.0, _STRIP, transform=axes.transAxes, facecolor="#fbe4e2", edgecolor="none", zorder=2)
+    axes.add_patch(place)
     left, right = axes.get_xlim()
     for lack in panel.lacks:
-        place = min(max(lack.time_s, left * 1.08), right / 1.08)
-        axes.plot([place], [1.0 - 0.5 * _STRIP], transform=axes.get_xaxis_transform(), marker="x", markersize=4.5, markeredgewidth=1.3,
+        spent = min(max(lack.time_s, left * 1.08), right / 1.08)
+        axes.plot([spent], [1.0 - 0.5 * _STRIP], transform=axes.get_xaxis_transform(), marker="x", markersize=4.5, markeredgewidth=1.3,
                   color=_COLOURS[lack.look.family], zorder=5)  # fmt: skip
-    axes.annotate(panel.lacks_words, (0.985, 1.0 - 0.5 * _STRIP), xycoords="axes fraction", ha="right", va="center", fontsize=7,
+    axes.annotate(panel.lacks_words, (0.985, 0.99 - _STRIP), xycoords="axes fraction", ha="right", va="top", fontsize=7,
                   color=FLAG, zorder=6)  # fmt: skip
 
 
@@ -131,26 +136,31 @@ def _advice(axes: Axes, panel: PanelShown) -> None:
         words.set_in_layout(False)
 
 
-def _handle(curve: CurveShown) -> Line2D:
-    """A method in a legend."""
+def _handle(curve: CurveShown, number: int) -> Line2D:
+    """A method in a legend, with the number beside its finest size."""
     colour = _COLOURS[curve.look.family]
     return Line2D([], [], color=colour, linestyle=_LINES[curve.look.dashes], linewidth=1.3, marker=_MARKS[curve.look.shape], markersize=4.8,
-                  markerfacecolor=colour if curve.look.filled else "white", label=curve.label)  # fmt: skip
+                  markerfacecolor=colour if curve.look.filled else "white", label=f"{number}  {curve.label}")  # fmt: skip
 
 
 def _legend(panels: tuple[PanelShown, ...]) -> list[Line2D]:
     """What colours, marks, fillings and lines mean, of those in use."""
     looks: list[Look] = [curve.look for panel in panels for curve in panel.curves if curve.main]
-    found = [Line2D([], [], color=colour, linewidth=2.2, label=_NAMES[name]) for name, colour in _COLOURS.items() if _has(looks, "family", name)]
+    found = [Line2D([], [], color=colour, linewidth=2.2, label=_NAMES[name])
+             for name, colour in _COLOURS.items() if _has(looks, "family", name)]  # fmt: skip
     found += [Line2D([], [], color=INK, marker=_MARKS[name], linestyle="none", markersize=5, label=words)
               for name, words in _SHAPES.items() if _has(looks, "shape", name)]  # fmt: skip
-    found.append(Line2D([], [], color=INK, marker="o", linestyle="none", markerfacecolor="white", markersize=5, label="hollow: uniform grid; filled: graded"))
-    found += [Line2D([], [], color=INK, linewidth=1.3, linestyle=_LINES[name], label=words) for name, words in _DASHES.items() if _has(looks, "dashes", name)]
-    found.append(Line2D([], [], color="#f0d468", linewidth=6, label="Pareto front of the solver"))
-    found.append(Line2D([], [], color=INK, marker="o", markerfacecolor="none", markersize=10, linestyle="none", label="cheapest within 1 % and 0.1 %"))
-    found.append(Line2D([], [], color="#bdbdbd", marker=".", linewidth=0.8, label="other settings (named on the page of all settings)"))
+    found.append(Line2D([], [], color=INK, marker="o", linestyle="none", markerfacecolor="white", markersize=5,
+                        label="hollow: uniform grid; filled: graded"))  # fmt: skip
+    found += [Line2D([], [], color=INK, linewidth=1.3, linestyle=_LINES[name], label=words)
+              for name, words in _DASHES.items() if _has(looks, "dashes", name)]  # fmt: skip
+    found.append(Line2D([], [], color=_FRONT, linewidth=6, label="Pareto front of the solver"))
+    found.append(Line2D([], [], color=INK, marker="o", markerfacecolor="none", markersize=10, linestyle="none",
+                        label="cheapest within 1 % and 0.1 %"))  # fmt: skip
+    found.append(Line2D([], [], color=_OTHERS, marker=".", linewidth=0.8, label="other settings (named on the page of all settings)"))
     found.append(Line2D([], [], color=PALE, marker="_", linestyle=":", label="hangs below: smaller by luck, not counted"))
-    found.append(Line2D([], [], color=FLAG, marker="x", linestyle="none", markersize=5, label="refused, failed, too long or without a value"))
+    found.append(Line2D([], [], color=FLAG, marker="x", linestyle="none", markersize=5,
+                        label="refused, failed, too long or without a value"))  # fmt: skip
     return found
 
 

@@ -29,6 +29,9 @@ from verification.precision.store import Point, Sheet
 
 QUICK = RUNS / "quick"
 
+# To plan with before anything is known: particle-steps a second on one thread.
+PARTICLE_STEPS_A_SECOND = {"explicit": 4.0e7, "quasistatic": 4.0e5}
+
 
 @dataclass(frozen=True)
 class Task:
@@ -52,8 +55,13 @@ class Task:
         if self.method.program != STRATA or self.method.setting is None:
             return 0.1
         assert isinstance(self.method.source, Path)
-        content = content_of(self.method.source, self.level.variant, self.level.settings)
-        return min(cost_of(content, self.method.setting.mechanics).seconds, self.problem.limit_s)
+        graded = self.method.setting.graded > 0.0 or self.method.setting.beyond_m > 0.0
+        if graded and self.method.setting.mechanics == "quasistatic":
+            return self.problem.about_s * (self.method.levels[-1].size / self.level.size) ** 2
+        cost = cost_of(content_of(self.method.source, self.level.variant, self.level.settings), self.method.setting.mechanics)
+        steps = max(cost.steps, 1.0) if self.method.setting.mechanics == "explicit" else 4.0
+        share = 0.2 if graded else 1.0  # of the uniform grid's particles
+        return min(share * cost.particles * steps / PARTICLE_STEPS_A_SECOND[self.method.setting.mechanics], self.problem.limit_s)
 
     def expected_total_s(self, once: bool) -> float:
         """How long all runs of the point may take, s; one that failed before ends at its first."""

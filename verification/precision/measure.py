@@ -28,7 +28,7 @@ from verification.precision.problem import STRATA, Answer, Method, Problem, Want
 from verification.precision.store import FAILED, OK, REFUSED, TOO_LONG, Found, Point
 
 RUNS = ROOT / "runs" / "precision"
-WARM_S, LONG_S = 2.0, 20.0
+WARM_S, LONG_S = 2.0, 10.0
 REPEATS, SOME = 5, 3
 # Wall time over CPU time of the quickest run, and beyond it (s), above which something else had the processor.
 DISTURBED, WAITING_S = 1.15, 0.05

@@ -58,7 +58,7 @@ class Setting:
 class Method:
     """A way to solve a problem, a curve of the chart: coarse to fine.
 
-    source: the scene of the solver's runs, or the name of a solution of strata-reference, whose settings are then the levels'.
+    source: the scene of the solver's runs, or the name of a solution of strata-reference, to which the levels' settings then go.
     """
 
     name: str  # unique in its problem, as in a file name
@@ -104,6 +104,7 @@ class Problem:
     experiments: tuple[int, ...] = ()
     shipped: tuple[str, str] = ("", "")
     limit_s: float = 90.0  # runs that take longer are failures
+    about_s: float = 1.0  # a rough time of its finest graded run, to plan with before anything is known
 
 
 class BadProblem(Exception):

@@ -65,7 +65,7 @@ BLOCK = Problem(
     "block", "A crack of 5 m under 0.3 MPa net pressure in the study's block of 80 m, at rest",
     (Wanted("block_K_I", "K_I in the block", "Pa sqrt(m)", "relative to K_I of the same block (strata-reference block_crack)",
             exact_block_K_I, block_K_I),),
-    (*methods(cracks.AT_REST, in_block, BLOCK_CURVES), collocation("block_crack", "terms", BLOCK_SETTINGS, UNKNOWNS)),
+    (*methods(cracks.AT_REST, in_block, BLOCK_CURVES), collocation("block_crack", "terms", BLOCK_SETTINGS, UNKNOWNS)), about_s=1.2,
 )  # fmt: skip
 
 # --- near an interface: 2.5 m from it, so that a uniform grid with inertia has cells that see it
@@ -103,10 +103,10 @@ def near(layers: tuple[str, str], laws: tuple[str, ...] = ()):  # type: ignore[n
 
 
 
-def near_curves(single_choices: tuple[float, ...]) -> list[Curve]:
-    """The curves near an interface; single choices at these cell sizes (m), if any."""
+def near_curves() -> list[Curve]:
+    """The curves near an interface; single choices are tried in the block."""
     still = [*without_inertia(NEAR_M, NEAR_EXPLICIT_M), *endless(NEAR_M, WIDE_M)]
-    return [*still, *with_inertia(NEAR_EXPLICIT_M, (1.25,), single_choices, NEAR_SETTLING_1_S)]
+    return [*still, *with_inertia(NEAR_EXPLICIT_M, (1.25,), (), NEAR_SETTLING_1_S)]
 
 
 
@@ -152,7 +152,7 @@ def elements_near() -> dict[str, object]:
 BONDED = Problem(
     "bonded", "A crack of 10 m in stiff rock, normal to soft rock bonded to it 2.5 m ahead", (BONDED_K,),
     (
-        *methods(interfaces.BONDED, near(("stiff", "soft")), near_curves((1.25,))), collocation("bonded_normal", "nodes", ROCKS | CRACK, UNKNOWNS),
+        *methods(interfaces.BONDED, near(("stiff", "soft")), near_curves()), collocation("bonded_normal", "nodes", ROCKS | CRACK, UNKNOWNS),
         Method("be_curved_crack", "boundary elements (curved_crack)", ELEMENTS, "curved_crack", asked(elements_near(), "refine", (1, 2, 4)),
                main=True),
     ),
@@ -160,8 +160,8 @@ BONDED = Problem(
 SPRUNG = Problem(
     "soft", "A crack of 10 m, normal to a soft interface (D a/E' = 1) 2.5 m ahead", (SOFT_K,),
     (
-        *methods(interfaces.SPRINGS, near(("stiff", "stiff"), SOFT), near_curves(())),
+        *methods(interfaces.SPRINGS, near(("stiff", "stiff"), SOFT), near_curves()),
         collocation("spring_interface", "nodes", SPRINGS | CRACK, UNKNOWNS),
-    ),
+    ), about_s=4.0,
 )  # fmt: skip
 PROBLEMS = (BLOCK, BONDED, SPRUNG)
