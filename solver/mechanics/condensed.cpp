@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
+#include <numeric>
 #include <tuple>
 
 #include "mechanics/stiffness.hpp"
@@ -180,31 +181,84 @@ SparseVector summed(Entries entries) {
   return out;
 }
 
-// S = K_jj - Y^T Y for the new unknowns: each product runs over the rows of the other column in their order.
-void condense_new(const std::vector<char>& is_new, int unknowns, Condensed& out) {
-  std::vector<double> dense(static_cast<std::size_t>(unknowns), 0.0);
-  for (std::size_t a = 0; a < is_new.size(); ++a) {
-    if (is_new[a] == 0) continue;
-    const SparseVector& Y = out.columns[a]->Y;
-    for (std::size_t k = 0; k < Y.index.size(); ++k) dense[static_cast<std::size_t>(Y.index[k])] = Y.value[k];
-    for (std::size_t b = 0; b < is_new.size(); ++b) {
-      if (is_new[b] != 0 && b < a) continue;
-      const SparseVector& other = out.columns[b]->Y;
-      double product = 0.0;
-      for (std::size_t k = 0; k < other.index.size(); ++k)
-        product += other.value[k] * dense[static_cast<std::size_t>(other.index[k])];
-      const auto i = static_cast<Eigen::Index>(a), j = static_cast<Eigen::Index>(b);
-      // K_jj is symmetric but for round-off, and which of two unknowns is new depends on what came before.
-      out.S(i, j) = out.S(j, i) = 0.5 * (out.K_jj(i, j) + out.K_jj(j, i)) - product;
-    }
-    for (const int k : Y.index) dense[static_cast<std::size_t>(k)] = 0.0;
+// Columns that are multiplied by all others together: two of the longest vectors of the processor.
+using Eight = Eigen::Array<double, 8, 1>;
+using Lanes = std::array<Eight, 2>;
+constexpr std::size_t lanes = 16;
+
+// Products of one column with the dense ones, each a sum over the rows of that column in their order.
+Lanes products(const SparseVector& Y, const std::vector<Lanes>& dense) {
+  Eight low = Eight::Zero(), high = Eight::Zero();
+  for (std::size_t k = 0; k < Y.index.size(); ++k) {
+    const Lanes& row = dense[static_cast<std::size_t>(Y.index[k])];
+    low += Y.value[k] * row[0];
+    high += Y.value[k] * row[1];
   }
+  return {low, high};
+}
+
+// S = K_jj - Y^T Y for the new unknowns. Rows that only one of two columns has add 0 to their product, so that its
+// digits are the same whichever of them is the dense one.
+void condense_new(const std::vector<char>& is_new, int unknowns, Condensed& out) {
+  std::vector<std::size_t> fresh;
+  for (std::size_t k = 0; k < is_new.size(); ++k) {
+    if (is_new[k] != 0) fresh.push_back(k);
+  }
+  std::vector<Lanes> dense(fresh.empty() ? 0 : static_cast<std::size_t>(unknowns), Lanes{Eight::Zero(), Eight::Zero()});
+  for (std::size_t from = 0; from < fresh.size(); from += lanes) {
+    const std::size_t count = std::min(lanes, fresh.size() - from);
+    for (std::size_t c = 0; c < count; ++c) {
+      const SparseVector& Y = out.columns[fresh[from + c]]->Y;
+      for (std::size_t k = 0; k < Y.index.size(); ++k)
+        dense[static_cast<std::size_t>(Y.index[k])][c / 8][static_cast<Eigen::Index>(c % 8)] = Y.value[k];
+    }
+    for (std::size_t b = 0; b < is_new.size(); ++b) {
+      if (is_new[b] != 0 && b < fresh[from]) continue;  // done with b among the dense ones
+      const Lanes product = products(out.columns[b]->Y, dense);
+      for (std::size_t c = 0; c < count; ++c) {
+        const auto i = static_cast<Eigen::Index>(fresh[from + c]), j = static_cast<Eigen::Index>(b);
+        // K_jj is symmetric but for round-off, and which of two unknowns is new depends on what came before.
+        out.S(i, j) = out.S(j, i) =
+            0.5 * (out.K_jj(i, j) + out.K_jj(j, i)) - product[c / 8][static_cast<Eigen::Index>(c % 8)];
+      }
+    }
+    for (std::size_t c = 0; c < count; ++c) {
+      for (const int k : out.columns[fresh[from + c]]->Y.index)
+        dense[static_cast<std::size_t>(k)] = {Eight::Zero(), Eight::Zero()};
+    }
+  }
+}
+
+// Y of the new unknowns, and the rows that all of them load.
+void factor_columns(const IntactBody& body, const std::vector<char>& is_new, std::vector<Entries> G, Condensed& out) {
+  std::vector<SparseVector> fresh;
+  for (std::size_t k = 0; k < is_new.size(); ++k) {
+    if (is_new[k] != 0) fresh.push_back(summed(std::move(G[k])));
+  }
+  std::vector<SparseVector> Y = body.factor().forward(fresh);
+  std::size_t next = 0;
+  std::vector<int> loaded;
+  for (std::size_t k = 0; k < is_new.size(); ++k) {
+    if (is_new[k] != 0) {
+      auto column = std::make_shared<JumpColumn>(*out.columns[k]);
+      column->G = std::move(fresh[next]);
+      column->Y = std::move(Y[next++]);
+      out.columns[k] = std::move(column);
+    }
+    const std::vector<int>& rows = out.columns[k]->G.index;
+    loaded.insert(loaded.end(), rows.begin(), rows.end());
+  }
+  out.loaded = body.factor().branches(loaded);
+}
+
+bool holds_rigid_motion(const Scene& scene, bool halved) {
+  return (halved || scene.domain.holds_x()) && scene.domain.holds_y();
 }
 
 // Takes out the mean displacement and rotation that no edge holds.
 void remove_rigid_motion(const Scene& scene, const State& state, bool halved, std::vector<Vec2>& u) {
+  if (holds_rigid_motion(scene, halved)) return;
   const bool x_held = halved || scene.domain.holds_x(), y_held = scene.domain.holds_y();
-  if (x_held && y_held) return;
   // Mean over the block's area: with 0.5 (u_y,x - u_x,y) as rotation, from the particles' own fields.
   const Particles& p = state.particles;
   const Vec2 centre{0.5 * scene.domain.width_m, 0.5 * scene.domain.height_m};
@@ -250,29 +304,45 @@ Condensed condense(const Scene& scene, const std::vector<Elasticity>& rocks, con
   out.masters = body.halved() ? mirrored(state, state.masters) : state.masters;
   number_jumps(state, body, out);
   const std::vector<char> is_new = take_over(before, out);
-  std::vector<Entries> G = assemble_jumps(scene, rocks, state, body, is_new, out);
-  for (std::size_t k = 0; k < is_new.size(); ++k) {
-    if (is_new[k] == 0) continue;
-    auto column = std::make_shared<JumpColumn>(*out.columns[k]);
-    column->G = summed(std::move(G[k]));
-    column->Y = body.forward(column->G);
-    out.columns[k] = std::move(column);
-  }
+  factor_columns(body, is_new, assemble_jumps(scene, rocks, state, body, is_new, out), out);
   condense_new(is_new, body.unknowns(), out);
   return out;
 }
 
+Asked ask_for(const Scene& scene, const State& state, const IntactBody& body, std::vector<int> records) {
+  if (!holds_rigid_motion(scene, body.halved())) return ask_for_all(state, body);
+  std::vector<int> unknowns;
+  for (const int record : records) {
+    const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
+    for (int component = 0; component < 2; ++component) {
+      const Unknown from = unknown_of(body.masters(), node, component);
+      if (from.index >= 0) unknowns.push_back(from.index);
+    }
+  }
+  return {std::move(records), body.factor().branches(unknowns)};
+}
+
+Asked ask_for_all(const State& state, const IntactBody& body) {
+  Asked all;
+  all.records.resize(static_cast<std::size_t>(state.copies.records()));
+  all.blocks = body.factor().all();
+  std::iota(all.records.begin(), all.records.end(), 0);
+  return all;
+}
+
 std::vector<Vec2> displacements(const Scene& scene, const State& state, const IntactBody& body,
-                                const Condensed& condensed, const Eigen::VectorXd& j) {
+                                const Condensed& condensed, const Eigen::VectorXd& j, const Asked& asked) {
   Eigen::VectorXd load = condensed.load.intact;
   if (condensed.load.empty()) load.setZero(body.unknowns());
   for (std::size_t k = 0; k < condensed.columns.size(); ++k) {
     const SparseVector& G = condensed.columns[k]->G;
     for (std::size_t e = 0; e < G.index.size(); ++e) load[G.index[e]] -= G.value[e] * j[static_cast<Eigen::Index>(k)];
   }
-  const Eigen::VectorXd base = body.solve(load);
+  const TreeFactor& factor = body.factor();
+  const auto& loaded = condensed.load.empty() ? condensed.loaded : factor.all();  // a body force loads them all
+  const Eigen::VectorXd base = factor.solve(load, loaded, asked.blocks);
   std::vector<Vec2> u(static_cast<std::size_t>(state.copies.records()), Vec2::Zero());
-  for (int record = 0; record < state.copies.records(); ++record) {
+  for (const int record : asked.records) {
     const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
     for (int component = 0; component < 2; ++component) {
       const Unknown from = unknown_of(body.masters(), node, component),

@@ -47,6 +47,7 @@ struct Condensed {
   std::vector<std::shared_ptr<const JumpColumn>> columns;  // one a jump unknown
   Eigen::MatrixXd K_jj;                                    // N/m per metre of thickness
   Eigen::MatrixXd S;                                       // the same
+  TreeFactor::Branches loaded;                             // what of the intact body's factor jumps load
   BodyLoad load;                                           // none until load_body()
   Eigen::Index size() const { return S.rows(); }
 };
@@ -60,9 +61,23 @@ Condensed condense(const Scene& scene, const std::vector<Elasticity>& rocks, con
 /// The jump unknown that a record's component is a multiple of; index -1: it moves with the uncut node.
 Unknown jump_unknown(const Condensed& condensed, int record, int component);
 
-/// Displacements (m) of all records for the jumps j (m): u = K^-1 (f_u - G j), and the copies' jumps on top; rigid
-/// motion that no edge holds is taken out (zero mean displacement and rotation of the particles).
+// Records whose displacements are asked for, and what of the intact body's factor they need.
+struct Asked {
+  std::vector<int> records;
+  TreeFactor::Branches blocks;
+};
+
+/// What it takes to find the displacements of some records. Where an edge leaves a rigid motion free all others take
+/// part in what is taken out.
+Asked ask_for(const Scene& scene, const State& state, const IntactBody& body, std::vector<int> records);
+
+/// All records.
+Asked ask_for_all(const State& state, const IntactBody& body);
+
+/// Displacements (m) of the records asked for, 0 for others, for the jumps j (m): u = K^-1 (f_u - G j), and the copies'
+/// jumps on top; rigid motion that no edge holds is taken out (zero mean displacement and rotation of the particles).
+/// The digits do not depend on what else is asked for.
 std::vector<Vec2> displacements(const Scene& scene, const State& state, const IntactBody& body,
-                                const Condensed& condensed, const Eigen::VectorXd& j);
+                                const Condensed& condensed, const Eigen::VectorXd& j, const Asked& asked);
 
 }  // namespace strata

@@ -1,11 +1,7 @@
 #include "mechanics/intact_body.hpp"
 
-#include <cholmod.h>
-
-#include <Eigen/CholmodSupport>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "mechanics/stiffness.hpp"
 #include "state/rebuild.hpp"
@@ -87,28 +83,8 @@ std::vector<Master> mirrored(const State& state, std::vector<Master> masters) {
   return masters;
 }
 
-struct IntactBody::Factor {
-  mutable cholmod_common common{};
-  cholmod_factor* blocks = nullptr;   // supernodal: whole solves
-  cholmod_factor* columns = nullptr;  // simplicial: solves along branches
-  std::vector<int> place;             // where the factor's ordering puts an unknown
-
-  Factor() { cholmod_start(&common); }
-  Factor(const Factor&) = delete;
-  Factor& operator=(const Factor&) = delete;
-  ~Factor() {
-    cholmod_free_factor(&blocks, &common);
-    cholmod_free_factor(&columns, &common);
-    cholmod_finish(&common);
-  }
-};
-
-IntactBody::~IntactBody() = default;
-IntactBody::IntactBody(IntactBody&&) noexcept = default;
-IntactBody& IntactBody::operator=(IntactBody&&) noexcept = default;
-
 IntactBody::IntactBody(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, bool halved)
-    : factor_(std::make_unique<Factor>()), particles_(state.particles.size()), halved_(halved) {
+    : particles_(state.particles.size()), halved_(halved) {
   State intact;
   intact.grid = state.grid;
   intact.particles = state.particles;
@@ -117,57 +93,8 @@ IntactBody::IntactBody(const Scene& scene, const std::vector<Elasticity>& rocks,
   rebuild_copies(scene, intact);
   masters_ = halved ? mirrored(intact, intact.masters) : intact.masters;
   hold_rigid_motion(scene, state.grid, halved, masters_);
-  const Eigen::SparseMatrix<double> K = assemble_stiffness(scene, rocks, intact, masters_);
-  cholmod_sparse view = Eigen::viewAsCholmod(K.selfadjointView<Eigen::Lower>());
-  cholmod_common& common = factor_->common;
-  common.print = 0;
-  common.supernodal = CHOLMOD_SUPERNODAL;
-  factor_->blocks = cholmod_analyze(&view, &common);
-  cholmod_factorize(&view, factor_->blocks, &common);
-  if (common.status != CHOLMOD_OK)
-    throw NumericalFailure("the stiffness of the intact block is singular: its edges leave a motion free");
-  factor_->columns = cholmod_copy_factor(factor_->blocks, &common);
-  cholmod_change_factor(CHOLMOD_REAL, 1, 0, 1, 1, factor_->columns, &common);
-  const int* order = static_cast<const int*>(factor_->columns->Perm);
-  factor_->place.resize(factor_->columns->n);
-  for (std::size_t k = 0; k < factor_->place.size(); ++k)
-    factor_->place[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
-}
-
-Eigen::VectorXd IntactBody::solve(const Eigen::VectorXd& f) const {
-  Eigen::VectorXd load = f;
-  cholmod_dense view = Eigen::viewAsCholmod(load);
-  cholmod_dense* x = cholmod_solve(CHOLMOD_A, factor_->blocks, &view, &factor_->common);
-  Eigen::VectorXd u = Eigen::Map<const Eigen::VectorXd>(static_cast<const double*>(x->x), f.size());
-  cholmod_free_dense(&x, &factor_->common);
-  return u;
-}
-
-SparseVector IntactBody::forward(const SparseVector& g) const {
-  const std::size_t n = factor_->place.size();
-  cholmod_common& common = factor_->common;
-  cholmod_dense* b = cholmod_zeros(n, 1, CHOLMOD_REAL, &common);
-  cholmod_sparse* pattern = cholmod_allocate_sparse(n, 1, g.index.size(), 0, 1, 0, CHOLMOD_PATTERN, &common);
-  std::vector<int> at(g.index.size());
-  for (std::size_t k = 0; k < at.size(); ++k) {
-    at[k] = factor_->place[static_cast<std::size_t>(g.index[k])];
-    static_cast<double*>(b->x)[at[k]] = g.value[k];
-  }
-  std::sort(at.begin(), at.end());
-  std::copy(at.begin(), at.end(), static_cast<int*>(pattern->i));
-  static_cast<int*>(pattern->p)[0] = 0;
-  static_cast<int*>(pattern->p)[1] = static_cast<int>(at.size());
-  cholmod_dense *x = nullptr, *y = nullptr, *e = nullptr;
-  cholmod_sparse* reached = nullptr;
-  cholmod_solve2(CHOLMOD_L, factor_->columns, b, pattern, &x, &reached, &y, &e, &common);
-  const int count = static_cast<const int*>(reached->p)[1];
-  SparseVector out;
-  out.index.assign(static_cast<const int*>(reached->i), static_cast<const int*>(reached->i) + count);
-  std::sort(out.index.begin(), out.index.end());
-  for (const int k : out.index) out.value.push_back(static_cast<const double*>(x->x)[k]);
-  for (auto** dense : {&b, &x, &y, &e}) cholmod_free_dense(dense, &common);
-  for (auto** sparse : {&pattern, &reached}) cholmod_free_sparse(sparse, &common);
-  return out;
+  factor_ = TreeFactor(assemble_stiffness(scene, rocks, intact, masters_),
+                       "the stiffness of the intact block is singular: its edges leave a motion free");
 }
 
 }  // namespace strata

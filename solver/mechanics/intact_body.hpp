@@ -2,19 +2,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
 #include <vector>
 
+#include "mechanics/tree_factor.hpp"
 #include "state/elasticity.hpp"
 #include "state/state.hpp"
 
 namespace strata {
-
-// Entries of a vector, their indices rising.
-struct SparseVector {
-  std::vector<int> index;
-  std::vector<double> value;
-};
 
 /// Whether scene and state are mirror-symmetric about the vertical through the fracture: layers stacked upwards, a
 /// straight vertical fracture that stays so in the middle of the block, sides held, no body force. Such a state is
@@ -25,22 +19,16 @@ bool mirror_symmetric(const Scene& scene, const State& state);
 /// those on the left, u_x(right) = -u_x(left), u_y(right) = u_y(left); what lies on the mirror line uncut has no u_x.
 std::vector<Master> mirrored(const State& state, std::vector<Master> masters);
 
-// K of the intact block and its sparse Cholesky factor L L^T = P K P^T (CHOLMOD).
+// K of the intact block, factored.
 class IntactBody {
  public:
   /// Assembles and factors K from the state's particles with all surfaces closed; halved: with the mirror's ties, the
   /// energy of the left half counted twice. Rigid motion that no edge holds is held at corners: loads are in balance.
   /// Throws NumericalFailure where the factorisation fails.
   IntactBody(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, bool halved);
-  ~IntactBody();
-  IntactBody(IntactBody&&) noexcept;
-  IntactBody& operator=(IntactBody&&) noexcept;
 
-  /// K^-1 f (m) for a load f (N/m), one value for each of the 2 x nodes unknowns; held ones must carry none.
-  Eigen::VectorXd solve(const Eigen::VectorXd& f) const;
-
-  /// L^-1 P g, along the branches of the elimination tree that g reaches.
-  SparseVector forward(const SparseVector& g) const;
+  /// K = L L^T in one value for each of the 2 x nodes unknowns (N/m, m); loads on held ones must be 0.
+  const TreeFactor& factor() const { return factor_; }
 
   bool halved() const { return halved_; }
   std::size_t particles() const { return particles_; }
@@ -48,8 +36,7 @@ class IntactBody {
   int unknowns() const { return 2 * static_cast<int>(masters_.size()); }
 
  private:
-  struct Factor;
-  std::unique_ptr<Factor> factor_;
+  TreeFactor factor_;
   std::vector<Master> masters_;
   std::size_t particles_ = 0;
   bool halved_ = false;

@@ -58,6 +58,20 @@ std::vector<char> watched_bins(const Scene& scene, const State& state, const Bon
   return watched;
 }
 
+// The records that some bins reach.
+std::vector<int> records_of(const State& state, const std::vector<char>& which) {
+  std::vector<char> reached(static_cast<std::size_t>(state.copies.records()), 0);
+  for (std::size_t b = 0; b < which.size(); ++b) {
+    if (which[b] == 0) continue;
+    for (const int record : state.bins[b].record) reached[static_cast<std::size_t>(record)] = 1;
+  }
+  std::vector<int> records;
+  for (std::size_t r = 0; r < reached.size(); ++r) {
+    if (reached[r] != 0) records.push_back(static_cast<int>(r));
+  }
+  return records;
+}
+
 // Plastic slip of a place since friction's memory (m): the tangential jump less what the stick spring gives way.
 double plastic_slip(const ContactPlace& place, const LawAnswer& r, const Vec2& w) {
   if (r.dt_dn == 0.0) return 0.0;
@@ -79,6 +93,7 @@ void update_model(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
   model.factor = TangentFactor{};
   model.bonds = find_bonds(scene, state);
   model.watched = watched_bins(scene, state, model.bonds);
+  model.asked = ask_for(scene, state, *model.body, records_of(state, model.watched));
   model.j.resize(0);
 }
 
@@ -90,12 +105,14 @@ Equilibrium find_equilibrium(const Scene& scene, double time, State& state, Quas
 }
 
 void set_all_particles(const Scene& scene, State& state, const QuasistaticModel& model) {
-  set_particles(scene, model.u, {}, state);
+  const Asked all = ask_for_all(state, *model.body);
+  set_particles(scene, displacements(scene, state, *model.body, model.condensed, model.shown, all), {}, state);
 }
 
 void set_fields(const Scene& scene, State& state, QuasistaticModel& model, const Equilibrium& equilibrium) {
-  model.u = displacements(scene, state, *model.body, model.condensed, equilibrium.j);
-  set_particles(scene, model.u, model.watched, state);
+  model.shown = equilibrium.j;
+  set_particles(scene, displacements(scene, state, *model.body, model.condensed, model.shown, model.asked),
+                model.watched, state);
   for (std::size_t k = 0; k < model.places.size(); ++k) {
     const ContactPlace& place = model.places[k];
     const LawAnswer& r = equilibrium.answers[k];

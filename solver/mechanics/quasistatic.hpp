@@ -19,8 +19,9 @@ struct QuasistaticModel {
   Bonds bonds;
   std::vector<char> watched;  // bins whose fields decide what happens next: around tips, beside bonded interfaces; with
                               // a body force all
-  std::vector<Vec2> u;        // displacements of all records (m) as last found
+  Asked asked;                // the records that these reach
   Eigen::VectorXd j;          // the last solution, as a first guess
+  Eigen::VectorXd shown;      // the solution whose fields the state was given
 };
 
 /// Rebuilds what follows from the state's particles and surfaces (copies, springs of tips, stencils) and brings the

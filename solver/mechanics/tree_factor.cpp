@@ -1,0 +1,214 @@
+#include "mechanics/tree_factor.hpp"
+
+#include <cholmod.h>
+
+#include <Eigen/CholmodSupport>
+#include <algorithm>
+#include <numeric>
+
+#include "state/types.hpp"
+
+namespace strata {
+
+namespace {
+
+// Right-hand sides that go through the factor together.
+constexpr std::size_t lanes = 16;
+using Sixteen = Eigen::Array<double, lanes, 1>;
+
+}  // namespace
+
+TreeFactor::TreeFactor(const Eigen::SparseMatrix<double>& K, const char* singular) {
+  cholmod_common common{};
+  cholmod_start(&common);
+  common.print = 0;
+  common.supernodal = CHOLMOD_SUPERNODAL;
+  cholmod_sparse view = Eigen::viewAsCholmod(K.selfadjointView<Eigen::Lower>());
+  cholmod_factor* L = cholmod_analyze(&view, &common);
+  cholmod_factorize(&view, L, &common);
+  const bool sound = common.status == CHOLMOD_OK;
+  if (sound) {
+    const auto *super = static_cast<const int*>(L->super), *rows_at = static_cast<const int*>(L->pi),
+               *values_at = static_cast<const int*>(L->px), *rows = static_cast<const int*>(L->s),
+               *order = static_cast<const int*>(L->Perm);
+    unknown_.assign(order, order + L->n);
+    place_.resize(L->n);
+    for (std::size_t k = 0; k < L->n; ++k) place_[static_cast<std::size_t>(unknown_[k])] = static_cast<int>(k);
+    block_of_row_.resize(L->n);
+    for (std::size_t s = 0; s < L->nsuper; ++s) {
+      const auto stride = static_cast<std::size_t>(rows_at[s + 1] - rows_at[s]);
+      for (int first = super[s]; first < super[s + 1]; first += width) {
+        const auto skipped = static_cast<std::size_t>(first - super[s]);
+        add_block(first, std::min(width, super[s + 1] - first),
+                  static_cast<const double*>(L->x) + values_at[s] + skipped * stride + skipped, stride,
+                  rows + rows_at[s] + skipped, stride - skipped);
+      }
+    }
+    for (Block& block : blocks_) {
+      if (block.rows < block.last_row) block.parent = block_of_row_[static_cast<std::size_t>(row_[block.rows])];
+    }
+    all_.resize(blocks_.size());
+    std::iota(all_.begin(), all_.end(), 0);
+  }
+  cholmod_free_factor(&L, &common);
+  cholmod_finish(&common);
+  if (!sound) throw NumericalFailure(singular);
+}
+
+// A block from its columns of a supernode, `stride` values apart; rows: `count` of them, its own first.
+void TreeFactor::add_block(int first, int columns, const double* values, std::size_t stride, const int* rows,
+                           std::size_t count) {
+  Block block{first, columns, -1, row_.size(), 0, values_.size()};
+  for (int c = 0; c < width; ++c) {
+    Eight& row = values_.emplace_back(Eight::Zero());
+    if (c >= columns) row[c] = 1.0;
+    for (int b = 0; b <= c && c < columns; ++b)
+      row[b] = values[static_cast<std::size_t>(b) * stride + static_cast<std::size_t>(c)];
+  }
+  for (std::size_t r = static_cast<std::size_t>(columns); r < count; ++r) {
+    row_.push_back(rows[r]);
+    Eight& row = values_.emplace_back(Eight::Zero());
+    for (int b = 0; b < columns; ++b) row[b] = values[static_cast<std::size_t>(b) * stride + r];
+  }
+  block.last_row = row_.size();
+  for (int c = 0; c < columns; ++c)
+    block_of_row_[static_cast<std::size_t>(first + c)] = static_cast<int>(blocks_.size());
+  blocks_.push_back(block);
+}
+
+// Adds the blocks on the branches of some unknowns that are not `on` yet to `blocks`, in no order.
+void TreeFactor::mark(const std::vector<int>& unknowns, std::vector<char>& on, Branches& blocks) const {
+  for (const int unknown : unknowns) {
+    int b = block_of_row_[static_cast<std::size_t>(place_[static_cast<std::size_t>(unknown)])];
+    for (; b >= 0 && on[static_cast<std::size_t>(b)] == 0; b = blocks_[static_cast<std::size_t>(b)].parent) {
+      on[static_cast<std::size_t>(b)] = 1;
+      blocks.push_back(b);
+    }
+  }
+}
+
+TreeFactor::Branches TreeFactor::branches(const std::vector<int>& unknowns) const {
+  std::vector<char> on(blocks_.size(), 0);
+  Branches blocks;
+  mark(unknowns, on, blocks);
+  std::sort(blocks.begin(), blocks.end());
+  return blocks;
+}
+
+// Solves for a block's own rows of y and takes their part from the rows below.
+void TreeFactor::down(const Block& block, std::vector<double>& y) const {
+  const Eight* L = &values_[block.values];
+  Eight own = Eight::Zero();
+  for (int c = 0; c < block.columns; ++c) {
+    double value = y[static_cast<std::size_t>(block.first + c)];
+    for (int b = 0; b < c; ++b) value -= L[c][b] * own[b];
+    y[static_cast<std::size_t>(block.first + c)] = own[c] = value / L[c][c];
+  }
+  L += width;
+  for (std::size_t r = block.rows; r < block.last_row; ++r, ++L) {
+    double& below = y[static_cast<std::size_t>(row_[r])];
+    double value = below;
+    for (int b = 0; b < width; ++b) value -= (*L)[b] * own[b];
+    below = value;
+  }
+}
+
+// Solves for a block's own rows of x from those below, in the place of y.
+void TreeFactor::up(const Block& block, std::vector<double>& y) const {
+  const Eight* L = &values_[block.values + width];
+  Eight even = Eight::Zero(), odd = Eight::Zero();  // two sums: one alone waits for itself
+  std::size_t r = block.rows;
+  for (; r + 2 <= block.last_row; r += 2, L += 2) {
+    even += y[static_cast<std::size_t>(row_[r])] * L[0];
+    odd += y[static_cast<std::size_t>(row_[r + 1])] * L[1];
+  }
+  if (r < block.last_row) even += y[static_cast<std::size_t>(row_[r])] * L[0];
+  const Eight below = even + odd;
+  L = &values_[block.values];
+  for (int c = block.columns - 1; c >= 0; --c) {
+    double value = y[static_cast<std::size_t>(block.first + c)] - below[c];
+    for (int b = c + 1; b < block.columns; ++b) value -= L[b][c] * y[static_cast<std::size_t>(block.first + b)];
+    y[static_cast<std::size_t>(block.first + c)] = value / L[c][c];
+  }
+}
+
+Eigen::VectorXd TreeFactor::solve(const Eigen::VectorXd& f, const Branches& loaded, const Branches& wanted) const {
+  std::vector<double> y(place_.size(), 0.0);
+  for (const int b : loaded) {
+    const Block& block = blocks_[static_cast<std::size_t>(b)];
+    for (int k = block.first; k < block.first + block.columns; ++k)
+      y[static_cast<std::size_t>(k)] = f[unknown_[static_cast<std::size_t>(k)]];
+  }
+  for (const int b : loaded) down(blocks_[static_cast<std::size_t>(b)], y);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(size());
+  for (auto b = wanted.rbegin(); b != wanted.rend(); ++b) {
+    const Block& block = blocks_[static_cast<std::size_t>(*b)];
+    up(block, y);
+    for (int k = block.first; k < block.first + block.columns; ++k)
+      x[unknown_[static_cast<std::size_t>(k)]] = y[static_cast<std::size_t>(k)];
+  }
+  return x;
+}
+
+// The same as for one right-hand side, for many.
+template <class Lanes>
+void TreeFactor::down(const Block& block, std::vector<Lanes>& y) const {
+  const Eight* L = &values_[block.values];
+  std::array<Lanes, width> own;
+  own.fill(Lanes::Zero());
+  for (int c = 0; c < block.columns; ++c) {
+    Lanes value = y[static_cast<std::size_t>(block.first + c)];
+    for (int b = 0; b < c; ++b) value -= L[c][b] * own[static_cast<std::size_t>(b)];
+    y[static_cast<std::size_t>(block.first + c)] = own[static_cast<std::size_t>(c)] = value / L[c][c];
+  }
+  L += width;
+  for (std::size_t r = block.rows; r < block.last_row; ++r, ++L) {
+    Lanes value = y[static_cast<std::size_t>(row_[r])];
+    for (int b = 0; b < width; ++b) value -= (*L)[b] * own[static_cast<std::size_t>(b)];
+    y[static_cast<std::size_t>(row_[r])] = value;
+  }
+}
+
+std::vector<SparseVector> TreeFactor::forward(const std::vector<SparseVector>& g) const {
+  std::vector<SparseVector> out(g.size());
+  std::vector<Sixteen> y(g.empty() ? 0 : place_.size(), Sixteen::Zero());
+  std::vector<char> on(blocks_.size(), 0);
+  Branches together, own;
+  for (std::size_t from = 0; from < g.size(); from += lanes) {
+    const std::size_t count = std::min(lanes, g.size() - from);
+    together.clear();
+    for (std::size_t c = 0; c < count; ++c) {
+      const SparseVector& load = g[from + c];
+      mark(load.index, on, together);
+      for (std::size_t e = 0; e < load.index.size(); ++e)
+        y[static_cast<std::size_t>(place_[static_cast<std::size_t>(load.index[e])])][static_cast<Eigen::Index>(c)] =
+            load.value[e];
+    }
+    std::sort(together.begin(), together.end());
+    for (const int b : together) {
+      on[static_cast<std::size_t>(b)] = 0;
+      down(blocks_[static_cast<std::size_t>(b)], y);
+    }
+    for (std::size_t c = 0; c < count; ++c) {
+      own.clear();
+      mark(g[from + c].index, on, own);
+      SparseVector& Y = out[from + c];
+      for (const int b : together) {
+        if (on[static_cast<std::size_t>(b)] == 0) continue;
+        on[static_cast<std::size_t>(b)] = 0;
+        const Block& block = blocks_[static_cast<std::size_t>(b)];
+        for (int k = block.first; k < block.first + block.columns; ++k) {
+          Y.index.push_back(k);
+          Y.value.push_back(y[static_cast<std::size_t>(k)][static_cast<Eigen::Index>(c)]);
+        }
+      }
+    }
+    for (const int b : together) {
+      const Block& block = blocks_[static_cast<std::size_t>(b)];
+      for (int k = block.first; k < block.first + block.columns; ++k) y[static_cast<std::size_t>(k)].setZero();
+    }
+  }
+  return out;
+}
+
+}  // namespace strata

@@ -1,0 +1,79 @@
+// Sparse Cholesky factor for solves with few loads of which few displacements are asked for.
+//
+// L L^T = P K P^T. Columns of L with the same rows below them form supernodes, here cut into blocks of up to eight
+// columns. A block passes its load on to its parent in the elimination tree, which holds the first row below it, and to
+// others further up the same branch (Liu, SIAM J. Matrix Anal. Appl. 11, 1990): L y = P f fills y on the branches from
+// the loaded rows to the root alone, and L^T x = y needs, for a few entries of x, no rows but those on their branches.
+// Both sums are those of the whole solve less terms that are 0, so they give the same digits.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <array>
+#include <vector>
+
+namespace strata {
+
+// Entries of a vector, their indices rising.
+struct SparseVector {
+  std::vector<int> index;
+  std::vector<double> value;
+};
+
+class TreeFactor {
+ public:
+  /// Blocks of the factor, rising, with each block its parents up to the root.
+  using Branches = std::vector<int>;
+
+  TreeFactor() = default;
+
+  /// Factors a symmetric positive definite matrix of which the lower triangle counts (CHOLMOD, supernodal). Throws
+  /// NumericalFailure with `singular` as its text where a pivot is not positive.
+  TreeFactor(const Eigen::SparseMatrix<double>& K, const char* singular);
+
+  /// The branches on which the given unknowns lie. Throws nothing.
+  Branches branches(const std::vector<int>& unknowns) const;
+
+  /// All blocks.
+  const Branches& all() const { return all_; }
+
+  /// x = K^-1 f, where f is 0 off the branches `loaded`, at the unknowns on `wanted` (0 elsewhere). Units follow K and
+  /// f. Throws nothing.
+  Eigen::VectorXd solve(const Eigen::VectorXd& f, const Branches& loaded, const Branches& wanted) const;
+
+  /// Y = L^-1 P g of each g, in rows of the factor; the digits of one do not depend on the others. Throws nothing.
+  std::vector<SparseVector> forward(const std::vector<SparseVector>& g) const;
+
+  int size() const { return static_cast<int>(place_.size()); }
+
+ private:
+  static constexpr int width = 8;  // columns of a block: a vector of the processor
+  using Eight = Eigen::Array<double, width, 1>;
+
+  // Columns [first, first + columns) and the rows below them.
+  struct Block {
+    int first = 0, columns = 0;
+    int parent = -1;           // -1: a root
+    std::size_t rows = 0;      // where its rows below begin in row_
+    std::size_t last_row = 0;  // and end
+    std::size_t values = 0;    // where its values begin in values_: of its own rows, unit ones to make eight, then of
+                               // those below; one Eight a row, a value a column
+  };
+
+  void add_block(int first, int columns, const double* values, std::size_t stride, const int* rows, std::size_t count);
+  void mark(const std::vector<int>& unknowns, std::vector<char>& on, Branches& blocks) const;
+  void down(const Block& block, std::vector<double>& y) const;
+  void up(const Block& block, std::vector<double>& y) const;
+  template <class Lanes>
+  void down(const Block& block, std::vector<Lanes>& y) const;
+
+  std::vector<int> place_;    // row of an unknown
+  std::vector<int> unknown_;  // and back
+  std::vector<Block> blocks_;
+  std::vector<int> block_of_row_;
+  std::vector<int> row_;
+  std::vector<Eight> values_;
+  Branches all_;
+};
+
+}  // namespace strata
