@@ -34,13 +34,13 @@ void diffuse_in_steps(const Scene& scene, double dt, State& state) {
     if (kappa > 0.0) shortest = std::min(shortest, longest * s.A * s.A / kappa);
   }
   const int steps = std::clamp(static_cast<int>(std::ceil(std::min(dt / shortest, 1.0 * most))), 1, most);
-  const double start = state.time;
-  state.dt = dt / steps;
-  for (int k = 0; k < steps; ++k) {
-    state.time = start + k * state.dt;
-    advance_pressure(scene, state);
+  const double step = dt / steps;
+  const Fluid& fluid = scene.fluid;
+  Diffusion flow(channel_of(scene, state), fluid.bulk_modulus_Pa / fluid.viscosity_Pa_s, fluid.time_rule, step);
+  for (int k = 1; k <= steps; ++k) {
+    state.fluid.inlet_Pa = fluid.start_Pa + fluid.rate_Pa_s * (state.time + k * step);
+    flow.step(state.fluid.inlet_Pa, state.fluid.P);
   }
-  state.time = start;
 }
 
 // What rough faces hold between them when they just touch (m), 1e-4 of the study's openings. Under load they hold less,

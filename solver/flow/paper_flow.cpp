@@ -7,17 +7,6 @@ namespace strata {
 
 namespace {
 
-// Flux divergence at each vertex, sum of k (P_neighbour - P)/length (Pa m).
-std::vector<double> net_inflow(const Channel& channel, const std::vector<double>& P) {
-  std::vector<double> sum(P.size(), 0.0);
-  for (std::size_t k = 0; k + 1 < P.size(); ++k) {
-    const double flux = channel.permeability[k] * (P[k + 1] - P[k]) / channel.length[k];
-    sum[k] += flux;
-    sum[k + 1] -= flux;
-  }
-  return sum;
-}
-
 std::vector<double> lengths_at_vertices(const Channel& channel) {
   std::vector<double> at(channel.length.size() + 1, 0.0);
   for (std::size_t k = 0; k < channel.length.size(); ++k) {
@@ -25,18 +14,6 @@ std::vector<double> lengths_at_vertices(const Channel& channel) {
     at[k + 1] += 0.5 * channel.length[k];
   }
   return at;
-}
-
-// Solves a tridiagonal system in place by elimination without pivoting: diagonally dominant here.
-void solve_tridiagonal(std::vector<double>& lower, std::vector<double>& diagonal, std::vector<double>& upper,
-                       std::vector<double>& x) {
-  for (std::size_t k = 1; k < x.size(); ++k) {
-    const double factor = lower[k] / diagonal[k - 1];
-    diagonal[k] -= factor * upper[k - 1];
-    x[k] -= factor * x[k - 1];
-  }
-  x.back() /= diagonal.back();
-  for (std::size_t k = x.size() - 1; k-- > 0;) x[k] = (x[k] - upper[k] * x[k + 1]) / diagonal[k];
 }
 
 void require_stable(const Channel& channel, double mobility, double dt) {
@@ -52,23 +29,52 @@ void require_stable(const Channel& channel, double mobility, double dt) {
 
 }  // namespace
 
-void diffuse(const Channel& channel, double mobility, Fluid::TimeRule rule, double dt, double inlet_Pa,
-             std::vector<double>& P) {
+Diffusion::Diffusion(const Channel& channel, double mobility, Fluid::TimeRule rule, double dt) : inlet_(channel.inlet) {
   const double theta = rule == Fluid::TimeRule::trapezoid ? 0.5 : (rule == Fluid::TimeRule::backward_euler ? 1.0 : 0.0);
   if (theta == 0.0) require_stable(channel, mobility, dt);
-  const std::vector<double> at = lengths_at_vertices(channel), inflow = net_inflow(channel, P);
-  const std::size_t n = P.size();
-  std::vector<double> lower(n, 0.0), diagonal(n, 1.0), upper(n, 0.0);
+  const std::vector<double> at = lengths_at_vertices(channel);
+  const std::size_t n = at.size();
+  for (std::size_t k = 0; k + 1 < n; ++k) conductance_.push_back(channel.permeability[k] / channel.length[k]);
+  share_.resize(n), factor_.resize(n), inverse_.resize(n), upper_.resize(n);
   for (std::size_t k = 0; k < n; ++k) {
-    P[k] += (1.0 - theta) * dt * mobility * inflow[k] / at[k];
-    if (k > 0) lower[k] = -theta * dt * mobility * channel.permeability[k - 1] / (channel.length[k - 1] * at[k]);
-    if (k + 1 < n) upper[k] = -theta * dt * mobility * channel.permeability[k] / (channel.length[k] * at[k]);
-    diagonal[k] -= lower[k] + upper[k];
+    share_[k] = (1.0 - theta) * dt * mobility / at[k];
+    double lower = k > 0 ? -theta * dt * mobility * conductance_[k - 1] / at[k] : 0.0;
+    double upper = k + 1 < n ? -theta * dt * mobility * conductance_[k] / at[k] : 0.0;
+    double diagonal = 1.0 - lower - upper;
+    if (k == inlet_) lower = upper = 0.0, diagonal = 1.0;
+    // Elimination without pivoting: the matrix is diagonally dominant.
+    if (k > 0) factor_[k] = lower * inverse_[k - 1], diagonal -= lower * upper_[k - 1];
+    inverse_[k] = 1.0 / diagonal;
+    upper_[k] = upper * inverse_[k];
   }
-  lower[channel.inlet] = upper[channel.inlet] = 0.0;
-  diagonal[channel.inlet] = 1.0;
-  P[channel.inlet] = inlet_Pa;
-  solve_tridiagonal(lower, diagonal, upper, P);
+}
+
+void Diffusion::step(double inlet_Pa, std::vector<double>& P) {
+  double flux = 0.0;  // from the segment before
+  for (std::size_t k = 0; k < P.size(); ++k) {
+    const double next = k + 1 < P.size() ? conductance_[k] * (P[k + 1] - P[k]) : 0.0;
+    const double explicit_part = k == inlet_ ? inlet_Pa : P[k] + share_[k] * (next - flux);
+    flux = next;
+    P[k] = k > 0 ? explicit_part - factor_[k] * P[k - 1] : explicit_part;
+  }
+  P.back() *= inverse_.back();
+  for (std::size_t k = P.size() - 1; k-- > 0;) P[k] = P[k] * inverse_[k] - upper_[k] * P[k + 1];
+}
+
+void diffuse(const Channel& channel, double mobility, Fluid::TimeRule rule, double dt, double inlet_Pa,
+             std::vector<double>& P) {
+  Diffusion(channel, mobility, rule, dt).step(inlet_Pa, P);
+}
+
+Channel channel_of(const Scene& scene, const State& state) {
+  Channel channel;
+  channel.inlet = state.fluid.inlet;
+  for (const SurfacePoint& s : state.fracture().points) {
+    const double w = std::max(s.opening(), scene.fluid.minimum_opening_m);
+    channel.length.push_back(s.A);
+    channel.permeability.push_back(w * w / 12.0);
+  }
+  return channel;
 }
 
 void advance_pressure(const Scene& scene, State& state) {
@@ -80,14 +86,8 @@ void advance_pressure(const Scene& scene, State& state) {
   if (fluid.law == Fluid::Law::uniform) {
     std::fill(line.P.begin(), line.P.end(), line.inlet_Pa);
   } else {
-    Channel channel;
-    channel.inlet = line.inlet;
-    for (const SurfacePoint& s : fracture.points) {
-      const double w = std::max(s.opening(), fluid.minimum_opening_m);
-      channel.length.push_back(s.A);
-      channel.permeability.push_back(w * w / 12.0);
-    }
-    diffuse(channel, fluid.bulk_modulus_Pa / fluid.viscosity_Pa_s, fluid.time_rule, state.dt, line.inlet_Pa, line.P);
+    diffuse(channel_of(scene, state), fluid.bulk_modulus_Pa / fluid.viscosity_Pa_s, fluid.time_rule, state.dt,
+            line.inlet_Pa, line.P);
   }
   for (std::size_t k = 0; k < fracture.points.size(); ++k) fracture.points[k].P = 0.5 * (line.P[k] + line.P[k + 1]);
 }

@@ -22,6 +22,25 @@ struct Channel {
 void diffuse(const Channel& channel, double mobility, Fluid::TimeRule rule, double dt, double inlet_Pa,
              std::vector<double>& P);
 
+/// The channel of a state's fracture with its present openings, at least minimum_opening_m. Throws nothing.
+Channel channel_of(const Scene& scene, const State& state);
+
+// diffuse() for many steps of one length through one channel: the matrix of its implicit part is factored once.
+class Diffusion {
+ public:
+  /// As diffuse(), and throws as that.
+  Diffusion(const Channel& channel, double mobility, Fluid::TimeRule rule, double dt);
+
+  /// One step of P (Pa, one a vertex); P[inlet] becomes inlet_Pa.
+  void step(double inlet_Pa, std::vector<double>& P);
+
+ private:
+  std::size_t inlet_ = 0;
+  std::vector<double> conductance_;  // of each segment, k/length (m)
+  std::vector<double> share_;        // of a vertex's net inflow in its pressure after an explicit step (1/m)
+  std::vector<double> factor_, inverse_, upper_;  // of elimination; upper over its pivot
+};
+
 /// Pressure at the end of the step state.dt: the inlet's ramp, and along the fracture by the scene's law with the
 /// opening of the step's start, at least minimum_opening_m; passes vertex pressures on to the fracture's points.
 /// Throws as diffuse().

@@ -176,9 +176,16 @@ LocalFields fields_at(const State& state, const Elasticity& rock, const Frame& f
   return f;
 }
 
+// Whether all nodes around a bin lie outside the square around a ring: then q is 0 at them.
+bool out_of_reach(const Grid& g, const Vec2& tip, const Ring& ring, const Bin& bin) {
+  return g.x(bin.i + 1) < tip.x() - ring.outer || g.x(bin.i - 1) > tip.x() + ring.outer ||
+         g.y(bin.j + 1) < tip.y() - ring.outer || g.y(bin.j - 1) > tip.y() + ring.outer;
+}
+
 // Adds the particles of a bin to the sums of all rings; a bin that no ring weighs adds nothing.
 void add_bin(const std::vector<Elasticity>& rocks, const State& state, const Frame& frame,
              const std::vector<Ring>& rings, const Bin& bin, std::vector<Sums>& sums) {
+  if (out_of_reach(state.grid, frame.tip, rings.back(), bin)) return;
   std::array<NodalWeights, ring_fractions.size()> nodes;
   bool any = false;
   for (std::size_t k = 0; k < rings.size(); ++k) {

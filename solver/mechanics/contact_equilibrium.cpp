@@ -55,12 +55,6 @@ LawAnswer answer_at(const State& state, const ContactPlace& place, const Vec2& w
                  place.in_situ.dot(place.n) - pressure(state, place)});
 }
 
-// dr/dw of a place's piece in x and y (Pa/m).
-Eigen::Matrix2d tangent_matrix(const ContactPlace& place, const LawAnswer& r) {
-  const Vec2 t = tangent_of(place.n);
-  return r.dn_dn * place.n * place.n.transpose() + r.dt_dn * t * place.n.transpose() + r.dt_dt * t * t.transpose();
-}
-
 void add_force(const ContactPlace& place, const Vec2& traction, Eigen::VectorXd& f) {
   for (std::size_t c = 0; c < 2; ++c) {
     for (const auto& [index, value] : place.D[c]) f[index] += place.A * value * traction[static_cast<Eigen::Index>(c)];
@@ -111,59 +105,6 @@ bool in_balance(const Condensed& condensed, const Equilibrium& at) {
   return at.residual < 1e-4 && at.unbalanced.lpNorm<Eigen::Infinity>() <= of_products * products;
 }
 
-Eigen::MatrixXd tangent(const Condensed& condensed, const std::vector<ContactPlace>& places,
-                        const std::vector<LawAnswer>& answers) {
-  Eigen::MatrixXd T = condensed.S;
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    const ContactPlace& place = places[k];
-    const Eigen::Matrix2d R = place.A * tangent_matrix(place, answers[k]);
-    for (Eigen::Index a = 0; a < 2; ++a) {
-      for (Eigen::Index b = 0; b < 2; ++b) {
-        if (R(a, b) == 0.0) continue;
-        for (const auto& [row, w_row] : place.D[static_cast<std::size_t>(a)]) {
-          for (const auto& [column, w_column] : place.D[static_cast<std::size_t>(b)])
-            T(row, column) -= R(a, b) * w_row * w_column;
-        }
-      }
-    }
-  }
-  return T;
-}
-
-// What stands still: the tangent scaled to a unit diagonal has no eigenvalue below this where nothing moves freely.
-// Round-off leaves some 1e-15 of a free motion; a soft interface of 1e3 Pa/m, the softest offered for, some 1e-8.
-// (Pivots do not tell them apart: the last one is the eigenvalue over the square of its unknown's share in the motion.)
-constexpr double smallest_eigenvalue = 1e-12;
-
-// The smallest eigenvalue of a scaled tangent in size, by two inverse iterations.
-template <class Factor>
-double weakest(const Factor& factored, Eigen::Index n) {
-  Eigen::VectorXd x(n);
-  for (Eigen::Index k = 0; k < n; ++k) x[k] = std::sin(1.0 + static_cast<double>(k));
-  double eigenvalue = 0.0;
-  for (int iteration = 0; iteration < 2; ++iteration) {
-    x /= x.norm();
-    x = Eigen::VectorXd(factored.solve(x));
-    eigenvalue = x.allFinite() ? 1.0 / x.norm() : 0.0;
-  }
-  return eigenvalue;
-}
-
-// Factors the tangent; false where it is singular.
-bool factorise(const Eigen::MatrixXd& T, bool symmetric, TangentFactor& factor) {
-  factor.symmetric = symmetric;
-  factor.scale.resize(0);
-  if (T.rows() == 0) return true;  // a fracture so short that it splits no node
-  factor.scale = T.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = factor.scale.asDiagonal() * T * factor.scale.asDiagonal();
-  if (symmetric) {
-    factor.llt.compute(scaled);
-    return factor.llt.info() == Eigen::Success && weakest(factor.llt, T.rows()) > smallest_eigenvalue;
-  }
-  factor.lu.compute(scaled);
-  return weakest(factor.lu, T.rows()) > smallest_eigenvalue;
-}
-
 // The solution as if all places stayed on the pieces that `answers` describe.
 Eigen::VectorXd solve_on_pieces(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
                                 const std::vector<LawAnswer>& answers, const TangentFactor& factor) {
@@ -205,8 +146,8 @@ int unknowns_that_move(const TangentFactor& factor, Eigen::Index n) {
   Eigen::VectorXd v = Eigen::VectorXd::LinSpaced(n, 1.0, 2.0);
   // In unknowns scaled to a unit diagonal: factor.solve() undoes the scaling.
   for (int k = 0; k < 6; ++k) {
-    const Eigen::VectorXd x = factor.solve(v.cwiseQuotient(factor.scale));
-    v = x.cwiseQuotient(factor.scale).normalized();
+    const Eigen::VectorXd x = factor.solve(v.cwiseQuotient(factor.scale()));
+    v = x.cwiseQuotient(factor.scale()).normalized();
   }
   return static_cast<int>((v.array().abs() > takes_part * v.lpNorm<Eigen::Infinity>()).count());
 }
@@ -221,15 +162,16 @@ bool factor_tangent(const Condensed& condensed, const std::vector<ContactPlace>&
   constexpr double on_the_way = 1e-6;  // parts that come to rest later: a step that does not leave all sight of it
   constexpr int sliver =
       24;  // unknowns: fewer than the copies of 3 x 3 nodes have with one jump each, and some to spare
-  if (factor.pieces == at.pieces && factor.scale.size() == condensed.size()) return true;
+  if (factor.pieces == at.pieces && factor.scale().size() == condensed.size()) return true;
   factor.pieces = at.pieces;
-  Eigen::MatrixXd T = tangent(condensed, places, at.answers);
-  if (factorise(T, !slips(at.answers), factor)) return true;
+  if (factor.scale().size() == condensed.size() && factor.follow(places, at.answers)) return true;
+  Eigen::MatrixXd T = tangent(condensed.S, places, at.answers);
+  if (factor.factorise(T, places, at.answers)) return true;
   T.diagonal() *= 1.0 + stiffening;
-  if (!factorise(T, !slips(at.answers), factor)) report_mechanism(state, places);
+  if (!factor.factorise(T, places, at.answers, true)) report_mechanism(state, places);
   if (unknowns_that_move(factor, condensed.size()) <= sliver) return true;
   T.diagonal() *= 1.0 + on_the_way;
-  factorise(T, !slips(at.answers), factor);
+  factor.factorise(T, places, at.answers, true);
   factor.pieces.clear();
   return false;
 }
@@ -299,6 +241,10 @@ bool iterate(const State& state, const Condensed& condensed, const std::vector<C
     if (!settled) continue;
     if (singular && !bounds_held) report_mechanism(state, places);
     if (in_balance(condensed, at)) return true;
+    if (factor.changed()) {  // perhaps for the digits that it lost
+      factor = TangentFactor{};
+      continue;
+    }
     if (bounds_held) report_mechanism(state, places);
     return false;
   }
@@ -345,17 +291,6 @@ Equilibrium solve_with_fixed_bounds(const State& state, const Condensed& condens
 }
 
 }  // namespace
-
-Eigen::MatrixXd TangentFactor::solve(const Eigen::MatrixXd& b) const {
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * b;
-  Eigen::MatrixXd x;
-  if (scaled.rows() == 0) return scaled;
-  if (symmetric)
-    x = llt.solve(scaled);
-  else
-    x = lu.solve(scaled);
-  return scale.asDiagonal() * x;
-}
 
 Vec2 jump_at(const Condensed& condensed, const SurfaceStencil& stencil, const Eigen::VectorXd& j) {
   const std::array<Row, 2> rows = jump_rows(condensed, stencil);

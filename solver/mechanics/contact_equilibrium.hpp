@@ -1,35 +1,13 @@
 // Static equilibrium of the condensed block with the laws of its split surfaces.
 #pragma once
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-#include <array>
-#include <utility>
 #include <vector>
 
 #include "mechanics/condensed.hpp"
-#include "mechanics/surface_law.hpp"
+#include "mechanics/tangent_factor.hpp"
 
 namespace strata {
 
-// A split place of a surface, or the spring behind a tip, in terms of the jump unknowns: its jump is D j - bonded.
-struct ContactPlace {
-  std::size_t surface = 0, point = 0;  // of the state; a tip's spring has `tie` >= 0 instead
-  int tie = -1;
-  InterfaceLaw law;
-  double k = 0.0;  // stiffness of closed contact (Pa/m)
-  double A = 0.0;  // length (m)
-  Vec2 n = Vec2::Zero();
-  Vec2 in_situ = Vec2::Zero();                           // Pa
-  Vec2 bonded = Vec2::Zero();                            // jump when it split (m)
-  double bound = -1.0;                                   // friction's bound where it is held fixed (Pa)
-  double w_t_start = 0.0, r_t_start = 0.0;               // what friction remembers
-  std::array<std::vector<std::pair<int, double>>, 2> D;  // rows of the jump's x and y
-};
-
-using Pieces = std::vector<LawAnswer::Piece>;
-
-// The solution, and the factor of its tangent S - sum A D^T (dr/dw) D for what follows.
 struct Equilibrium {
   Eigen::VectorXd j;               // m
   std::vector<LawAnswer> answers;  // one a place
@@ -40,15 +18,6 @@ struct Equilibrium {
   double residual = 0.0;       // largest force out of balance over the largest load
   Eigen::VectorXd unbalanced;  // loads and reactions less S j (N/m)
   int iterations = 0;
-};
-
-struct TangentFactor {
-  Pieces pieces;
-  bool symmetric = true;
-  Eigen::VectorXd scale;
-  Eigen::LLT<Eigen::MatrixXd> llt;
-  Eigen::PartialPivLU<Eigen::MatrixXd> lu;
-  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;  // a right-hand side a column
 };
 
 /// The split places of a state and the springs of its tips, with the memory of friction as the state holds it.

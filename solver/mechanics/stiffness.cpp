@@ -3,21 +3,26 @@
 namespace strata {
 
 void add_stiffness(const Elasticity& rock, const Gradients& g, double V, LocalStiffness& K) {
-  Eigen::Matrix<double, 3, 18> B = Eigen::Matrix<double, 3, 18>::Zero();
+  // Rows of V C B, with engineering shear: stress times area for each unknown.
+  Eigen::Matrix<double, 18, 1> xx, yy, xy;
   for (int n = 0; n < 9; ++n) {
     const auto k = static_cast<std::size_t>(n);
-    B(0, 2 * n) = g.N_x[k], B(1, 2 * n + 1) = g.N_y[k];
-    B(2, 2 * n) = g.N_y[k], B(2, 2 * n + 1) = g.N_x[k];  // engineering shear
+    const double V_x = V * g.N_x[k], V_y = V * g.N_y[k];
+    xx[2 * n] = (rock.lambda + 2.0 * rock.mu) * V_x, xx[2 * n + 1] = rock.lambda * V_y;
+    yy[2 * n] = rock.lambda * V_x, yy[2 * n + 1] = (rock.lambda + 2.0 * rock.mu) * V_y;
+    xy[2 * n] = rock.mu * V_y, xy[2 * n + 1] = rock.mu * V_x;
   }
-  Eigen::Matrix3d C;
-  C << rock.lambda + 2.0 * rock.mu, rock.lambda, 0.0, rock.lambda, rock.lambda + 2.0 * rock.mu, 0.0, 0.0, 0.0, rock.mu;
-  K += V * B.transpose() * C * B;
+  for (int n = 0; n < 9; ++n) {
+    const auto k = static_cast<std::size_t>(n);
+    K.col(2 * n) += g.N_x[k] * xx + g.N_y[k] * xy;
+    K.col(2 * n + 1) += g.N_y[k] * yy + g.N_x[k] * xy;
+  }
 }
 
 Eigen::SparseMatrix<double> assemble_stiffness(const Scene& scene, const std::vector<Elasticity>& rocks,
                                                const State& state, const std::vector<Master>& masters) {
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(state.bins.size() * 324);
+  entries.reserve(state.bins.size() * 171 + 2 * masters.size());
   const Particles& p = state.particles;
   std::vector<char> used(2 * masters.size(), 0);
   for (const Bin& bin : state.bins) {
@@ -31,7 +36,7 @@ Eigen::SparseMatrix<double> assemble_stiffness(const Scene& scene, const std::ve
       if (row.index < 0) continue;
       for (int c = 0; c < 18; ++c) {
         const Unknown column = unknown_of(masters, bin.record[static_cast<std::size_t>(c / 2)], c % 2);
-        if (column.index >= 0 && K(r, c) != 0.0)
+        if (column.index >= 0 && column.index <= row.index && K(r, c) != 0.0)
           entries.emplace_back(row.index, column.index, row.factor * column.factor * K(r, c));
       }
       if (K(r, r) != 0.0) used[static_cast<std::size_t>(row.index)] = 1;

@@ -1,6 +1,7 @@
 #include "mechanics/tree_factor.hpp"
 
 #include <cholmod.h>
+#include <omp.h>
 
 #include <Eigen/CholmodSupport>
 #include <algorithm>
@@ -16,9 +17,22 @@ namespace {
 constexpr std::size_t lanes = 16;
 using Sixteen = Eigen::Array<double, lanes, 1>;
 
+// CHOLMOD brings threads of its own, which wait for each other at every supernode however many the run was given.
+class OneThread {
+ public:
+  OneThread() : levels_(omp_get_max_active_levels()) { omp_set_max_active_levels(0); }
+  ~OneThread() { omp_set_max_active_levels(levels_); }
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+
+ private:
+  int levels_;
+};
+
 }  // namespace
 
 TreeFactor::TreeFactor(const Eigen::SparseMatrix<double>& K, const char* singular) {
+  const OneThread guard;
   cholmod_common common{};
   cholmod_start(&common);
   common.print = 0;
