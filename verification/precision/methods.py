@@ -66,10 +66,11 @@ def uniform_still(uniform: tuple[float, ...]) -> list[Curve]:
 
 def with_inertia(cells: tuple[float, ...], some: tuple[float, ...], one: tuple[float, ...], damping_1_s: float) -> list[Curve]:
     """The explicit curves damped so (1/s): the main ones at all `cells` (m), others at `some`, single choices at `one` size, if any."""
+    quick = 1 if one else 0  # where single choices are affordable, so is trying it out
     updated, total = (replace(setting, damping_1_s=damping_1_s) for setting in (MOVING, RESTING))
     curves = [
-        Curve("ex_updated", "explicit, updated", updated, cells, True, 1),
-        Curve("ex_total", "explicit, total", total, cells, True, 1),
+        Curve("ex_updated", "explicit, updated", updated, cells, True, quick),
+        Curve("ex_total", "explicit, total", total, cells, True, quick),
         Curve("ex_updated_gimp", "explicit, updated, GIMP", replace(updated, shape="gimp"), some, True),
         Curve("ex_updated_linear", "explicit, updated, linear", replace(updated, shape="linear"), some, True),
         Curve("ex_total_linear", "explicit, total, linear", replace(total, shape="linear"), some),
