@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "advance_total.hpp"
 #include "flow/paper_flow.hpp"
 #include "fracture/growth.hpp"
 #include "fracture/j_integral.hpp"
@@ -41,9 +42,7 @@ void close_ledger(const Scene& scene, const GridEnergy& grid, const GridEnergyAf
                              std::abs(ledger.body_work), ledger.kinetic});
 }
 
-}  // namespace
-
-void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+void advance_updated(const Scene& scene, const std::vector<Elasticity>& rocks, bool look, bool grow_now, State& state) {
   advance_pressure(scene, state);                   // P(s) from the opening at the step's start
   set_body_acceleration(scene, state.time, state);  // b(X_p, t)
   particles_to_grid(scene, rocks, state);           // m_i, mom_i, f_i
@@ -63,15 +62,24 @@ void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& st
   state.time += state.dt;
   ++state.step;
   close_ledger(scene, grid, after, particles, state);
-  bool changed = fail_interfaces(scene, rocks, state);  // bonded places that now let go
-  measure_tips(scene, rocks, state);                    // J, K_I, K_II with the same P
-  changed = grow(scene, rocks, state) || changed;       // a new point ahead of the tip
+  bool changed = fail_interfaces(scene, rocks, state);           // bonded places that now let go
+  if (look) measure_tips(scene, rocks, state);                   // J, K_I, K_II with the same P
+  if (grow_now) changed = grow(scene, rocks, state) || changed;  // a new point ahead of the tip
   watch_tips(scene, state);
   const bool moved = state.step % steps_between_rebuilds == 0 || particles.farthest_cells > bin_reach_cells;
-  if (changed || (moved && !scene.numerics.keeps_places())) {
+  if (changed || moved) {
     rebuild(scene, rocks, state);
     state.ledger.interface_strain = spring_energy(scene, state);
   }
+}
+
+}  // namespace
+
+void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, bool look) {
+  const bool grows = state.has_fracture && scene.fracture->growth != Fracture::Growth::none;
+  const bool grow_now = grows && (state.step + 1) % scene.numerics.tip_steps == 0;
+  const bool total = scene.numerics.kinematics == Numerics::Kinematics::total;
+  (total ? advance_total : advance_updated)(scene, rocks, look || grow_now, grow_now, state);
 }
 
 }  // namespace strata

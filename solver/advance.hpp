@@ -8,14 +8,17 @@
 
 namespace strata {
 
-// Derived members are rebuilt at multiples of these steps in every run, and checkpoints are written at no others, so
+// Derived members are rebuilt at multiples of these steps in every run (of steps_between_bases under kinematics =
+// "total"), and checkpoints are written at no others, so
 // that a resumed run starts from exactly what an uninterrupted one holds there.
 constexpr std::int64_t steps_between_rebuilds = 250;
 
 /// Advances the state by one explicit step of state.dt. Update stress last: forces come from the stress at the start of
 /// the step, and stress, positions and jumps then take up the same new velocities, which makes the step symplectic in
-/// the linear elastic part and the pressure's work exactly p dV. Throws NumericalFailure; `state` is then that of the
-/// failure.
-void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
+/// the linear elastic part and the pressure's work exactly p dV. Tips are measured and may grow at multiples of
+/// numerics.tip_steps; look: they are measured at the end of this step in any case, so that its K and J are known.
+/// Under kinematics = "total" particles stand still until bring_up_to_date(). Throws NumericalFailure; `state` is then
+/// that of the failure.
+void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, bool look = true);
 
 }  // namespace strata

@@ -14,7 +14,9 @@
 
 #include "advance.hpp"
 #include "advance_quasistatic.hpp"
+#include "advance_total.hpp"
 #include "initialise.hpp"
+#include "mechanics/total_base.hpp"
 #include "output/progress.hpp"
 #include "output/recorder.hpp"
 #include "output/summary.hpp"
@@ -110,6 +112,7 @@ void complete_fields(Run& run) {
   if (run.statics) {
     set_all_particles(run.scene, run.state, run.statics->model);
   } else {
+    bring_up_to_date(run.scene, run.state);
     run.state.ledger.strain = strain_energy(run.rocks, run.state.particles);
   }
 }
@@ -132,13 +135,30 @@ double next_stop(const Run& run, double interval) {
   return std::min({next_output, end, full});
 }
 
+// Whether the step of inertia that begins ends at an output or with the run, so that a row of the history follows.
+bool row_follows(const Run& run, double interval) {
+  const State& state = run.state;
+  const Stop& stop = run.scene.stop;
+  const double end = state.time + state.dt, slack = 0.5 * state.dt;
+  if (end >= static_cast<double>(run.recorder.outputs()) * interval - slack) return true;
+  if (stop.time_s && end >= *stop.time_s - slack) return true;
+  const Fluid& fluid = run.scene.fluid;
+  return stop.inlet_Pa && fluid.start_Pa + fluid.rate_Pa_s * end >= *stop.inlet_Pa * (1.0 - 1e-9);
+}
+
+// Steps after each of which a state is as a resumed run finds it.
+std::int64_t steps_between_sound_states(const Run& run) {
+  if (run.statics) return steps_between_copies;
+  return run.scene.numerics.kinematics == Numerics::Kinematics::total ? steps_between_bases : steps_between_rebuilds;
+}
+
 // One step and what it leaves to write: fields at output times, a row of the history after growth.
 void step_and_record(Run& run, double interval) {
   const std::size_t points = fracture_points(run.state);
   if (run.statics) {
     advance_quasistatic(run.scene, run.rocks, next_stop(run, interval), run.state, *run.statics);
   } else {
-    advance(run.scene, run.rocks, run.state);
+    advance(run.scene, run.rocks, run.state, row_follows(run, interval));
   }
   run.particle_steps += static_cast<double>(run.state.particles.size());
   const double slack = run.statics ? 1e-9 * interval : 0.5 * run.state.dt;
@@ -161,8 +181,7 @@ Outcome march(Run& run, Progress& progress) {
       output(run);
       return {done, *reason};
     }
-    const std::int64_t sound_steps = run.statics ? steps_between_copies : steps_between_rebuilds;
-    if (run.state.step % sound_steps == 0 && run.state.step > run.good.step) {
+    if (run.state.step % steps_between_sound_states(run) == 0 && run.state.step > run.good.step) {
       if (run.statics) start_quasistatic(run.scene, run.rocks, run.state, *run.statics);  // as a resumed run does
       run.good = run.state;
       const bool stop = asked_to_stop != 0;

@@ -69,6 +69,13 @@ double rayleigh_wait(const Scene& scene, const Elasticity& rock) {
   return scene.fracture->increment_m / rock.c_R;
 }
 
+bool ready(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Tip& tip) {
+  const Elasticity& ahead = rocks[rock_ahead(scene, state, tip)];
+  const double J = driving_J(ahead, tip);
+  if (!tip.growing || J <= 0.0 || J < ahead.J_c) return false;
+  return tip.last_growth_s < 0.0 || state.time - tip.last_growth_s >= rayleigh_wait(scene, ahead);
+}
+
 void record(State& state, const char* kind, const Tip& tip, double time, double pressure, bool doubtful,
             const char* by) {
   const Vec2 at = tip_position(state, tip);
@@ -283,14 +290,17 @@ void note_growth(State& state, Tip& tip, const char* by, bool trusted) {
   tip.J_spread_at_growth = tip.J_spread;
 }
 
+bool ready_to_grow(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
+  if (!state.has_fracture || scene.fracture->growth == Fracture::Growth::none) return false;
+  return std::any_of(state.tips.begin(), state.tips.end(),
+                     [&](const Tip& tip) { return ready(scene, rocks, state, tip); });
+}
+
 bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
   if (!state.has_fracture || scene.fracture->growth == Fracture::Growth::none) return false;
   bool moved = false;
   for (Tip& tip : state.tips) {
-    const Elasticity& ahead = rocks[rock_ahead(scene, state, tip)];
-    const double J = driving_J(ahead, tip);
-    if (!tip.growing || J <= 0.0 || J < ahead.J_c) continue;
-    if (tip.last_growth_s >= 0.0 && state.time - tip.last_growth_s < rayleigh_wait(scene, ahead)) continue;
+    if (!ready(scene, rocks, state, tip)) continue;
     if (stopped_by_edge(scene, state, tip)) {
       tip.growing = false;
       tip.stopped_by = what_stops(scene, state, tip);

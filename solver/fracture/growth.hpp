@@ -18,6 +18,9 @@ namespace strata {
 /// moved: the copies must then be rebuilt. Throws nothing.
 bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
 
+/// Whether grow() would look at any tip more closely now: its J has reached J_c and its wait is over. Throws nothing.
+bool ready_to_grow(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state);
+
 /// What drives a tip (N/m): J, but no more than twice (K_I^2 + K_II^2)/E', 0 for a closed tip. Where faces have just
 /// touched, or stand under a dry fluid, J may be several J_c while K is next to nothing: such a J is no energy release
 /// rate. Near interfaces K itself is not to be trusted and J stands alone. Throws nothing.

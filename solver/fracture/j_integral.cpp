@@ -135,8 +135,30 @@ void add_domain(const Elasticity& rock, const LocalFields& p, std::span<const We
   }
 }
 
-LocalFields fields_at(const State& state, const Elasticity& rock, const Frame& frame, SideWord fracture_bit,
-                      const Bin& bin, std::size_t q) {
+// Displacement gradient and velocity of a particle now: where nodes keep the motion (kinematics = "total"), what it has
+// of its own is as old as the base.
+struct ParticleFields {
+  double g[2][2] = {};
+  Vec2 v = Vec2::Zero();
+};
+
+ParticleFields particle_fields(const Scene& scene, const State& state, const Bin& bin, std::size_t q) {
+  const Particles& p = state.particles;
+  ParticleFields f{{{p.g_xx[q], p.g_xy[q]}, {p.g_yx[q], p.g_yy[q]}}, {p.v_x[q], p.v_y[q]}};
+  if (!state.total.based) return f;
+  const Gradients w = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]);
+  f.v.setZero();
+  for (std::size_t n = 0; n < 9; ++n) {
+    const Vec2 u = total_displacement(state, bin.record[n]);
+    const NodeMotion& node = state.motion[static_cast<std::size_t>(bin.record[n])];
+    for (int i = 0; i < 2; ++i) f.g[i][0] += w.N_x[n] * u[i], f.g[i][1] += w.N_y[n] * u[i];
+    f.v += w.N[n] * Vec2{node.v_x, node.v_y};
+  }
+  return f;
+}
+
+LocalFields fields_at(const Scene& scene, const State& state, const Elasticity& rock, const Frame& frame,
+                      SideWord fracture_bit, const Bin& bin, std::size_t q) {
   const Particles& p = state.particles;
   LocalFields f;
   f.at = frame.local(Vec2{p.x[q], p.y[q]} - frame.tip);
@@ -146,18 +168,18 @@ LocalFields fields_at(const State& state, const Elasticity& rock, const Frame& f
   const bool above = ((p.sides[q] & fracture_bit) != 0) == (frame.sign > 0.0);
   if (f.at.x() < 0.0 && above && f.theta < 0.0) f.theta += 2.0 * pi;
   if (f.at.x() < 0.0 && !above && f.theta > 0.0) f.theta -= 2.0 * pi;
-  const double g[2][2] = {{p.g_xx[q], p.g_xy[q]}, {p.g_yx[q], p.g_yy[q]}};
+  const ParticleFields own = particle_fields(scene, state, bin, q);
   const Vec2 e[2] = {frame.e_1, frame.e_2};
   for (int i = 0; i < 2; ++i) {
     for (int j = 0; j < 2; ++j) {
       for (int k = 0; k < 2; ++k) {
-        for (int l = 0; l < 2; ++l) f.H[i][j] += e[i][k] * g[k][l] * e[j][l];
+        for (int l = 0; l < 2; ++l) f.H[i][j] += e[i][k] * own.g[k][l] * e[j][l];
       }
     }
   }
   f.s = stress_of(rock, f.H[0][0], f.H[0][1], f.H[1][0], f.H[1][1]);
   f.V = p.V[q];
-  f.v = frame.local({p.v_x[q], p.v_y[q]});
+  f.v = frame.local(own.v);
   // Acceleration and velocity gradient are interpolated with B-splines whatever the scene's shape: they only enter
   // here.
   const Weights X = weights_x<QuadraticBspline>(state.grid, bin.i, p.x[q], 0.0),
@@ -183,7 +205,7 @@ bool out_of_reach(const Grid& g, const Vec2& tip, const Ring& ring, const Bin& b
 }
 
 // Adds the particles of a bin to the sums of all rings; a bin that no ring weighs adds nothing.
-void add_bin(const std::vector<Elasticity>& rocks, const State& state, const Frame& frame,
+void add_bin(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Frame& frame,
              const std::vector<Ring>& rings, const Bin& bin, std::vector<Sums>& sums) {
   if (out_of_reach(state.grid, frame.tip, rings.back(), bin)) return;
   std::array<NodalWeights, ring_fractions.size()> nodes;
@@ -198,7 +220,7 @@ void add_bin(const std::vector<Elasticity>& rocks, const State& state, const Fra
     const Vec2 x{state.particles.x[q], state.particles.y[q]};
     for (std::size_t k = 0; k < rings.size(); ++k) weights[k] = weight_at(state.grid, frame, nodes[k], bin.i, bin.j, x);
     const Elasticity& own = rocks[state.particles.rock[q]];
-    add_domain(own, fields_at(state, own, frame, state.fracture().mask(), bin, q), weights, sums);
+    add_domain(own, fields_at(scene, state, own, frame, state.fracture().mask(), bin, q), weights, sums);
   }
 }
 
@@ -336,7 +358,7 @@ void measure_tips(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
       if (std::abs(state.grid.x(bin.i) - frame.tip.x()) > reach ||
           std::abs(state.grid.y(bin.j) - frame.tip.y()) > reach)
         continue;
-      add_bin(rocks, state, frame, rings, bin, sums);
+      add_bin(scene, rocks, state, frame, rings, bin, sums);
     }
     add_faces(rock, state.grid, fracture, frame, tip.at_back, rings, sums);
     finish_tip(scene, rock, state, sums, tip);

@@ -115,23 +115,11 @@ double relax(const Place& place, double dt, std::vector<NodeMotion>& motion) {
                       place.per_n,
                       place.per_t,
                       s.closing_stress() - s.P};
-  const Reaction r = react(*place.law, place.k, free);
-  const Reaction over =
-      admissible(*place.law, {s.reaction.dot(s.n) + over_relaxation * (r.n - s.reaction.dot(s.n)),
-                              s.reaction.dot(tangent) + over_relaxation * (r.t - s.reaction.dot(tangent))});
+  const Reaction over = over_relax(*place.law, place.k, free, {s.reaction.dot(s.n), s.reaction.dot(tangent)});
   const Vec2 change = over.n * s.n + over.t * tangent - s.reaction;
   push(place, change, motion);
   s.reaction += change;
   return change.norm();
-}
-
-// The law of a tip's spring, which holds in both directions.
-InterfaceLaw tie_law(const TipTie& tie) {
-  InterfaceLaw law;
-  law.kind = Kind::soft;
-  law.compression = InterfaceLaw::Compression::spring;
-  law.normal_stiffness_Pa_m = law.shear_stiffness_Pa_m = tie.stiffness;
-  return law;
 }
 
 SurfaceStencil tie_stencil(const TipTie& tie) {
@@ -164,15 +152,6 @@ std::vector<Place> split_places(const Scene& scene, const std::vector<Elasticity
   return places;
 }
 
-// Closed contact and stick hold r^2/(2k), some 1e-4 of what the rock beside them does: that is left in the ledger's
-// friction, which is then negative by as much while load comes on. All of it is counted, so the ledger closes.
-double spring_energy_at(const InterfaceLaw& law, const SurfacePoint& s) {
-  if (law.kind != Kind::soft || !s.split) return 0.0;
-  const double w_n = s.opening(), w_t = s.w.dot(tangent_of(s));
-  const bool closed = law.compression == InterfaceLaw::Compression::contact && w_n < 0.0;
-  return 0.5 * s.A * ((closed ? 0.0 : law.normal_stiffness_Pa_m * w_n * w_n) + law.shear_stiffness_Pa_m * w_t * w_t);
-}
-
 // Mean total stress over the samples.
 Stress sampled_stress(const std::vector<Elasticity>& rocks, const Particles& p,
                       const std::vector<StressSample>& samples) {
@@ -193,6 +172,28 @@ Reaction react(const InterfaceLaw& law, double k, const FreeJump& w) {
   const double n = std::max(0.0, spring(k, w.n_rest, w.n, w.per_n));
   const double bound = n * (law.kind == Kind::weak ? law.residual_friction : law.coefficient);
   return {n, std::clamp(spring(k, w.r_t_start, w.t - w.t_start, w.per_t), -bound, bound)};
+}
+
+Reaction over_relax(const InterfaceLaw& law, double k, const FreeJump& w, const Reaction& now) {
+  const Reaction r = react(law, k, w);
+  return admissible(law, {now.n + over_relaxation * (r.n - now.n), now.t + over_relaxation * (r.t - now.t)});
+}
+
+InterfaceLaw tie_law(const TipTie& tie) {
+  InterfaceLaw law;
+  law.kind = Kind::soft;
+  law.compression = InterfaceLaw::Compression::spring;
+  law.normal_stiffness_Pa_m = law.shear_stiffness_Pa_m = tie.stiffness;
+  return law;
+}
+
+// Closed contact and stick hold r^2/(2k), some 1e-4 of what the rock beside them does: that is left in the ledger's
+// friction, which is then negative by as much while load comes on. All of it is counted, so the ledger closes.
+double spring_energy_at(const InterfaceLaw& law, const SurfacePoint& s) {
+  if (law.kind != Kind::soft || !s.split) return 0.0;
+  const double w_n = s.opening(), w_t = s.w.dot(tangent_of(s));
+  const bool closed = law.compression == InterfaceLaw::Compression::contact && w_n < 0.0;
+  return 0.5 * s.A * ((closed ? 0.0 : law.normal_stiffness_Pa_m * w_n * w_n) + law.shear_stiffness_Pa_m * w_t * w_t);
 }
 
 bool fails(const InterfaceLaw& law, const Reaction& r) {

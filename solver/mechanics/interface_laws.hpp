@@ -30,6 +30,16 @@ struct Reaction {
 /// equilibrium of the law itself, whatever the step. perfect: none.
 Reaction react(const InterfaceLaw& law, double k, const FreeJump& w);
 
+/// One visit of successive over-relaxation to a place whose reaction is `now`: past react(), but never out of what the
+/// law allows.
+Reaction over_relax(const InterfaceLaw& law, double k, const FreeJump& w, const Reaction& now);
+
+/// The law of a tip's spring, which holds in both directions.
+InterfaceLaw tie_law(const TipTie& tie);
+
+/// Energy in the springs of a place under its law (J/m); 0 where it is not split or has none.
+double spring_energy_at(const InterfaceLaw& law, const SurfacePoint& s);
+
 /// True if a bonded place fails under the reaction r: weak by (S/Sc)^2 + (N/Nc)^2 >= 1 with N in tension only (the
 /// study's eq. 5); friction where |t| > mu n or in tension.
 bool fails(const InterfaceLaw& law, const Reaction& r);

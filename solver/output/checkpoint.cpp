@@ -17,7 +17,7 @@ namespace strata {
 namespace {
 
 constexpr std::string_view magic = "strata-checkpoint\n";
-constexpr std::uint32_t format_version = 4;  // to be raised with every change of what is saved
+constexpr std::uint32_t format_version = 5;  // to be raised with every change of what is saved
 constexpr std::uint32_t byte_order = 0x01020304;
 
 std::uint64_t fnv1a(std::string_view bytes) {
@@ -119,6 +119,7 @@ template <class Archive>
 void fields(Archive& ar, Is<State> auto& state) {
   ar(state.time, state.step, state.dt, state.grid, state.particles, state.surfaces, state.has_fracture, state.fluid);
   ar(state.reynolds, state.balance, state.tips, state.ties, state.events, state.ledger, state.monitors);
+  ar(state.total.velocity);
 }
 
 template <class Archive>

@@ -309,6 +309,11 @@ std::vector<Key> numerics_keys() {
       +[](Scene& s, std::size_t) -> int& { return s.numerics.particles_per_cell; },
       "Particles in each cell, a square of them.");
   particles.allowed = {4, 9, 16};
+  Key tip_steps = other(
+      "numerics.tip_steps", KeyType::integer, +[](Scene& s, std::size_t) -> int& { return s.numerics.tip_steps; },
+      "Explicit only: steps from one look at the tips, by which they may grow, to the next. A P wave takes 2/courant "
+      "steps from the tip to half of a ring of 4 cells; J and K of every row of the history are of its own time.");
+  tip_steps.allowed = {1, 2, 3, 4, 5, 6, 7, 8};
   using Mechanics = Numerics::Mechanics;
   using Shape = Numerics::Shape;
   using Transfer = Numerics::Transfer;
@@ -335,7 +340,8 @@ std::vector<Key> numerics_keys() {
       word(
           "numerics.transfer", {as("flip", Transfer::flip), as("pic", Transfer::pic), as("xpic2", Transfer::xpic2)},
           [](Scene& s, std::size_t) -> Transfer& { return s.numerics.transfer; },
-          "Velocity from the grid back to particles."),
+          "Velocity from the grid back to particles. Under kinematics = \"total\" nodes keep their velocities: nothing "
+          "is transferred, and all choices are the same."),
       word(
           "numerics.kinematics",
           {as("updated", Numerics::Kinematics::updated), as("total", Numerics::Kinematics::total)},
@@ -354,6 +360,7 @@ std::vector<Key> numerics_keys() {
           "numerics.damping_1_s", "1/s", not_negative,
           +[](Scene& s, std::size_t) -> double& { return s.numerics.damping_1_s; },
           "Damping of velocity: a = f/m - damping v."),
+      tip_steps,
       number(
           "numerics.ring_cells", "cells", {2.5, 8.0, false, false},
           +[](Scene& s, std::size_t) -> double& { return s.numerics.ring_cells; },

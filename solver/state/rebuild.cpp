@@ -382,6 +382,8 @@ void rebuild_copies(const Scene& scene, State& state) {
   make_surface_stencils(state);
   state.sums.assign(static_cast<std::size_t>(state.copies.records()), NodeSums{});
   state.motion.assign(static_cast<std::size_t>(state.copies.records()), NodeMotion{});
+  state.total.based = false;
+  state.total.op.reset();
 }
 
 }  // namespace strata

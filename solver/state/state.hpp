@@ -11,6 +11,7 @@
 #include "state/grid.hpp"
 #include "state/particles.hpp"
 #include "state/surfaces.hpp"
+#include "state/total_motion.hpp"
 
 namespace strata {
 
@@ -106,6 +107,7 @@ struct State {
   std::vector<Event> events;
   Ledger ledger;
   Monitors monitors;
+  TotalMotion total;  // of kinematics = "total" only
 
   // Derived from the above by rebuild_copies(); not saved.
   Copies copies;
@@ -127,6 +129,20 @@ struct State {
 /// Where a tip is (m): the fracture's last vertex or its first; throws nothing.
 inline Vec2 tip_position(const State& state, const Tip& tip) {
   return tip.at_back ? state.fracture().vertices.back().x : state.fracture().vertices.front().x;
+}
+
+/// Displacement of a record since the base (m), under kinematics = "total"; throws nothing.
+inline Vec2 total_displacement(const State& state, int record) {
+  const auto r = static_cast<std::size_t>(record);
+  const auto slot = static_cast<std::size_t>(state.total.op->slots.of_record[r]);
+  return {state.masters[r].x * state.total.u_x[slot], state.masters[r].y * state.total.u_y[slot]};
+}
+
+/// And its velocity (m/s).
+inline Vec2 total_velocity(const State& state, int record) {
+  const auto r = static_cast<std::size_t>(record);
+  const auto slot = static_cast<std::size_t>(state.total.op->slots.of_record[r]);
+  return {state.masters[r].x * state.total.v_x[slot], state.masters[r].y * state.total.v_y[slot]};
 }
 
 }  // namespace strata

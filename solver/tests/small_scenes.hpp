@@ -12,6 +12,7 @@
 #include "advance.hpp"
 #include "initialise.hpp"
 #include "mechanics/tip_ties.hpp"
+#include "mechanics/total_base.hpp"
 #include "scene/scene.hpp"
 #include "state/elasticity.hpp"
 #include "state/state.hpp"
@@ -103,6 +104,7 @@ struct Run {
   }
   void advance(int steps) {
     for (int k = 0; k < steps; ++k) strata::advance(scene, rocks, state);
+    bring_up_to_date(scene, state);
   }
   void rebuild() { strata::rebuild(scene, rocks, state); }
 };

@@ -1,0 +1,94 @@
+#include "advance_total.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "flow/paper_flow.hpp"
+#include "fracture/growth.hpp"
+#include "fracture/j_integral.hpp"
+#include "mechanics/interface_laws.hpp"
+#include "mechanics/tip_ties.hpp"
+#include "mechanics/total_base.hpp"
+#include "mechanics/total_operator.hpp"
+#include "mechanics/total_surfaces.hpp"
+#include "state/body_force.hpp"
+
+namespace strata {
+
+namespace {
+
+// The motion of the step's end and what forces added to it, by records: J takes its accelerations from it.
+void note_motion(State& state) {
+  const TotalMotion& t = state.total;
+  for (std::size_t r = 0; r < state.motion.size(); ++r) {
+    const auto slot = static_cast<std::size_t>(t.op->slots.of_record[r]);
+    const Master& master = state.masters[r];
+    state.motion[r] = {master.x * t.v_x[slot], master.y * t.v_y[slot], master.x * state.dt * t.a_x[slot],
+                       master.y * state.dt * t.a_y[slot]};
+  }
+}
+
+// Energies at the step's end. external: power sum m v . a of all forces but the rock's own; elastic: of the rock's at
+// the step's end. What the rock stores and what its force of the step's start does differ by v K v dt^2/2, which
+// follows from the change of that force.
+void close_ledger(const Scene& scene, const NodeTotals& moved, double external, double elastic, State& state) {
+  Ledger& ledger = state.ledger;
+  if (!std::isfinite(moved.kinetic)) {
+    throw NumericalFailure(
+        "step " + std::to_string(state.step) +
+        ": the kinetic energy is not finite; the motion has become unstable. Lower numerics.courant (now " +
+        std::to_string(scene.numerics.courant) + ")");
+  }
+  const double keep = 1.0 - scene.numerics.damping_1_s * state.dt;
+  ledger.damping += (1.0 - keep * keep) * ledger.kinetic;
+  ledger.kinetic = moved.kinetic;
+  ledger.integration += moved.increment - 0.5 * state.dt * (moved.power - external - elastic);
+  ledger.interface_strain = spring_energy(scene, state);
+  Monitors& monitors = state.monitors;
+  monitors.largest_particle_velocity = std::max(monitors.largest_particle_velocity, std::sqrt(moved.largest_speed2));
+  ledger.largest = std::max({ledger.largest, std::abs(ledger.fluid_work), std::abs(ledger.in_situ_work),
+                             std::abs(ledger.body_work), ledger.kinetic});
+}
+
+// Copies after an event. Nodes go on with the velocities they had.
+void rebuild_total(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+  RecordVelocities before{state.copies, state.total.velocity};
+  rebuild(scene, rocks, state);
+  carry_velocities(before, state);
+  start_base(scene, rocks, state);
+  recount_kinetic(state);
+  state.ledger.interface_strain = spring_energy(scene, state);
+}
+
+}  // namespace
+
+void advance_total(const Scene& scene, const std::vector<Elasticity>& rocks, bool look, bool grow_now, State& state) {
+  const double keep = 1.0 - scene.numerics.damping_1_s * state.dt;
+  start_base(scene, rocks, state);                   // after events: a_i of the particles' stress
+  advance_pressure(scene, state);                    // P(s) from the opening at the step's start
+  set_body_acceleration(scene, state.time, state);   // b(X_p, t)
+  const BodyPush body = push_body(scene, state);     // a_i += sum N_ip m_p b_p / m_i
+  double external = step_surfaces(keep, state);      // a_i += tractions, contact, friction, springs; w
+  const NodeTotals moved = move_nodes(keep, state);  // v_i, u_i
+  external += note_body_work(body, state);
+  state.time += state.dt;
+  ++state.step;
+  if (look) note_motion(state);
+  const double elastic = find_accelerations(scene, rocks, state);  // a_i = -(M^-1 K u)_i + ...
+  close_ledger(scene, moved, external, elastic, state);
+  bool changed = false;
+  if (any_bond_fails(scene, state)) {
+    bring_up_to_date(scene, state);
+    changed = fail_interfaces(scene, rocks, state);  // bonded places that now let go
+  }
+  if (look) measure_tips(scene, rocks, state);  // J, K_I, K_II with the same P
+  if (grow_now && ready_to_grow(scene, rocks, state)) {
+    bring_up_to_date(scene, state);
+    changed = grow(scene, rocks, state) || changed;  // a new point ahead of the tip
+  }
+  watch_tips(scene, state);
+  if (changed) rebuild_total(scene, rocks, state);
+  if (state.step % steps_between_bases == 0) bring_up_to_date(scene, state);
+}
+
+}  // namespace strata

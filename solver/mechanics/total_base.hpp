@@ -1,0 +1,46 @@
+// The base of kinematics = "total": when particles, surfaces and nodes were last of one state.
+#pragma once
+
+#include <vector>
+
+#include "state/elasticity.hpp"
+#include "state/state.hpp"
+
+namespace strata {
+
+/// Makes the particles as they are the base: masses, accelerations a_i = f_i/m_i of their stress, operator, surfaces.
+/// Nodes take up state.total.velocity or, where a run starts, the velocity field that gives the particles theirs.
+/// Does nothing where the base stands.
+void start_base(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
+
+/// Brings particles (u, grad u, v = sum N_ip v_i) and surfaces (u, and the jumps of what is not split) up to date from
+/// the nodes' displacements since the base, keeps the nodes' velocities in state.total.velocity and ends the base. Does
+/// nothing where none stands.
+void bring_up_to_date(const Scene& scene, State& state);
+
+// Accelerations that a body force gives the nodes in a step (m/s^2), by slots; empty: there is none.
+struct BodyPush {
+  std::vector<double> a_x, a_y;
+};
+
+/// Adds sum_p N_ip m_p b_p / m_i for the body force state.body to the nodes' accelerations; returns what it added.
+BodyPush push_body(const Scene& scene, State& state);
+
+/// Adds the work of the step to the ledger, sum m b . v dt at the step's end; returns its power (W/m).
+double note_body_work(const BodyPush& push, State& state);
+
+// Velocities of the records of copies that an event is about to change.
+struct RecordVelocities {
+  Copies copies;
+  std::vector<Vec2> v;  // m/s
+};
+
+/// Gives the records of new copies their velocities: those of the same node and key before or, where a copy has split,
+/// of the copy it was part of. Where the copies of a node share out its mass anew, momentum is thereby kept exactly
+/// if the new ones split off the old ones' mass.
+void carry_velocities(const RecordVelocities& before, State& state);
+
+/// Ledger and nodal kinetic energy after an event: what the nodes lost (or gained) by it counts as lost in transfer.
+void recount_kinetic(State& state);
+
+}  // namespace strata

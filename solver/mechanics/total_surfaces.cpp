@@ -1,0 +1,346 @@
+#include "mechanics/total_surfaces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "mechanics/interface_laws.hpp"
+#include "mechanics/surface_law.hpp"
+#include "state/shape_functions.hpp"
+
+namespace strata {
+
+namespace {
+
+using Kind = InterfaceLaw::Kind;
+
+Vec2 tangent_of(const SurfacePoint& s) {
+  return {s.n.y(), -s.n.x()};
+}
+
+template <class AnyState>
+auto& point_of(AnyState& state, const TotalPlace& place) {
+  const auto k = static_cast<std::size_t>(place.point);
+  if (place.surface < 0) return state.ties[k].s;
+  return state.surfaces[static_cast<std::size_t>(place.surface)].points[k];
+}
+
+// --- building
+
+// A place's weights by slots while they are gathered.
+struct Weight {
+  int slot = 0;
+  double x = 0.0, y = 0.0;
+};
+
+void add_record(const State& state, int record, double N, std::vector<Weight>& weights) {
+  const auto r = static_cast<std::size_t>(record);
+  const int slot = state.total.op->slots.of_record[r];
+  const Master& master = state.masters[r];
+  auto at = std::find_if(weights.begin(), weights.end(), [slot](const Weight& w) { return w.slot == slot; });
+  if (at == weights.end()) at = weights.insert(at, {slot, 0.0, 0.0});
+  at->x += N * master.x, at->y += N * master.y;
+}
+
+std::vector<Weight> weights_of(const State& state, const SurfaceStencil& stencil) {
+  std::vector<Weight> weights;
+  for (std::size_t n = 0; n < 9; ++n) {
+    if (stencil.plus[n] == stencil.minus[n]) continue;
+    add_record(state, stencil.plus[n], stencil.N[n], weights);
+    add_record(state, stencil.minus[n], -stencil.N[n], weights);
+  }
+  return weights;
+}
+
+std::vector<Weight> weights_of(const State& state, const TipTie& tie) {
+  std::vector<Weight> weights;
+  add_record(state, tie.plus, 1.0, weights);
+  add_record(state, tie.minus, -1.0, weights);
+  const auto massless = [&](const Weight& w) { return !(state.total.m[static_cast<std::size_t>(w.slot)] > 0.0); };
+  if (std::any_of(weights.begin(), weights.end(), massless)) weights.clear();
+  return weights;
+}
+
+struct Builder {
+  const State& state;
+  TotalSurfaces out;
+  std::unordered_map<int, int> touched;  // index of a slot
+
+  void add(TotalPlace place, const std::vector<Weight>& weights) {
+    if (weights.empty()) return;
+    const SurfacePoint& s = point_of(state, place);
+    double a_x = 0.0, a_y = 0.0;
+    for (const Weight& w : weights) {
+      const auto [at, is_new] = touched.emplace(w.slot, static_cast<int>(out.touched.size()));
+      if (is_new) out.touched.push_back(w.slot);
+      const double per_mass = state.dt * s.A / state.total.m[static_cast<std::size_t>(w.slot)];
+      place.entries.push_back({at->second, w.x, w.y, per_mass * w.x, per_mass * w.y});
+      a_x += state.dt * per_mass * w.x * w.x;
+      a_y += state.dt * per_mass * w.y * w.y;
+    }
+    place.per_n = s.n.x() * s.n.x() * a_x + s.n.y() * s.n.y() * a_y;
+    place.per_t = s.n.y() * s.n.y() * a_x + s.n.x() * s.n.x() * a_y;
+    out.places.push_back(std::move(place));
+  }
+};
+
+// What a traction at each place does to the jump rates of those that share nodes with it.
+void find_neighbours(TotalSurfaces& surfaces) {
+  struct Reach {
+    int place = 0;
+    double c_x = 0.0, c_y = 0.0;
+  };
+  std::vector<std::vector<Reach>> of_touched(surfaces.touched.size());
+  for (std::size_t k = 0; k < surfaces.places.size(); ++k) {
+    for (const TotalPlace::Entry& e : surfaces.places[k].entries)
+      of_touched[static_cast<std::size_t>(e.touched)].push_back({static_cast<int>(k), e.c_x, e.c_y});
+  }
+  std::vector<int> at(surfaces.places.size(), -1);
+  for (TotalPlace& place : surfaces.places) {
+    for (const TotalPlace::Entry& e : place.entries) {
+      for (const Reach& reach : of_touched[static_cast<std::size_t>(e.touched)]) {
+        int& index = at[static_cast<std::size_t>(reach.place)];
+        if (index < 0) {
+          index = static_cast<int>(place.neighbours.size());
+          place.neighbours.push_back({reach.place, 0.0, 0.0});
+        }
+        TotalPlace::Neighbour& neighbour = place.neighbours[static_cast<std::size_t>(index)];
+        neighbour.per_x += reach.c_x * e.d_x, neighbour.per_y += reach.c_y * e.d_y;
+      }
+    }
+    for (const TotalPlace::Neighbour& neighbour : place.neighbours) at[static_cast<std::size_t>(neighbour.place)] = -1;
+  }
+}
+
+// --- stepping
+
+void push(const TotalPlace& place, const Vec2& t, TotalSurfaces& surfaces) {
+  for (const TotalPlace::Entry& e : place.entries) {
+    const auto k = static_cast<std::size_t>(e.touched);
+    surfaces.v_x[k] += e.d_x * t.x();
+    surfaces.v_y[k] += e.d_y * t.y();
+  }
+}
+
+Vec2 jump_rate(const TotalPlace& place, const TotalSurfaces& surfaces) {
+  Vec2 rate = Vec2::Zero();
+  for (const TotalPlace::Entry& e : place.entries) {
+    const auto k = static_cast<std::size_t>(e.touched);
+    rate.x() += e.c_x * surfaces.v_x[k];
+    rate.y() += e.c_y * surfaces.v_y[k];
+  }
+  return rate;
+}
+
+// Velocities that net tractions and reactions give, and the jump rates.
+void push_all(const State& state, TotalSurfaces& surfaces) {
+  surfaces.v_x = surfaces.free_x, surfaces.v_y = surfaces.free_y;
+  for (const TotalPlace& place : surfaces.places) {
+    const SurfacePoint& s = point_of(state, place);
+    push(place, s.P * s.n - s.in_situ + s.reaction, surfaces);
+  }
+  for (std::size_t k = 0; k < surfaces.places.size(); ++k) {
+    const Vec2 rate = jump_rate(surfaces.places[k], surfaces);
+    surfaces.rate_x[k] = rate.x(), surfaces.rate_y[k] = rate.y();
+  }
+}
+
+// One visit of successive over-relaxation, as in solve_reactions(); returns how much the reaction changed (Pa).
+double relax(double dt, std::size_t k, SurfacePoint& s, TotalSurfaces& surfaces) {
+  const TotalPlace& place = surfaces.places[k];
+  const Vec2 tangent = tangent_of(s);
+  const Vec2 w = s.w + dt * Vec2{surfaces.rate_x[k], surfaces.rate_y[k]};
+  const Reaction now{s.reaction.dot(s.n), s.reaction.dot(tangent)};
+  const FreeJump free{w.dot(s.n) - place.per_n * now.n,
+                      w.dot(tangent) - place.per_t * now.t,
+                      s.w.dot(tangent),
+                      surfaces.r_t_start[k],
+                      place.per_n,
+                      place.per_t,
+                      s.closing_stress() - s.P};
+  const Reaction next = over_relax(surfaces.laws[place.law], place.k, free, now);
+  if (next.n == now.n && next.t == now.t) return 0.0;
+  const Vec2 change = next.n * s.n + next.t * tangent - s.reaction;
+  for (const TotalPlace::Neighbour& other : place.neighbours) {
+    const auto at = static_cast<std::size_t>(other.place);
+    surfaces.rate_x[at] += other.per_x * change.x();
+    surfaces.rate_y[at] += other.per_y * change.y();
+  }
+  s.reaction += change;
+  return change.norm();
+}
+
+void find_reactions(State& state, TotalSurfaces& surfaces) {
+  constexpr double tolerance = 1e-6;  // both as in solve_reactions()
+  constexpr int most_sweeps = 200;
+  if (surfaces.places.empty()) return;
+  int sweeps = 0;
+  for (double change = 1.0, largest = 0.0; sweeps < most_sweeps && change > tolerance * std::max(largest, 1.0);
+       ++sweeps) {
+    change = largest = 0.0;
+    for (std::size_t k = 0; k < surfaces.places.size(); ++k) {
+      SurfacePoint& s = point_of(state, surfaces.places[k]);
+      change = std::max(change, relax(state.dt, k, s, surfaces));
+      largest = std::max(largest, s.reaction.norm());
+    }
+  }
+  state.monitors.contact_sweeps += sweeps;
+  if (sweeps == most_sweeps) ++state.monitors.contact_unconverged;
+}
+
+// The place's jump at the end of the step, and what was done on the way.
+void follow(const TotalPlace& place, const InterfaceLaw& law, const Vec2& dw, State& state) {
+  SurfacePoint& s = point_of(state, place);
+  const double before = spring_energy_at(law, s);
+  s.w += dw;
+  const double stored = spring_energy_at(law, s) - before;
+  state.ledger.friction -= s.A * s.reaction.dot(dw) + stored;
+  if (law.kind != Kind::soft) s.slip += std::abs(dw.dot(tangent_of(s)));
+  const bool closes = law.kind != Kind::soft || law.compression == InterfaceLaw::Compression::contact;
+  if (closes) state.monitors.largest_penetration = std::max(state.monitors.largest_penetration, -s.opening());
+  state.ledger.fluid_work += s.A * s.P * s.n.dot(dw);
+  state.ledger.in_situ_work -= s.A * s.in_situ.dot(dw);
+}
+
+// Adds what places did to velocities in the step to the nodes' accelerations.
+double pass_to_nodes(TotalMotion& t, double dt) {
+  const TotalSurfaces& surfaces = t.surfaces;
+  double power = 0.0;
+  for (std::size_t k = 0; k < surfaces.touched.size(); ++k) {
+    const auto slot = static_cast<std::size_t>(surfaces.touched[k]);
+    const double a_x = (surfaces.v_x[k] - surfaces.free_x[k]) / dt, a_y = (surfaces.v_y[k] - surfaces.free_y[k]) / dt;
+    t.a_x[slot] += a_x, t.a_y[slot] += a_y;
+    power += t.m[slot] * (surfaces.v_x[k] * a_x + surfaces.v_y[k] * a_y);
+  }
+  return power;
+}
+
+}  // namespace
+
+TotalSurfaces make_total_surfaces(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
+  Builder build{state, {}, {}};
+  build.out.laws = scene.laws;
+  for (std::size_t k = 0; k < state.ties.size(); ++k) {
+    TotalPlace place{-1, static_cast<int>(k), build.out.laws.size(), 0.0, 0.0, 0.0, {}, {}};
+    build.out.laws.push_back(tie_law(state.ties[k]));
+    build.add(place, weights_of(state, state.ties[k]));
+  }
+  build.out.laws.push_back(face_law());
+  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
+    const Surface& surface = state.surfaces[k];
+    const bool faces = surface.kind == Surface::Kind::fracture;
+    const std::size_t law = faces ? build.out.laws.size() - 1 : surface.law;
+    const double stiffness = contact_stiffness(build.out.laws[law], rocks, state.grid);
+    for (std::size_t q = 0; q < surface.points.size(); ++q) {
+      if (!surface.points[q].split) continue;
+      build.add({static_cast<int>(k), static_cast<int>(q), law, stiffness, 0.0, 0.0, {}, {}},
+                weights_of(state, state.point_stencils[k][q]));
+    }
+  }
+  TotalSurfaces out = std::move(build.out);
+  find_neighbours(out);
+  for (auto* array : {&out.free_x, &out.free_y, &out.v_x, &out.v_y}) array->assign(out.touched.size(), 0.0);
+  for (auto* array : {&out.rate_x, &out.rate_y, &out.r_t_start}) array->assign(out.places.size(), 0.0);
+  return out;
+}
+
+double step_surfaces(double keep, State& state) {
+  TotalMotion& t = state.total;
+  TotalSurfaces& surfaces = t.surfaces;
+  for (std::size_t k = 0; k < surfaces.touched.size(); ++k) {
+    const auto slot = static_cast<std::size_t>(surfaces.touched[k]);
+    surfaces.free_x[k] = keep * t.v_x[slot] + state.dt * t.a_x[slot];
+    surfaces.free_y[k] = keep * t.v_y[slot] + state.dt * t.a_y[slot];
+  }
+  for (std::size_t k = 0; k < surfaces.places.size(); ++k) {
+    const SurfacePoint& s = point_of(state, surfaces.places[k]);
+    surfaces.r_t_start[k] = s.reaction.dot(tangent_of(s));
+  }
+  push_all(state, surfaces);
+  find_reactions(state, surfaces);
+  push_all(state, surfaces);
+  for (std::size_t k = 0; k < surfaces.places.size(); ++k) {
+    const TotalPlace& place = surfaces.places[k];
+    follow(place, surfaces.laws[place.law], state.dt * Vec2{surfaces.rate_x[k], surfaces.rate_y[k]}, state);
+  }
+  return pass_to_nodes(t, state.dt);
+}
+
+namespace {
+
+// The bin of each particle.
+std::vector<int> bins_of_particles(const State& state) {
+  std::vector<int> of(state.particles.size(), -1);
+  for (std::size_t b = 0; b < state.bins.size(); ++b) {
+    for (int q = state.bins[b].first; q < state.bins[b].last; ++q)
+      of[static_cast<std::size_t>(q)] = static_cast<int>(b);
+  }
+  return of;
+}
+
+BondSensor::Entry& entry_at(BondSensor& sensor, int slot) {
+  for (BondSensor::Entry& entry : sensor.entries) {
+    if (entry.slot == slot) return entry;
+  }
+  return sensor.entries.emplace_back(BondSensor::Entry{slot, 0.0, 0.0, 0.0, 0.0});
+}
+
+void add_sample(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
+                const StressSample& sample, const Bin& bin, const Vec2& n, BondSensor& sensor) {
+  const Particles& p = state.particles;
+  const auto q = static_cast<std::size_t>(sample.particle);
+  const Elasticity& rock = rocks[p.rock[q]];
+  const Stress change = stress_of(rock, p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]);
+  sensor.base -= sample.weight * (p.in_situ[q] + change).on(n);
+  const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]);
+  for (std::size_t k = 0; k < 9; ++k) {
+    const auto r = static_cast<std::size_t>(bin.record[k]);
+    const Master& master = state.masters[r];
+    const Vec2 by_x = sample.weight * stress_of(rock, g.N_x[k], g.N_y[k], 0.0, 0.0).on(n);
+    const Vec2 by_y = sample.weight * stress_of(rock, 0.0, 0.0, g.N_x[k], g.N_y[k]).on(n);
+    BondSensor::Entry& entry = entry_at(sensor, state.total.op->slots.of_record[r]);
+    entry.xx -= master.x * by_x.x(), entry.yx -= master.x * by_x.y();
+    entry.xy -= master.y * by_y.x(), entry.yy -= master.y * by_y.y();
+  }
+}
+
+}  // namespace
+
+std::vector<BondSensor> make_bond_sensors(const Scene& scene, const std::vector<Elasticity>& rocks,
+                                          const State& state) {
+  std::vector<BondSensor> sensors;
+  const std::vector<int> bin_of = bins_of_particles(state);
+  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
+    const Surface& surface = state.surfaces[k];
+    for (std::size_t q = 0; q < state.stress_samples[k].size(); ++q) {
+      const SurfacePoint& s = surface.points[q];
+      if (s.split) continue;
+      BondSensor sensor;
+      sensor.surface = static_cast<int>(k), sensor.point = static_cast<int>(q);
+      for (const StressSample& sample : state.stress_samples[k][q]) {
+        const int b = bin_of[static_cast<std::size_t>(sample.particle)];
+        add_sample(scene, rocks, state, sample, state.bins[static_cast<std::size_t>(b)], s.n, sensor);
+      }
+      sensors.push_back(std::move(sensor));
+    }
+  }
+  return sensors;
+}
+
+bool any_bond_fails(const Scene& scene, const State& state) {
+  const TotalMotion& t = state.total;
+  for (const BondSensor& sensor : t.bonds) {
+    Vec2 carried = sensor.base;
+    for (const BondSensor::Entry& e : sensor.entries) {
+      const auto slot = static_cast<std::size_t>(e.slot);
+      carried.x() += e.xx * t.u_x[slot] + e.xy * t.u_y[slot];
+      carried.y() += e.yx * t.u_x[slot] + e.yy * t.u_y[slot];
+    }
+    const Surface& surface = state.surfaces[static_cast<std::size_t>(sensor.surface)];
+    const SurfacePoint& s = surface.points[static_cast<std::size_t>(sensor.point)];
+    if (fails(scene.laws[surface.law], {carried.dot(s.n), carried.dot(tangent_of(s))})) return true;
+  }
+  return false;
+}
+
+}  // namespace strata

@@ -1,0 +1,28 @@
+// Surfaces under kinematics = "total": what each step does at them, set up once for all steps between two events.
+#pragma once
+
+#include <vector>
+
+#include "state/elasticity.hpp"
+#include "state/state.hpp"
+
+namespace strata {
+
+/// The split places of a state and what they reach, over slots. Weights of stencils must be known
+/// (update_stencil_weights()), and state.total.m.
+TotalSurfaces make_total_surfaces(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state);
+
+/// One step of all split places: net tractions (add_net_tractions()), reactions (solve_reactions()) and jumps
+/// (follow_surfaces()), with their shares of the ledger and the monitors. What they exert is added to the accelerations
+/// of the nodes, state.total.a_x and a_y. Returns its power sum m v . a at the velocities of the step's end (W/m).
+/// keep: share of its velocity that a node keeps.
+double step_surfaces(double keep, State& state);
+
+/// The bonded places that may fail, with their tractions as linear functions of the nodal displacements since the base;
+/// see fail_interfaces().
+std::vector<BondSensor> make_bond_sensors(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state);
+
+/// Whether any bonded place fails under its present traction, by fails().
+bool any_bond_fails(const Scene& scene, const State& state);
+
+}  // namespace strata

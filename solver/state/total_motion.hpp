@@ -1,0 +1,132 @@
+// What kinematics = "total" keeps at the nodes. Particles, surfaces, weights, masses and copies stay as they are from
+// one event (growth, failure) to the next, so that the rock's force is one fixed linear operator of the nodal
+// displacement u_i since the last time the particles were brought up to date, the base:
+//   a_i = a_i at the base - (M^-1 K u)_i.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "scene/scene.hpp"
+#include "state/types.hpp"
+
+namespace strata {
+
+// Nodal arrays are indexed by slots. Slots of a plane are laid out as the grid is, with two more rings of nodes around
+// the block than it has cells' corners; the k-th copy of a node stands in plane k. Neighbours are thus the same number
+// of slots away wherever the same surfaces are beside them.
+struct Slots {
+  static constexpr int ring = 2;
+  int stride = 0;              // slots of a row
+  int plane = 0;               // slots of a plane
+  int size = 0;                // of all planes and what vectors may read beyond
+  std::vector<int> of_record;  // slot of each record's master
+};
+
+struct SlotRange {
+  int first = 0, last = 0;  // slots [first, last)
+};
+
+// A 2 x 2 block of -M^-1 K (1/s^2), of the slot `offset` slots ahead of its row's.
+struct StencilEntry {
+  int offset = 0;
+  double xx = 0.0, xy = 0.0, yx = 0.0, yy = 0.0;
+};
+
+// Slots in a row that share the blocks [entry, entry + full) and, without xy and yx, the next `diagonal` ones.
+struct StencilRun {
+  SlotRange slots;
+  int entry = 0, full = 0, diagonal = 0;
+};
+
+// Blocks of up to eight slots in a row, from `offset` slots ahead on.
+struct alignas(64) StencilSegment {
+  std::array<double, 8> xx{}, xy{}, yx{}, yy{};
+  int offset = 0;
+};
+
+// Slots anywhere that share the segments [first, last).
+struct StencilGroup {
+  int first = 0, last = 0;
+  int slot = 0, slots = 0;  // in StencilOperator::grouped
+};
+
+// A slot beyond a symmetric or fixed side, which runs read, mirrors one inside.
+struct SlotImage {
+  int to = 0, from = 0;
+};
+
+// -M^-1 K of the masters, by slots.
+struct StencilOperator {
+  Slots slots;
+  std::vector<StencilEntry> entries;
+  std::vector<StencilRun> runs;
+  std::vector<StencilSegment> segments;
+  std::vector<StencilGroup> groups;
+  std::vector<int> grouped;
+  std::vector<SlotImage> images;
+  std::vector<int> held_x;         // slots of runs that a side holds
+  std::vector<SlotRange> ranges;   // slots in use, a row of a plane each; sums are taken range by range
+  std::vector<std::size_t> tasks;  // runs and groups of about equal work: runs, then groups, [tasks[k], tasks[k + 1])
+};
+
+// A split place with its jump over slots, w = sum c u: what add_net_tractions(), solve_reactions() and
+// follow_surfaces() do for particles that move.
+struct TotalPlace {
+  struct Entry {
+    int touched = 0;              // index into TotalSurfaces::touched
+    double c_x = 0.0, c_y = 0.0;  // weights in the jump
+    double d_x = 0.0, d_y = 0.0;  // velocity that a traction of 1 Pa on the + face adds in a step (m/s/Pa)
+  };
+  struct Neighbour {
+    int place = 0;
+    double per_x = 0.0, per_y = 0.0;  // rate of its jump that a traction of 1 Pa here adds in a step (m/s/Pa)
+  };
+  int surface = -1;                 // -1: a tip's spring
+  int point = 0;                    // of the surface, or which spring
+  std::size_t law = 0;              // index into TotalSurfaces::laws
+  double k = 0.0;                   // contact stiffness (Pa/m)
+  double per_n = 0.0, per_t = 0.0;  // change of the jump at the step's end per traction (m/Pa)
+  std::vector<Entry> entries;
+  std::vector<Neighbour> neighbours;  // itself among them
+};
+
+struct TotalSurfaces {
+  std::vector<int> touched;  // slots that places reach
+  std::vector<TotalPlace> places;
+  std::vector<InterfaceLaw> laws;                // the scene's, of tips' springs, and of the fracture's faces
+  std::vector<double> free_x, free_y, v_x, v_y;  // of touched slots: velocity without and with what places exert (m/s)
+  std::vector<double> rate_x, rate_y;            // of each place's jump (m/s)
+  std::vector<double> r_t_start;                 // tangential reaction at the step's start (Pa)
+};
+
+// A bonded place that may fail: its traction is `base` + sum of T u over slots.
+struct BondSensor {
+  struct Entry {
+    int slot = 0;
+    double xx = 0.0, xy = 0.0, yx = 0.0, yy = 0.0;  // Pa/m
+  };
+  int surface = 0, point = 0;
+  Vec2 base = Vec2::Zero();  // what it carries, on the + face (Pa)
+  std::vector<Entry> entries;
+};
+
+struct TotalMotion {
+  // Saved: velocities of the records when the particles were last brought up to date (m/s); empty: the particles'.
+  std::vector<Vec2> velocity;
+
+  // Derived.
+  bool based = false;                         // whether what follows belongs to the particles as they are
+  std::shared_ptr<const StencilOperator> op;  // none: the copies have changed
+  std::vector<double> m;                      // kg/m, by slots as all that follows
+  std::vector<double> base_x, base_y;         // acceleration at the base (m/s^2)
+  std::vector<double> a_x, a_y;               // and now
+  std::vector<double> v_x, v_y;               // velocity (m/s)
+  std::vector<double> u_x, u_y;               // displacement since the base (m)
+  TotalSurfaces surfaces;
+  std::vector<BondSensor> bonds;
+};
+
+}  // namespace strata
