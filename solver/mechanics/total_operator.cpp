@@ -16,7 +16,7 @@ typedef double Eight __attribute__((vector_size(64)));
 typedef double EightAnywhere __attribute__((vector_size(64), aligned(8), may_alias));
 
 constexpr int lanes = 8;
-constexpr int shortest_run = lanes;  // a run's last vector overlaps the one before
+constexpr int shortest_run = lanes;
 constexpr int blocks_per_task = 2048;
 
 Eight load(const double* from) {
@@ -188,10 +188,18 @@ void apply_run(const StencilOperator& op, const StencilRun& run, TotalMotion& t)
   const StencilEntry* entries = op.entries.data() + run.entry;
   auto at = static_cast<std::size_t>(run.slots.first);
   const auto last = static_cast<std::size_t>(run.slots.last);
-  constexpr std::size_t four = 4 * lanes, one = lanes;
+  constexpr std::size_t four = 4 * lanes;
   for (; at + four <= last; at += four) apply_block<4>(entries, run, at, t);
-  for (; at + one <= last; at += one) apply_block<1>(entries, run, at, t);
-  if (at < last) apply_block<1>(entries, run, last - one, t);
+  // What is left in as few vectors as hold it; they begin before it where it does not fill them.
+  const std::size_t vectors = (last - at + lanes - 1) / lanes;
+  if (last - static_cast<std::size_t>(run.slots.first) < vectors * lanes) {
+    for (; at + lanes <= last; at += lanes) apply_block<1>(entries, run, at, t);
+    if (at < last) apply_block<1>(entries, run, last - lanes, t);
+    return;
+  }
+  if (vectors == 3) apply_block<3>(entries, run, last - 3 * lanes, t);
+  if (vectors == 2) apply_block<2>(entries, run, last - 2 * lanes, t);
+  if (vectors == 1) apply_block<1>(entries, run, last - lanes, t);
 }
 
 double sum(const Eight& v) {
