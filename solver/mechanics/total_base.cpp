@@ -13,14 +13,31 @@ namespace strata {
 
 namespace {
 
+template <class Shape>
+Gradients gradients_of(const Grid& grid, const Bin& bin, const Vec2& x, double half) {
+  const Weights X = weights_x<Shape>(grid, bin.i, x.x(), half), Y = weights_y<Shape>(grid, bin.j, x.y(), half);
+  const double per_x = 1.0 / grid.span_x(bin.i), per_y = 1.0 / grid.span_y(bin.j);
+  Gradients out;
+  for (std::size_t b = 0; b < 3; ++b) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      out.N[3 * b + a] = X.N[a] * Y.N[b];
+      out.N_x[3 * b + a] = X.dN[a] * Y.N[b] * per_x;
+      out.N_y[3 * b + a] = X.N[a] * Y.dN[b] * per_y;
+    }
+  }
+  return out;
+}
+
 // Calls visit(bin, particle, its weights) for all particles, bin by bin.
 template <class Visit>
 void for_each_particle(const Scene& scene, const State& state, Visit visit) {
   const Particles& p = state.particles;
-  for (const Bin& bin : state.bins) {
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q)
-      visit(bin, q, gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]));
-  }
+  with_shape(scene.numerics.shape, [&](auto shape) {
+    for (const Bin& bin : state.bins) {
+      for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q)
+        visit(bin, q, gradients_of<decltype(shape)>(state.grid, bin, {p.x[q], p.y[q]}, p.half[q]));
+    }
+  });
 }
 
 Vec2 interpolate(const Gradients& g, const Bin& bin, const std::vector<Vec2>& v) {
@@ -63,6 +80,21 @@ void velocities_from_particles(const Scene& scene, State& state) {
   for (int pass = 0; pass < passes; ++pass) correct_velocities(scene, state, state.total.velocity);
 }
 
+// Masses and the particles' own forces, m_i = sum_p N_ip m_p and f_i = -sum_p V_p sigma_p grad N_ip.
+void sum_particles(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+  std::fill(state.sums.begin(), state.sums.end(), NodeSums{});
+  const Particles& p = state.particles;
+  for_each_particle(scene, state, [&](const Bin& bin, std::size_t q, const Gradients& g) {
+    const Stress s = p.V[q] * stress_of(rocks[p.rock[q]], p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]);
+    for (std::size_t n = 0; n < 9; ++n) {
+      NodeSums& record = state.sums[static_cast<std::size_t>(bin.record[n])];
+      record.m += g.N[n] * p.m[q];
+      record.f_x -= s.xx * g.N_x[n] + s.xy * g.N_y[n];
+      record.f_y -= s.xy * g.N_x[n] + s.yy * g.N_y[n];
+    }
+  });
+}
+
 void fill_nodes(State& state) {
   TotalMotion& t = state.total;
   const auto n = static_cast<std::size_t>(t.op->slots.size);
@@ -97,10 +129,7 @@ void move_surfaces(const std::vector<NodeMotion>& by, State& state) {
 void start_base(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
   TotalMotion& t = state.total;
   if (t.based) return;
-  const std::vector<Vec2> body = std::move(state.body);  // enters each step, and not the base
-  state.body.clear();
-  particles_to_grid(scene, rocks, state);
-  state.body = body;
+  sum_particles(scene, rocks, state);
   update_stencil_weights(scene, state);
   fold_to_masters(state, state.sums);
   if (!t.op) t.op = std::make_shared<const StencilOperator>(make_operator(scene, rocks, state));
