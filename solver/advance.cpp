@@ -11,6 +11,7 @@
 #include "mechanics/interface_laws.hpp"
 #include "mechanics/surface_tractions.hpp"
 #include "mechanics/tip_ties.hpp"
+#include "mechanics/total_base.hpp"
 #include "mechanics/transfers.hpp"
 #include "state/body_force.hpp"
 #include "state/rebuild.hpp"
@@ -80,6 +81,10 @@ void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& st
   const bool grow_now = grows && (state.step + 1) % scene.numerics.tip_steps == 0;
   const bool total = scene.numerics.kinematics == Numerics::Kinematics::total;
   (total ? advance_total : advance_updated)(scene, rocks, look || grow_now, grow_now, state);
+}
+
+void complete_particles(const Scene& scene, State& state) {
+  bring_up_to_date(scene, state);
 }
 
 }  // namespace strata

@@ -16,7 +16,6 @@
 #include "advance_quasistatic.hpp"
 #include "advance_total.hpp"
 #include "initialise.hpp"
-#include "mechanics/total_base.hpp"
 #include "output/progress.hpp"
 #include "output/recorder.hpp"
 #include "output/summary.hpp"
@@ -112,7 +111,7 @@ void complete_fields(Run& run) {
   if (run.statics) {
     set_all_particles(run.scene, run.state, run.statics->model);
   } else {
-    bring_up_to_date(run.scene, run.state);
+    complete_particles(run.scene, run.state);
     run.state.ledger.strain = strain_energy(run.rocks, run.state.particles);
   }
 }

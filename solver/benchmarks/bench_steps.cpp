@@ -62,7 +62,7 @@ void add_step(Shop& shop, const std::string& group, const StepCase& c) {
     Workpiece& work = shop.get(order);
     const auto particles = static_cast<double>(work.state.particles.size());
     const About about{label, c.threads, particles, flop_a_particle(c.shape), bytes_a_particle(c.points)};
-    time_work(bench, shop, about, [&] { advance(work.scene, work.rocks, work.state); });
+    time_work(bench, shop, about, [&] { advance(work.scene, work.rocks, work.state, false); });
     bench.counters["particles"] = particles;
   });
 }
