@@ -197,6 +197,7 @@ void apply_run(const StencilOperator& op, const StencilRun& run, TotalMotion& t)
     if (at < last) apply_block<1>(entries, run, last - lanes, t);
     return;
   }
+  if (vectors == 4) apply_block<4>(entries, run, last - four, t);
   if (vectors == 3) apply_block<3>(entries, run, last - 3 * lanes, t);
   if (vectors == 2) apply_block<2>(entries, run, last - 2 * lanes, t);
   if (vectors == 1) apply_block<1>(entries, run, last - lanes, t);
