@@ -173,10 +173,16 @@ double relax(double dt, std::size_t k, SurfacePoint& s, TotalSurfaces& surfaces)
 void find_reactions(State& state, TotalSurfaces& surfaces) {
   constexpr double tolerance = 1e-6;  // both as in solve_reactions()
   constexpr int most_sweeps = 200;
+  // With fewer, what the tolerance leaves keeps nodes trembling: a bar on a stiff spring came to rest at a kinetic
+  // energy of 3e-17 J instead of 7e-33 J.
+  constexpr int least_sweeps = 4;
   if (surfaces.places.empty()) return;
   int sweeps = 0;
-  for (double change = 1.0, largest = 0.0; sweeps < most_sweeps && change > tolerance * std::max(largest, 1.0);
-       ++sweeps) {
+  const auto goes_on = [&](double change, double largest) {
+    if (sweeps < least_sweeps) return change > 0.0;
+    return sweeps < most_sweeps && change > tolerance * std::max(largest, 1.0);
+  };
+  for (double change = 1.0, largest = 0.0; goes_on(change, largest); ++sweeps) {
     change = largest = 0.0;
     for (std::size_t k = 0; k < surfaces.places.size(); ++k) {
       SurfacePoint& s = point_of(state, surfaces.places[k]);
