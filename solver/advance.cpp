@@ -33,7 +33,6 @@ void close_ledger(const Scene& scene, const GridEnergy& grid, const GridEnergyAf
   }
   ledger.kinetic = particles.after;
   ledger.transfer += (after.kinetic - grid.mapped) - (particles.after - particles.before);
-  ledger.body_work += particles.body_work;
   ledger.integration += after.increment - particles.step_strain;
   ledger.interface_strain = spring_energy(scene, state);
   Monitors& monitors = state.monitors;
@@ -44,21 +43,22 @@ void close_ledger(const Scene& scene, const GridEnergy& grid, const GridEnergyAf
 }
 
 void advance_updated(const Scene& scene, const std::vector<Elasticity>& rocks, bool look, bool grow_now, State& state) {
-  advance_pressure(scene, state);                   // P(s) from the opening at the step's start
-  set_body_acceleration(scene, state.time, state);  // b(X_p, t)
-  particles_to_grid(scene, rocks, state);           // m_i, mom_i, f_i
-  update_stencil_weights(scene, state);             // N_i(x_s) of D
-  add_net_tractions(state);                         // f_i += D^T (P n - t_in_situ) A
-  fold_to_masters(state, state.sums);               // symmetric and fixed edges
+  advance_pressure(scene, state);                               // P(s) from the opening at the step's start
+  set_body_acceleration(scene, state.time, state);              // b(X_p, t)
+  if (!state.gathered) particles_to_grid(scene, rocks, state);  // m_i, mom_i, f_i
+  add_body_force(scene, state);                                 // f_i += sum N m b
+  update_stencil_weights(scene, state);                         // N_i(x_s) of D
+  add_net_tractions(state);                                     // f_i += D^T (P n - t_in_situ) A
+  fold_to_masters(state, state.sums);                           // symmetric and fixed edges
   const GridEnergy grid = advance_momentum(scene.numerics.damping_1_s, state);  // v_i = mom_i/m_i + dt f_i/m_i
   solve_reactions(scene, rocks, state);  // contact, friction, springs at the step's end
   const GridEnergyAfter after = grid_energy(state);
   spread_to_tied(state);
-  const std::vector<NodeMotion> by_forces = state.motion;  // J takes accelerations from it
-  const double keep = prepare_transfer(scene, state);      // FLIP, PIC or XPIC
-  // v_p, x_p, grad u_p (and with it stress)
-  const ParticleReport particles = grid_to_particles(scene, rocks, state, keep);
-  state.motion = by_forces;
+  state.ledger.body_work += body_work(state);
+  const Uptake uptake = prepare_transfer(scene, state);  // FLIP, PIC or XPIC
+  // v_p, x_p, grad u_p (and with it stress), and with fast kernels the next step's m_i, mom_i, f_i
+  const auto move_particles = scene.numerics.in_lanes() ? sweep_particles : grid_to_particles;
+  const ParticleReport particles = move_particles(scene, rocks, uptake, state);
   follow_surfaces(scene, state);  // w += dt D v
   state.time += state.dt;
   ++state.step;

@@ -23,12 +23,17 @@ void add_stage(Shop& shop, const std::string& stage, const Order& order, int thr
   add(fmt::format("stage/{}/threads{}", stage, threads), iterations, [&shop, order, threads, stage, run](auto& bench) {
     Workpiece& work = shop.get(order);
     advance(work.scene, work.rocks, work.state);
-    std::fill(work.state.motion.begin(), work.state.motion.end(), NodeMotion{});
+    work.state.motion.clear(work.state.motion.size());
     const auto particles = static_cast<double>(work.state.particles.size());
     const About about{fmt::format("stage={} threads={}", stage, threads), threads, particles, 0.0, 0.0};
     time_work(bench, shop, about, [&] { run(work); });
     bench.counters["particles"] = particles;
   });
+}
+
+// What FLIP takes up.
+Uptake increments(const State& state) {
+  return {1.0, &state.motion.dv_x, &state.motion.dv_y};
 }
 
 // Split places of all surfaces and springs of tips: what a contact solve is about.
@@ -87,14 +92,16 @@ void add_stages(Shop& shop) {
     add_stage(shop, "particles_to_grid", block, threads, 50,
               [](Workpiece& w) { particles_to_grid(w.scene, w.rocks, w.state); });
     add_stage(shop, "grid_to_particles", block, threads, 50,
-              [](Workpiece& w) { grid_to_particles(w.scene, w.rocks, w.state, 1.0); });
+              [](Workpiece& w) { grid_to_particles(w.scene, w.rocks, increments(w.state), w.state); });
+    add_stage(shop, "sweep_particles", block, threads, 50,
+              [](Workpiece& w) { sweep_particles(w.scene, w.rocks, increments(w.state), w.state); });
   }
   add_stage(shop, "momentum", block, 1, 500, [](Workpiece& w) {
     fold_to_masters(w.state, w.state.sums);
     advance_momentum(0.0, w.state);
     grid_energy(w.state);
     spread_to_tied(w.state);
-    std::fill(w.state.motion.begin(), w.state.motion.end(), NodeMotion{});
+    w.state.motion.clear(w.state.motion.size());
   });
   add_stage(shop, "surfaces", block, 1, 2000, [](Workpiece& w) {
     update_stencil_weights(w.scene, w.state);

@@ -74,6 +74,9 @@ struct Sums {
   std::array<double, 2> I{};  // interaction with unit K_I and unit K_II
 };
 
+using Rings = std::array<Ring, ring_fractions.size()>;
+using RingSums = std::array<Sums, ring_fractions.size()>;
+
 // Fields at a particle in the tip's frame.
 struct LocalFields {
   double r = 0.0, theta = 0.0;
@@ -112,8 +115,7 @@ AuxiliaryFields williams(const Elasticity& rock, int mode, double r, double thet
   return aux;
 }
 
-void add_domain(const Elasticity& rock, const LocalFields& p, std::span<const Weight> weights,
-                std::vector<Sums>& sums) {
+void add_domain(const Elasticity& rock, const LocalFields& p, std::span<const Weight> weights, RingSums& sums) {
   const Vec2 u_1{p.H[0][0], p.H[1][0]};
   const double e_12 = 0.5 * (p.H[0][1] + p.H[1][0]);
   const double W = 0.5 * (p.s.xx * p.H[0][0] + p.s.yy * p.H[1][1] + 2.0 * p.s.xy * e_12);
@@ -206,7 +208,7 @@ bool out_of_reach(const Grid& g, const Vec2& tip, const Ring& ring, const Bin& b
 
 // Adds the particles of a bin to the sums of all rings; a bin that no ring weighs adds nothing.
 void add_bin(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Frame& frame,
-             const std::vector<Ring>& rings, const Bin& bin, std::vector<Sums>& sums) {
+             const Rings& rings, const Bin& bin, RingSums& sums) {
   if (out_of_reach(state.grid, frame.tip, rings.back(), bin)) return;
   std::array<NodalWeights, ring_fractions.size()> nodes;
   bool any = false;
@@ -216,7 +218,8 @@ void add_bin(const Scene& scene, const std::vector<Elasticity>& rocks, const Sta
   }
   if (!any) return;
   std::array<Weight, ring_fractions.size()> weights;
-  for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
+  for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+       q += static_cast<std::size_t>(bin.stride)) {
     const Vec2 x{state.particles.x[q], state.particles.y[q]};
     for (std::size_t k = 0; k < rings.size(); ++k) weights[k] = weight_at(state.grid, frame, nodes[k], bin.i, bin.j, x);
     const Elasticity& own = rocks[state.particles.rock[q]];
@@ -227,7 +230,7 @@ void add_bin(const Scene& scene, const std::vector<Elasticity>& rocks, const Sta
 // Face terms: w . d(t q)/ds of J, and of the interaction integral + t 4/E' q/sqrt(2 pi r) dr, exact for t constant on a
 // piece.
 void add_faces(const Elasticity& rock, const Grid& grid, const Surface& fracture, const Frame& frame, bool at_back,
-               const std::vector<Ring>& rings, std::vector<Sums>& sums) {
+               const Rings& rings, RingSums& sums) {
   const auto& points = fracture.points;
   const auto n = static_cast<std::ptrdiff_t>(points.size());
   const auto net = [&](std::ptrdiff_t k) -> Vec2 {
@@ -312,8 +315,7 @@ Vec2 mean_direction(const Surface& fracture, bool at_back, double back) {
   return (tip - from).normalized();
 }
 
-void finish_tip(const Scene& scene, const Elasticity& rock, const State& state, const std::vector<Sums>& sums,
-                Tip& tip) {
+void finish_tip(const Scene& scene, const Elasticity& rock, const State& state, const RingSums& sums, Tip& tip) {
   double mean = 0.0, K_I = 0.0, K_II = 0.0, least = sums[0].J, most = sums[0].J;
   for (const Sums& sum : sums) {
     mean += sum.J / static_cast<double>(sums.size());
@@ -348,10 +350,10 @@ void measure_tips(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
     tip.ring_m = ring_radius(scene, state, tip, frame.tip, tip.at_interface);
     frame.e_1 = mean_direction(fracture, tip.at_back, tip.ring_m);
     frame.e_2 = {-frame.e_1.y(), frame.e_1.x()};
-    std::vector<Ring> rings;
-    for (const double fraction : ring_fractions)
-      rings.push_back({inner_fraction * fraction * tip.ring_m, fraction * tip.ring_m});
-    std::vector<Sums> sums(rings.size());
+    Rings rings;
+    for (std::size_t k = 0; k < rings.size(); ++k)
+      rings[k] = {inner_fraction * ring_fractions[k] * tip.ring_m, ring_fractions[k] * tip.ring_m};
+    RingSums sums{};
     const Elasticity& rock = rocks[rock_at(scene, frame.tip + ahead_cells * state.grid.h * frame.e_1)];
     const double reach = tip.ring_m + 2.0 * state.grid.h;
     for (const Bin& bin : state.bins) {

@@ -32,7 +32,8 @@ std::vector<std::uint64_t> fingerprints(const State& state) {
   for (const Bin& bin : state.bins) {
     if (std::none_of(bin.record.begin(), bin.record.end(), [&](int r) { return is_cut(state, r); })) continue;
     std::uint64_t sum = 0;
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q)
+    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+         q += static_cast<std::size_t>(bin.stride))
       sum += fingerprint(state.particles, q);
     for (const int record : bin.record) prints[static_cast<std::size_t>(record)] += sum;
   }
@@ -152,7 +153,7 @@ std::vector<Entries> assemble_jumps(const Scene& scene, const std::vector<Elasti
     for (; b < state.bins.size() && state.bins[b].i == first.i && state.bins[b].j == first.j; ++b) {
       const Bin& bin = state.bins[b];
       any = any || touches_new(bin);
-      for (int q = bin.first; q < bin.last; ++q)
+      for (int q = bin.first; q < bin.last; q += bin.stride)
         members.push_back({p.id[static_cast<std::size_t>(q)], static_cast<std::size_t>(q), &bin});
     }
     if (!any) continue;
@@ -265,7 +266,8 @@ void remove_rigid_motion(const Scene& scene, const State& state, bool halved, st
   Vec2 mean = Vec2::Zero();
   double turn = 0.0, polar = 0.0, area = 0.0;
   for (const Bin& bin : state.bins) {
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
+    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+         q += static_cast<std::size_t>(bin.stride)) {
       const Vec2 x{p.x[q], p.y[q]};
       const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, x, p.half[q]);
       Vec2 u_p = Vec2::Zero();

@@ -83,7 +83,8 @@ void load_in_situ(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
   const Eigen::VectorXd u = factor.solve(f);
   Particles& p = state.particles;
   for (const Bin& bin : state.bins) {
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
+    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+         q += static_cast<std::size_t>(bin.stride)) {
       const Gradients g = gradients_at(loaded, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]);
       double e[2][2] = {};
       for (std::size_t n = 0; n < 9; ++n) {

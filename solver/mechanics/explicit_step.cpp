@@ -1,78 +1,111 @@
 #include "mechanics/explicit_step.hpp"
 
-#include "mechanics/transfers.hpp"
+#include <algorithm>
+#include <array>
+
+#include "state/lanes.hpp"
 
 namespace strata {
 
-GridEnergy advance_momentum(double damping, State& state) {
-  GridEnergy energy;
-  const double keep = 1.0 - damping * state.dt;
-  const auto n = static_cast<std::size_t>(state.copies.records());
-  for (std::size_t r = 0; r < n; ++r) {
-    const NodeSums& sum = state.sums[r];
-    NodeMotion& node = state.motion[r];
-    if (!(sum.m > 0.0)) {
-      node = NodeMotion{};
-      continue;
-    }
-    const double v_x = sum.mom_x / sum.m, v_y = sum.mom_y / sum.m;
-    const double mapped = 0.5 * sum.m * (v_x * v_x + v_y * v_y);
-    energy.mapped += mapped;
-    energy.damped += keep * keep * mapped;
-    node.dv_x = state.dt * sum.f_x / sum.m, node.dv_y = state.dt * sum.f_y / sum.m;
-    node.v_x = keep * v_x + node.dv_x, node.v_y = keep * v_y + node.dv_y;
+namespace {
+
+// Calls work(lanes, r, sum) for all of n records, some lanes from record r on at a time, and returns the sum; parts of
+// it are formed over fixed ranges of records, so that its digits do not depend on the number of threads.
+template <class Sum, class Work>
+Sum over_records(std::size_t n, Work work) {
+  constexpr std::size_t parts = 32, W = most_lanes;
+  constexpr std::size_t worth_threads = 8192;  // records; threads that have less to do wait longer than they work
+  const std::size_t length = (n + W * parts - 1) / (W * parts) * W;
+  std::array<Sum, parts> sums{};
+#pragma omp parallel for schedule(static) if (n > worth_threads)
+  for (std::size_t part = 0; part < parts; ++part) {
+    const std::size_t last = std::min(n, (part + 1) * length);
+    std::size_t r = part * length;
+    for (; r + W <= last; r += W) work(AllLanes{}, r, sums[part]);
+    if (r < last) work(FirstLanes{static_cast<int>(last - r)}, r, sums[part]);
   }
-  state.ledger.damping += energy.mapped - energy.damped;
-  return energy;
+  Sum total;
+  for (const Sum& sum : sums) total += sum;
+  return total;
+}
+
+struct LaneEnergies {
+  Lane first{}, second{};
+  LaneEnergies& operator+=(const LaneEnergies& other) {
+    first += other.first, second += other.second;
+    return *this;
+  }
+};
+
+}  // namespace
+
+GridEnergy advance_momentum(double damping, State& state) {
+  const double keep = 1.0 - damping * state.dt, dt = state.dt;
+  const NodalSums& sums = state.sums;
+  NodalMotion& motion = state.motion;
+  const auto energy = over_records<LaneEnergies>(sums.size(), [&](auto lanes, std::size_t r, LaneEnergies& sum) {
+    const Lane zero{}, m = lanes.load(sums.m.data() + r), per_m = m > 0.0 ? 1.0 / m : zero;
+    const Lane v_x = per_m * lanes.load(sums.mom_x.data() + r), v_y = per_m * lanes.load(sums.mom_y.data() + r);
+    const Lane dv_x = dt * per_m * lanes.load(sums.f_x.data() + r), dv_y = dt * per_m * lanes.load(sums.f_y.data() + r);
+    sum.first += m * (v_x * v_x + v_y * v_y);
+    lanes.store(motion.dv_x.data() + r, dv_x), lanes.store(motion.dv_y.data() + r, dv_y);
+    lanes.store(motion.v_x.data() + r, keep * v_x + dv_x), lanes.store(motion.v_y.data() + r, keep * v_y + dv_y);
+  });
+  const double mapped = 0.5 * sum_of_lanes(energy.first);
+  state.ledger.damping += mapped - keep * keep * mapped;
+  return {mapped, keep * keep * mapped};
 }
 
 GridEnergyAfter grid_energy(const State& state) {
-  GridEnergyAfter energy;
-  for (std::size_t r = 0; r < state.sums.size(); ++r) {
-    const NodeMotion& node = state.motion[r];
-    const double half_m = 0.5 * state.sums[r].m;
-    energy.kinetic += half_m * (node.v_x * node.v_x + node.v_y * node.v_y);
-    energy.increment += half_m * (node.dv_x * node.dv_x + node.dv_y * node.dv_y);
-  }
-  return energy;
+  const NodalSums& sums = state.sums;
+  const NodalMotion& motion = state.motion;
+  const auto energy = over_records<LaneEnergies>(sums.size(), [&](auto lanes, std::size_t r, LaneEnergies& sum) {
+    const Lane m = lanes.load(sums.m.data() + r);
+    const Lane v_x = lanes.load(motion.v_x.data() + r), v_y = lanes.load(motion.v_y.data() + r);
+    const Lane dv_x = lanes.load(motion.dv_x.data() + r), dv_y = lanes.load(motion.dv_y.data() + r);
+    sum.first += m * (v_x * v_x + v_y * v_y), sum.second += m * (dv_x * dv_x + dv_y * dv_y);
+  });
+  return {0.5 * sum_of_lanes(energy.first), 0.5 * sum_of_lanes(energy.second)};
 }
 
 void spread_to_tied(State& state) {
   for (const int record : state.tied) {
     const Master& master = state.masters[static_cast<std::size_t>(record)];
-    const NodeMotion& from = state.motion[static_cast<std::size_t>(master.record)];
-    state.motion[static_cast<std::size_t>(record)] = {master.x * from.v_x, master.y * from.v_y, master.x * from.dv_x,
-                                                      master.y * from.dv_y};
+    const NodeMotion from = state.motion[static_cast<std::size_t>(master.record)];
+    state.motion[static_cast<std::size_t>(record)] =
+        NodeMotion{master.x * from.v_x, master.y * from.v_y, master.x * from.dv_x, master.y * from.dv_y};
   }
 }
 
-double prepare_transfer(const Scene& scene, State& state) {
+double body_work(const State& state) {
+  if (state.body.empty()) return 0.0;
+  double power = 0.0;
+  for (std::size_t r = 0; r < state.motion.size(); ++r)
+    power += state.body_sums.f_x[r] * state.motion.v_x[r] + state.body_sums.f_y[r] * state.motion.v_y[r];
+  return state.dt * power;
+}
+
+Uptake prepare_transfer(const Scene& scene, State& state) {
   using Transfer = Numerics::Transfer;
+  const NodalMotion& motion = state.motion;
   const double keep = 1.0 - scene.numerics.damping_1_s * state.dt;
-  if (scene.numerics.transfer == Transfer::flip) return keep;
-  if (scene.numerics.transfer == Transfer::pic) {
-    for (NodeMotion& node : state.motion) node.dv_x = node.v_x, node.dv_y = node.v_y;
-    return 0.0;
-  }
+  if (scene.numerics.transfer == Transfer::flip) return {keep, &motion.dv_x, &motion.dv_y};
+  if (scene.numerics.transfer == Transfer::pic) return {0.0, &motion.v_x, &motion.v_y};
   // XPIC(2): v_p = S (2 v - v**) + S dv, with v the mapped velocity and v** = S^+ S v.
-  std::vector<Vec2> v(state.motion.size());
-  for (std::size_t r = 0; r < v.size(); ++r) {
-    const NodeMotion& node = state.motion[r];
-    v[r] = Vec2{node.v_x - node.dv_x, node.v_y - node.dv_y};
-  }
-  const std::vector<Vec2> filtered = filter_velocity(scene, state, v);
-  for (std::size_t r = 0; r < v.size(); ++r) {
-    NodeMotion& node = state.motion[r];
-    node.dv_x = node.v_x + v[r].x() - filtered[r].x();
-    node.dv_y = node.v_y + v[r].y() - filtered[r].y();
+  filter_velocity(scene, state);
+  const NodalSums& filtered = state.filtered;
+  state.take_x.resize(motion.size()), state.take_y.resize(motion.size());
+  for (std::size_t r = 0; r < motion.size(); ++r) {
+    const double per_m = filtered.m[r] > 0.0 ? 1.0 / filtered.m[r] : 0.0;
+    state.take_x[r] = 2.0 * motion.v_x[r] - motion.dv_x[r] - per_m * filtered.mom_x[r];
+    state.take_y[r] = 2.0 * motion.v_y[r] - motion.dv_y[r] - per_m * filtered.mom_y[r];
   }
   for (const int record : state.tied) {  // filtered velocities came back at the masters
     const Master& master = state.masters[static_cast<std::size_t>(record)];
-    const NodeMotion& from = state.motion[static_cast<std::size_t>(master.record)];
-    NodeMotion& node = state.motion[static_cast<std::size_t>(record)];
-    node.dv_x = master.x * from.dv_x, node.dv_y = master.y * from.dv_y;
+    const auto r = static_cast<std::size_t>(record), from = static_cast<std::size_t>(master.record);
+    state.take_x[r] = master.x * state.take_x[from], state.take_y[r] = master.y * state.take_y[from];
   }
-  return 0.0;
+  return {0.0, &state.take_x, &state.take_y};
 }
 
 double time_step(const Scene& scene, double fastest) {

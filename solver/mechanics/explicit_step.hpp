@@ -1,6 +1,7 @@
 // The nodal part of an explicit step, between the two loops over particles.
 #pragma once
 
+#include "mechanics/transfers.hpp"
 #include "state/state.hpp"
 
 namespace strata {
@@ -30,9 +31,13 @@ GridEnergyAfter grid_energy(const State& state);
 /// Gives tied records the motion of their masters.
 void spread_to_tied(State& state);
 
-/// Fills NodeMotion::dv with what particles take up under the scene's transfer (see grid_to_particles) and returns the
-/// share of their own velocity they keep: FLIP 1 - damping dt, PIC and XPIC(2) 0.
-double prepare_transfer(const Scene& scene, State& state);
+/// Work of the body force in the step, dt sum_i f_i . v_i (J/m), from what add_body_force() left; tied records must
+/// have their motion.
+double body_work(const State& state);
+
+/// What particles take up under the scene's transfer, and the share of their own velocity they keep: FLIP dv and
+/// 1 - damping dt; PIC v and XPIC(2) 2 v - v** + dv with the mapped v, and nothing.
+Uptake prepare_transfer(const Scene& scene, State& state);
 
 /// Time step (s): courant h/c_P of the fastest rock. The limits are 1.17 (B-spline) and 0.91 (linear) times h/c_P by
 /// the largest eigenvalue of M^-1 K, and 4/(2 - S) instead of 4 in (omega dt)^2 where the transfer smooths

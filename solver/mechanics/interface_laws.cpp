@@ -34,20 +34,7 @@ Reaction admissible(const InterfaceLaw& law, Reaction r) {
   return {n, std::clamp(r.t, -mu * n, mu * n)};
 }
 
-// A split place with its stencil folded to master records: jump = sum_k (c_x v_x, c_y v_y).
-struct Place {
-  SurfacePoint* s = nullptr;
-  const InterfaceLaw* law = nullptr;
-  double k = 0.0;          // contact stiffness (Pa/m)
-  double r_t_start = 0.0;  // tangential reaction at the start of the step (Pa)
-  std::array<int, 18> record{};
-  std::array<double, 18> c_x{}, c_y{};  // weights in the jump
-  std::array<double, 18> d_x{}, d_y{};  // velocity per unit of reaction (m/s/Pa)
-  int n = 0;
-  double per_n = 0.0, per_t = 0.0;
-};
-
-void add_entry(Place& place, const Master& master, double weight) {
+void add_entry(SplitPlace& place, const Master& master, double weight) {
   int k = 0;
   while (k < place.n && place.record[static_cast<std::size_t>(k)] != master.record) ++k;
   if (k == place.n) place.record[static_cast<std::size_t>(place.n++)] = master.record;
@@ -59,9 +46,9 @@ Vec2 tangent_of(const SurfacePoint& s) {
   return {s.n.y(), -s.n.x()};
 }
 
-Place make_place(const State& state, const SurfaceStencil& stencil, SurfacePoint& s, const InterfaceLaw& law,
-                 double k) {
-  Place place;
+SplitPlace make_place(const State& state, const SurfaceStencil& stencil, SurfacePoint& s, const InterfaceLaw& law,
+                      double k) {
+  SplitPlace place;
   place.s = &s;
   place.law = &law;
   place.k = k;
@@ -84,18 +71,18 @@ Place make_place(const State& state, const SurfaceStencil& stencil, SurfacePoint
   return place;
 }
 
-void push(const Place& place, const Vec2& r, std::vector<NodeMotion>& motion) {
+void push(const SplitPlace& place, const Vec2& r, NodalMotion& motion) {
   for (std::size_t k = 0; k < static_cast<std::size_t>(place.n); ++k) {
-    NodeMotion& node = motion[static_cast<std::size_t>(place.record[k])];
+    const NodalMotion::Record node = motion[static_cast<std::size_t>(place.record[k])];
     node.v_x += place.d_x[k] * r.x(), node.dv_x += place.d_x[k] * r.x();
     node.v_y += place.d_y[k] * r.y(), node.dv_y += place.d_y[k] * r.y();
   }
 }
 
-Vec2 jump_rate(const Place& place, const std::vector<NodeMotion>& motion) {
+Vec2 jump_rate(const SplitPlace& place, const NodalMotion& motion) {
   Vec2 v = Vec2::Zero();
   for (std::size_t k = 0; k < static_cast<std::size_t>(place.n); ++k) {
-    const NodeMotion& node = motion[static_cast<std::size_t>(place.record[k])];
+    const NodeMotion node = motion[static_cast<std::size_t>(place.record[k])];
     v.x() += place.c_x[k] * node.v_x;
     v.y() += place.c_y[k] * node.v_y;
   }
@@ -104,7 +91,7 @@ Vec2 jump_rate(const Place& place, const std::vector<NodeMotion>& motion) {
 
 // One visit of successive over-relaxation: past the law's reaction given all others, but never out of what the law
 // allows; returns how much the reaction changed (Pa).
-double relax(const Place& place, double dt, std::vector<NodeMotion>& motion) {
+double relax(const SplitPlace& place, double dt, NodalMotion& motion) {
   SurfacePoint& s = *place.s;
   const Vec2 tangent = tangent_of(s);
   const Vec2 w = s.w + dt * jump_rate(place, motion);
@@ -129,15 +116,17 @@ SurfaceStencil tie_stencil(const TipTie& tie) {
   return stencil;
 }
 
-std::vector<Place> split_places(const Scene& scene, const std::vector<Elasticity>& rocks, State& state,
-                                const InterfaceLaw& faces, const std::vector<InterfaceLaw>& ties) {
-  std::vector<Place> places;
+void find_split_places(const Scene& scene, const std::vector<Elasticity>& rocks, const InterfaceLaw& faces,
+                       State& state) {
+  std::vector<SplitPlace>& places = state.places;
+  places.clear(), state.tie_laws.clear();
+  for (const TipTie& tie : state.ties) state.tie_laws.push_back(tie_law(tie));
   const auto mass = [&](int record) {
     return state.sums[static_cast<std::size_t>(state.masters[static_cast<std::size_t>(record)].record)].m;
   };
   for (std::size_t k = 0; k < state.ties.size(); ++k) {
     if (mass(state.ties[k].plus) == 0.0 || mass(state.ties[k].minus) == 0.0) continue;
-    places.push_back(make_place(state, tie_stencil(state.ties[k]), state.ties[k].s, ties[k], 0.0));
+    places.push_back(make_place(state, tie_stencil(state.ties[k]), state.ties[k].s, state.tie_laws[k], 0.0));
   }
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
     Surface& surface = state.surfaces[k];
@@ -145,11 +134,10 @@ std::vector<Place> split_places(const Scene& scene, const std::vector<Elasticity
     const double stiffness = contact_stiffness(law, rocks, state.grid);
     for (std::size_t q = 0; q < surface.points.size(); ++q) {
       if (!surface.points[q].split) continue;
-      Place place = make_place(state, state.point_stencils[k][q], surface.points[q], law, stiffness);
+      const SplitPlace place = make_place(state, state.point_stencils[k][q], surface.points[q], law, stiffness);
       if (place.n > 0) places.push_back(place);
     }
   }
-  return places;
 }
 
 // Mean total stress over the samples.
@@ -208,8 +196,10 @@ bool fail_interfaces(const Scene& scene, const std::vector<Elasticity>& rocks, S
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
     Surface& surface = state.surfaces[k];
     if (state.stress_samples[k].empty()) continue;
-    std::vector<Vec2> carried(surface.points.size());
-    std::vector<char> failed(surface.points.size(), 0);  // by column; there are fewer columns than points
+    std::vector<Vec2>& carried = state.carried;
+    std::vector<char>& failed = state.failed;
+    carried.resize(surface.points.size());
+    failed.assign(surface.points.size(), 0);  // by column; there are fewer columns than points
     for (std::size_t q = 0; q < surface.points.size(); ++q) {
       const SurfacePoint& s = surface.points[q];
       if (s.split) continue;
@@ -237,22 +227,21 @@ void solve_reactions(const Scene& scene, const std::vector<Elasticity>& rocks, S
   constexpr double tolerance = 1e-6;
   constexpr int most_sweeps = 200;  // bounds the time of a step; steps that end here are counted in the monitors
   const InterfaceLaw faces = face_law();
-  std::vector<InterfaceLaw> ties;
-  for (const TipTie& tie : state.ties) ties.push_back(tie_law(tie));
-  std::vector<Place> places = split_places(scene, rocks, state, faces, ties);
-  for (const Place& place : places) push(place, place.s->reaction, state.motion);
+  find_split_places(scene, rocks, faces, state);
+  const std::vector<SplitPlace>& places = state.places;
+  for (const SplitPlace& place : places) push(place, place.s->reaction, state.motion);
   int sweeps = 0;
   for (double change = 1.0, largest = 0.0;
        sweeps < most_sweeps && !places.empty() && change > tolerance * std::max(largest, 1.0); ++sweeps) {
     change = largest = 0.0;
-    for (const Place& place : places) {
+    for (const SplitPlace& place : places) {
       change = std::max(change, relax(place, state.dt, state.motion));
       largest = std::max(largest, place.s->reaction.norm());
     }
   }
   state.monitors.contact_sweeps += sweeps;
   if (sweeps == most_sweeps) ++state.monitors.contact_unconverged;
-  for (const Place& place : places) {
+  for (const SplitPlace& place : places) {
     SurfacePoint& s = *place.s;
     const Vec2 dw = state.dt * jump_rate(place, state.motion);
     const Vec2 tangent = tangent_of(s);
@@ -264,6 +253,7 @@ void solve_reactions(const Scene& scene, const std::vector<Elasticity>& rocks, S
     const bool closes = place.law->kind != Kind::soft || place.law->compression == InterfaceLaw::Compression::contact;
     if (closes) state.monitors.largest_penetration = std::max(state.monitors.largest_penetration, -after.opening());
   }
+  state.places.clear();  // they point into the surfaces
 }
 
 double spring_energy(const Scene& scene, const State& state) {

@@ -22,7 +22,8 @@ void set_particles(const Scene& scene, const std::vector<Vec2>& u, const std::ve
   for (std::size_t b = 0; b < state.bins.size(); ++b) {
     if (!which.empty() && which[b] == 0) continue;
     const Bin& bin = state.bins[b];
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
+    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+         q += static_cast<std::size_t>(bin.stride)) {
       const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]);
       Vec2 u_p = Vec2::Zero(), d_x = Vec2::Zero(), d_y = Vec2::Zero();
       for (std::size_t n = 0; n < 9; ++n) {
@@ -47,7 +48,8 @@ std::vector<char> watched_bins(const Scene& scene, const State& state, const Bon
   std::vector<char> watched(state.bins.size(), 0);
   for (std::size_t b = 0; b < watched.size(); ++b) {
     const Bin& bin = state.bins[b];
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
+    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+         q += static_cast<std::size_t>(bin.stride)) {
       for (const Tip& tip : state.tips) {
         const Vec2 off = Vec2{p.x[q], p.y[q]} - tip_position(state, tip);
         if (off.lpNorm<Eigen::Infinity>() < around_tip_cells * state.grid.h) particle[q] = 1;

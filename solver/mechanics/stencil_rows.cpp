@@ -59,7 +59,8 @@ void describe_bin(const State& state, const Bin& bin, std::vector<std::int64_t>&
     tokens.push_back(g.x_knots.empty() ? 0 : in_steps(g.span_x(bin.i + k) / g.h));
     tokens.push_back(g.y_knots.empty() ? 0 : in_steps(g.span_y(bin.j + k) / g.h));
   }
-  for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
+  for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+       q += static_cast<std::size_t>(bin.stride)) {
     tokens.push_back(in_steps((p.x[q] - g.x(bin.i)) / g.h));
     tokens.push_back(in_steps((p.y[q] - g.y(bin.j)) / g.h));
     tokens.push_back(in_steps(p.V[q] / (g.h * g.h)));
@@ -70,7 +71,8 @@ void describe_bin(const State& state, const Bin& bin, std::vector<std::int64_t>&
 BinKind make_kind(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Bin& bin) {
   const Particles& p = state.particles;
   BinKind kind;
-  for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
+  for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+       q += static_cast<std::size_t>(bin.stride)) {
     const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]);
     add_stiffness(rocks[p.rock[q]], g, p.V[q], kind.K);
     for (std::size_t n = 0; n < 9; ++n) kind.m[n] += g.N[n] * p.m[q];

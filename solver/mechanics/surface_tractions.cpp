@@ -16,7 +16,7 @@ void weigh(const Grid& g, const Vec2& x, SurfaceStencil& stencil) {
 
 // A copy that no particle's shape function reaches has no motion of its own: there the node does not tell the sides
 // apart.
-void join_massless(const std::vector<NodeSums>& sums, SurfaceStencil& stencil) {
+void join_massless(const NodalSums& sums, SurfaceStencil& stencil) {
   for (std::size_t n = 0; n < 9; ++n) {
     if (stencil.plus[n] == stencil.minus[n]) continue;
     if (sums[static_cast<std::size_t>(stencil.plus[n])].m == 0.0) stencil.plus[n] = stencil.minus[n];
@@ -45,7 +45,7 @@ void update_stencil_weights(const Scene& scene, State& state) {
   }
 }
 
-Vec2 jump(const SurfaceStencil& stencil, const std::vector<NodeMotion>& motion) {
+Vec2 jump(const SurfaceStencil& stencil, const NodalMotion& motion) {
   Vec2 w = Vec2::Zero();
   for (std::size_t n = 0; n < 9; ++n) {
     if (stencil.plus[n] == stencil.minus[n]) continue;
@@ -55,7 +55,7 @@ Vec2 jump(const SurfaceStencil& stencil, const std::vector<NodeMotion>& motion) 
   return w;
 }
 
-Vec2 mean_velocity(const SurfaceStencil& stencil, const std::vector<NodeMotion>& motion) {
+Vec2 mean_velocity(const SurfaceStencil& stencil, const NodalMotion& motion) {
   Vec2 v = Vec2::Zero();
   for (std::size_t n = 0; n < 9; ++n) {
     v += 0.5 * stencil.N[n] *
@@ -65,12 +65,12 @@ Vec2 mean_velocity(const SurfaceStencil& stencil, const std::vector<NodeMotion>&
   return v;
 }
 
-void add_traction(const SurfaceStencil& stencil, const Vec2& t, double A, std::vector<NodeSums>& sums) {
+void add_traction(const SurfaceStencil& stencil, const Vec2& t, double A, NodalSums& sums) {
   for (std::size_t n = 0; n < 9; ++n) {
     if (stencil.plus[n] == stencil.minus[n]) continue;
     const Vec2 f = stencil.N[n] * A * t;
-    NodeSums& plus = sums[static_cast<std::size_t>(stencil.plus[n])];
-    NodeSums& minus = sums[static_cast<std::size_t>(stencil.minus[n])];
+    const NodalSums::Record plus = sums[static_cast<std::size_t>(stencil.plus[n])];
+    const NodalSums::Record minus = sums[static_cast<std::size_t>(stencil.minus[n])];
     plus.f_x += f.x(), plus.f_y += f.y();
     minus.f_x -= f.x(), minus.f_y -= f.y();
   }
@@ -108,8 +108,8 @@ void follow_surfaces(const Scene& scene, State& state) {
     if (!stays) update_geometry(surface);
   }
   for (TipTie& tie : state.ties) {
-    const auto &plus = state.motion[static_cast<std::size_t>(tie.plus)],
-               &minus = state.motion[static_cast<std::size_t>(tie.minus)];
+    const NodeMotion plus = state.motion[static_cast<std::size_t>(tie.plus)],
+                     minus = state.motion[static_cast<std::size_t>(tie.minus)];
     tie.s.w += state.dt * (velocity(plus) - velocity(minus));
   }
 }

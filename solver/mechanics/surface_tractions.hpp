@@ -12,14 +12,14 @@ namespace strata {
 void update_stencil_weights(const Scene& scene, State& state);
 
 /// D u: jump of a nodal vector field across the surface at a stencil, sum_i N_i (u[plus_i] - u[minus_i]).
-Vec2 jump(const SurfaceStencil& stencil, const std::vector<NodeMotion>& motion);
+Vec2 jump(const SurfaceStencil& stencil, const NodalMotion& motion);
 
 /// Mean of the two sides' velocities (m/s) at a stencil: surfaces are massless and follow it.
-Vec2 mean_velocity(const SurfaceStencil& stencil, const std::vector<NodeMotion>& motion);
+Vec2 mean_velocity(const SurfaceStencil& stencil, const NodalMotion& motion);
 
 /// D^T: adds the force of a traction t (Pa, on the + face; the - face takes its opposite) over the length A (m) to the
 /// sums.
-void add_traction(const SurfaceStencil& stencil, const Vec2& t, double A, std::vector<NodeSums>& sums);
+void add_traction(const SurfaceStencil& stencil, const Vec2& t, double A, NodalSums& sums);
 
 /// Adds fluid pressure beyond the in-situ traction of all split surface points: t = P n - in_situ on the fracture,
 /// t = -in_situ on interfaces, whose laws then add their reactions.

@@ -34,7 +34,8 @@ void for_each_particle(const Scene& scene, const State& state, Visit visit) {
   const Particles& p = state.particles;
   with_shape(scene.numerics.shape, [&](auto shape) {
     for (const Bin& bin : state.bins) {
-      for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q)
+      for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+           q += static_cast<std::size_t>(bin.stride))
         visit(bin, q, gradients_of<decltype(shape)>(state.grid, bin, {p.x[q], p.y[q]}, p.half[q]));
     }
   });
@@ -48,12 +49,12 @@ Vec2 interpolate(const Gradients& g, const Bin& bin, const std::vector<Vec2>& v)
 
 // One pass of v_i += (1/m_i) sum_p N_ip m_p (v_p - sum_j N_jp v_j), masters first, then what is tied to them.
 void correct_velocities(const Scene& scene, State& state, std::vector<Vec2>& v) {
-  std::vector<NodeSums> sums(v.size());
+  NodalSums sums(v.size());
   const Particles& p = state.particles;
   for_each_particle(scene, state, [&](const Bin& bin, std::size_t q, const Gradients& g) {
     const Vec2 lacks = Vec2{p.v_x[q], p.v_y[q]} - interpolate(g, bin, v);
     for (std::size_t n = 0; n < 9; ++n) {
-      NodeSums& record = sums[static_cast<std::size_t>(bin.record[n])];
+      const auto record = sums[static_cast<std::size_t>(bin.record[n])];
       const double m = g.N[n] * p.m[q];
       record.m += m, record.mom_x += m * lacks.x(), record.mom_y += m * lacks.y();
     }
@@ -82,12 +83,12 @@ void velocities_from_particles(const Scene& scene, State& state) {
 
 // Masses and the particles' own forces, m_i = sum_p N_ip m_p and f_i = -sum_p V_p sigma_p grad N_ip.
 void sum_particles(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
-  std::fill(state.sums.begin(), state.sums.end(), NodeSums{});
+  state.sums.clear(state.sums.size());
   const Particles& p = state.particles;
   for_each_particle(scene, state, [&](const Bin& bin, std::size_t q, const Gradients& g) {
     const Stress s = p.V[q] * stress_of(rocks[p.rock[q]], p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]);
     for (std::size_t n = 0; n < 9; ++n) {
-      NodeSums& record = state.sums[static_cast<std::size_t>(bin.record[n])];
+      const auto record = state.sums[static_cast<std::size_t>(bin.record[n])];
       record.m += g.N[n] * p.m[q];
       record.f_x -= s.xx * g.N_x[n] + s.xy * g.N_y[n];
       record.f_y -= s.xy * g.N_x[n] + s.yy * g.N_y[n];
@@ -110,7 +111,7 @@ void fill_nodes(State& state) {
   t.a_x = t.base_x, t.a_y = t.base_y;
 }
 
-void move_surfaces(const std::vector<NodeMotion>& by, State& state) {
+void move_surfaces(const NodalMotion& by, State& state) {
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
     const auto move = [&](SurfacePoint& s, const SurfaceStencil& stencil, bool follows_jump) {
       s.u += mean_velocity(stencil, by);
@@ -145,7 +146,7 @@ void start_base(const Scene& scene, const std::vector<Elasticity>& rocks, State&
 void bring_up_to_date(const Scene& scene, State& state) {
   TotalMotion& t = state.total;
   if (!t.based) return;
-  std::vector<NodeMotion> since(state.masters.size());  // displacements in the place of velocities
+  NodalMotion since(state.masters.size());  // displacements in the place of velocities
   std::vector<Vec2> u(since.size());
   t.velocity.resize(since.size());
   for (std::size_t r = 0; r < since.size(); ++r) {
@@ -173,11 +174,11 @@ BodyPush push_body(const Scene& scene, State& state) {
   BodyPush push;
   if (state.body.empty()) return push;
   TotalMotion& t = state.total;
-  std::vector<NodeSums> sums(state.masters.size());
+  NodalSums sums(state.masters.size());
   for_each_particle(scene, state, [&](const Bin& bin, std::size_t q, const Gradients& g) {
     const Vec2 f = state.particles.m[q] * state.body[q];
     for (std::size_t n = 0; n < 9; ++n) {
-      NodeSums& record = sums[static_cast<std::size_t>(bin.record[n])];
+      const auto record = sums[static_cast<std::size_t>(bin.record[n])];
       record.f_x += g.N[n] * f.x(), record.f_y += g.N[n] * f.y();
     }
   });

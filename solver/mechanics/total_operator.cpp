@@ -249,18 +249,19 @@ void apply_tasks(const StencilOperator& op, TotalMotion& t) {
 void apply_particles(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
   TotalMotion& t = state.total;
   const Slots& slots = t.op->slots;
-  std::vector<NodeSums> sums(state.masters.size());
+  NodalSums sums(state.masters.size());
   const Particles& p = state.particles;
   for (const Bin& bin : state.bins) {
     std::array<Vec2, 9> u;
     for (std::size_t n = 0; n < 9; ++n) u[n] = total_displacement(state, bin.record[n]);
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
+    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+         q += static_cast<std::size_t>(bin.stride)) {
       const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]);
       Vec2 u_1 = Vec2::Zero(), u_2 = Vec2::Zero();
       for (std::size_t n = 0; n < 9; ++n) u_1 += g.N_x[n] * u[n], u_2 += g.N_y[n] * u[n];
       const Stress s = stress_of(rocks[p.rock[q]], u_1.x(), u_2.x(), u_1.y(), u_2.y());
       for (std::size_t n = 0; n < 9; ++n) {
-        NodeSums& record = sums[static_cast<std::size_t>(bin.record[n])];
+        const auto record = sums[static_cast<std::size_t>(bin.record[n])];
         record.f_x -= p.V[q] * (s.xx * g.N_x[n] + s.xy * g.N_y[n]);
         record.f_y -= p.V[q] * (s.xy * g.N_x[n] + s.yy * g.N_y[n]);
       }

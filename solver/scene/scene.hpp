@@ -176,6 +176,9 @@ struct Numerics {
   // Whether particles and surfaces stay in their reference places while displacements advance.
   bool keeps_places() const { return mechanics == Mechanics::quasistatic || kinematics == Kinematics::total; }
 
+  // Whether neighbouring bins of particles are lanes of vectors (see state/copies.hpp).
+  bool in_lanes() const { return !keeps_places() && kernels == Kernels::fast; }
+
   bool operator==(const Numerics&) const = default;
 };
 

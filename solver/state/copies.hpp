@@ -7,24 +7,11 @@
 #include <array>
 #include <vector>
 
+#include "scene/scene.hpp"
 #include "state/grid.hpp"
 #include "state/surfaces.hpp"
 
 namespace strata {
-
-// Nodal quantities gathered from particles; a record is one aligned 8-vector.
-struct alignas(64) NodeSums {
-  double m = 0.0;                   // mass (kg/m)
-  double mom_x = 0.0, mom_y = 0.0;  // momentum (kg/s)
-  double f_x = 0.0, f_y = 0.0;      // force (N/m)
-  double unused[3] = {0.0, 0.0, 0.0};
-};
-
-// Nodal quantities given back to particles; a record is one aligned 4-vector.
-struct alignas(32) NodeMotion {
-  double v_x = 0.0, v_y = 0.0;    // velocity at the end of the step (m/s)
-  double dv_x = 0.0, dv_y = 0.0;  // what forces added to it in the step (m/s)
-};
 
 struct CutNode {
   SideWord mask = 0;              // the surfaces that split this node
@@ -44,10 +31,27 @@ struct Copies {
   int records() const { return static_cast<int>(node_of_record.size()); }
 };
 
+// Neighbouring bins of a row whose records are neighbours too may form a block: each is a lane of vectors (see
+// lanes.hpp), the k-th particles of all of them stand side by side and are of the same rock. A bin of a block of n has
+// every n-th particle from its first one on; the block's bins stand side by side too, each with stride n.
 struct Bin {
-  int first = 0, last = 0;      // particles [first, last)
+  int first = 0, last = 0;      // particles first, first + stride, ... below last
+  int stride = 1;               // bins of its block
   int i = 0, j = 0;             // column and row of the middle node of the 3 x 3 stencil
   std::array<int, 9> record{};  // records of the stencil's nodes, row by row from the lower left
+};
+
+// A split place with its stencil folded to master records: jump = sum_k (c_x v_x, c_y v_y).
+struct SplitPlace {
+  SurfacePoint* s = nullptr;
+  const InterfaceLaw* law = nullptr;
+  double k = 0.0;          // contact stiffness (Pa/m)
+  double r_t_start = 0.0;  // tangential reaction at the start of the step (Pa)
+  std::array<int, 18> record{};
+  std::array<double, 18> c_x{}, c_y{};  // weights in the jump
+  std::array<double, 18> d_x{}, d_y{};  // velocity per unit of reaction (m/s/Pa)
+  int n = 0;
+  double per_n = 0.0, per_t = 0.0;
 };
 
 // Bins of a few neighbouring rows. Strips of the same colour (even or odd) share no record, so threads may work on them

@@ -70,4 +70,10 @@ struct Grid {
   }
 };
 
+// The spans of an axis as arrays over its columns (rows) -1 ... n + 1: nodes' coordinates (m), 1/length (1/m), and
+// 1/(1 + length of the span before (after)/own length).
+struct SpanTable {
+  std::vector<double> node, per_length, share_before, share_after;
+};
+
 }  // namespace strata

@@ -28,6 +28,21 @@ std::vector<GridPoint> points_along(const std::vector<double>& t, int n, double 
   return points;
 }
 
+// node(i) and span(i) for i from -1 to n + 1; the outermost spans have no other beside them, and no place is in them.
+template <class Node, class Length>
+SpanTable make_table(int n, Node node, Length span) {
+  SpanTable table;
+  const auto share = [&](int i, int beside) {
+    return beside < -1 || beside > n + 1 ? 0.5 : 1.0 / (1.0 + span(beside) / span(i));
+  };
+  for (int i = -1; i <= n + 1; ++i) {
+    table.node.push_back(node(i));
+    table.per_length.push_back(1.0 / span(i));
+    table.share_before.push_back(share(i, i - 1)), table.share_after.push_back(share(i, i + 1));
+  }
+  return table;
+}
+
 }  // namespace
 
 Grid make_grid(const Scene& scene) {
@@ -46,6 +61,16 @@ std::vector<GridPoint> points_along_x(const Grid& grid, int across) {
 
 std::vector<GridPoint> points_along_y(const Grid& grid, int across) {
   return points_along(grid.y_knots, grid.ny, grid.h, across);
+}
+
+SpanTable spans_along_x(const Grid& grid) {
+  return make_table(
+      grid.nx, [&](int i) { return grid.x(i); }, [&](int i) { return grid.span_x(i); });
+}
+
+SpanTable spans_along_y(const Grid& grid) {
+  return make_table(
+      grid.ny, [&](int j) { return grid.y(j); }, [&](int j) { return grid.span_y(j); });
 }
 
 }  // namespace strata

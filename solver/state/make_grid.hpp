@@ -26,4 +26,10 @@ std::vector<GridPoint> points_along_x(const Grid& grid, int across);
 /// The same along y.
 std::vector<GridPoint> points_along_y(const Grid& grid, int across);
 
+/// The spans of the grid's columns. Throws nothing.
+SpanTable spans_along_x(const Grid& grid);
+
+/// And of its rows.
+SpanTable spans_along_y(const Grid& grid);
+
 }  // namespace strata

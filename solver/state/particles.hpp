@@ -27,6 +27,16 @@ struct Particles {
   std::size_t size() const { return x.size(); }
 };
 
+// What particles say of a step: their kinetic energy (J/m) before and after they took up the grid's motion, the
+// square of their largest speed (m^2/s^2), and how far any is from the middle node of its bin (spans, along x or y).
+struct ParticleReport {
+  double before = 0.0;
+  double after = 0.0;
+  double step_strain = 0.0;  // energy of the step's own strain, sum V dsigma : de/2 (J/m)
+  double largest_speed2 = 0.0;
+  double farthest_cells = 0.0;
+};
+
 // Calls visit(array) for each array of the particles, so that reordering, copying and saving are written once.
 template <class AnyParticles, class Visit>
 void for_each_array(AnyParticles& p, Visit visit) {

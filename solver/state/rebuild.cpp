@@ -5,6 +5,9 @@
 #include <numeric>
 #include <tuple>
 
+#include "state/blocks.hpp"
+#include "state/make_grid.hpp"
+
 namespace strata {
 
 namespace {
@@ -199,10 +202,10 @@ std::vector<SortKey> sort_keys(const State& state, const std::vector<SideWord>& 
   return keys;
 }
 
-void sort_particles(Particles& particles, const std::vector<SortKey>& keys) {
+void sort_particles(Particles& particles, const std::vector<std::size_t>& order) {
   for_each_array(particles, [&](auto& array) {
     auto sorted = array;
-    for (std::size_t k = 0; k < keys.size(); ++k) sorted[k] = array[keys[k].from];
+    for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = array[order[k]];
     array.swap(sorted);
   });
 }
@@ -222,6 +225,9 @@ void make_bins(State& state, const std::vector<SortKey>& keys) {
     }
     state.bins.back().last = static_cast<int>(k) + 1;
   }
+}
+
+void make_strips(State& state) {
   state.strips.clear();
   for (int j = 0, b = 0; j <= state.grid.ny; j += rows_per_strip) {
     Strip strip{b, b};
@@ -374,14 +380,23 @@ void rebuild_copies(const Scene& scene, State& state) {
   make_cut_nodes(state, mask, state.copies);
   std::vector<SortKey> keys = sort_keys(state, mask);
   std::sort(keys.begin(), keys.end(), [](const SortKey& a, const SortKey& b) { return a.order() < b.order(); });
-  sort_particles(state.particles, keys);
-  state.body.clear();
   make_bins(state, keys);
+  std::vector<std::size_t> order(keys.size());
+  std::transform(keys.begin(), keys.end(), order.begin(), [](const SortKey& key) { return key.from; });
+  if (scene.numerics.in_lanes()) {
+    number_along_rows(state.copies, state.bins);
+    make_blocks(state.particles.rock, state.bins, order);
+  }
+  sort_particles(state.particles, order);
+  make_strips(state);
   make_masters(scene, state);
   make_stress_samples(scene, state);
   make_surface_stencils(state);
-  state.sums.assign(static_cast<std::size_t>(state.copies.records()), NodeSums{});
-  state.motion.assign(static_cast<std::size_t>(state.copies.records()), NodeMotion{});
+  state.x_spans = spans_along_x(state.grid), state.y_spans = spans_along_y(state.grid);
+  const auto records = static_cast<std::size_t>(state.copies.records());
+  state.sums.clear(records), state.motion.clear(records);
+  state.gathered = false;
+  state.body.clear();
   state.total.based = false;
   state.total.op.reset();
 }

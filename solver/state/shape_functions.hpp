@@ -1,16 +1,16 @@
 // One-dimensional shape functions on the three nodes around the one whose span holds a place; two dimensions are their
 // products. f is the position relative to that node in lengths of its span (cells, where the grid is uniform),
 // |f| <= 1/2; N sums to 1 and sum_a x_a N_a = x, so that linear fields are reproduced exactly. Derivatives are per
-// span: divide by its length. at() is for three equal spans; graded() takes the lengths of the spans before and after
-// as multiples of the middle one, and is at() but for round-off where both are 1.
+// span: divide by its length. outer() gives what the two nodes beside take, for a number or for lanes of them (see
+// lanes.hpp); graded_weights() all three.
 #pragma once
 
 #include <array>
 #include <cmath>
-#include <stdexcept>
 
 #include "scene/scene.hpp"
 #include "state/grid.hpp"
+#include "state/lanes.hpp"
 #include "state/types.hpp"
 
 namespace strata {
@@ -20,78 +20,108 @@ struct Weights {
   std::array<double, 3> dN;
 };
 
+// Weights of the nodes before and after; the one between has what is left of 1, and of 0 in dN.
+template <class Real>
+struct OuterWeights {
+  Real N_before, N_after, dN_before, dN_after;
+};
+
+// 1/(1 + s) of the spans before and after, of length s times the middle one: 1/2 where all are equal.
+template <class Real>
+struct SpanShares {
+  Real before, after;
+};
+
+// Half the size of a uGIMP particle and 1/(its size), in cells; other shapes are of points.
+template <class Real>
+struct ParticleSize {
+  Real half{}, per_size{};
+};
+
+// What the shapes of points, which have no size, share.
+struct OfPoints {
+  template <class Real, class Lanes>
+  static ParticleSize<Real> size(const Lanes& /*lanes*/, const double* /*half*/, double /*per_length*/) {
+    return {};
+  }
+};
+
 // Quadratic B-spline (Steffen, Kirby & Berzins 2008). On knots t the recursion of de Boor (A Practical Guide to
 // Splines, 1978, chapter X) gives on [t_i, t_i+1]
 //   N_i-1 = (t_i+1 - x)^2/((t_i+1 - t_i-1)(t_i+1 - t_i)), N_i+1 = (x - t_i)^2/((t_i+2 - t_i)(t_i+1 - t_i)),
 //   N_i = 1 - N_i-1 - N_i+1;
 // sum_a xi_a N_a = x with the mean of its two inner knots as a function's xi_a (Greville), which is where nodes stand.
-struct QuadraticBspline {
-  static Weights at(double f, double /*half*/) {
-    const double a = 0.5 - f, b = 0.5 + f;
-    return {{0.5 * a * a, 0.75 - f * f, 0.5 * b * b}, {-a, -2.0 * f, b}};
-  }
-  static Weights graded(double f, double before, double after) {
-    const double a = (0.5 - f) / (1.0 + before), b = (0.5 + f) / (1.0 + after);
-    const double low = a * (0.5 - f), high = b * (0.5 + f);
-    return {{low, 1.0 - low - high, high}, {-2.0 * a, 2.0 * (a - b), 2.0 * b}};
+struct QuadraticBspline : OfPoints {
+  template <class Real>
+  static OuterWeights<Real> outer(const Real& f, const SpanShares<Real>& share, const ParticleSize<Real>&) {
+    const Real to_after = 0.5 - f, to_before = 0.5 + f;
+    const Real low = share.before * to_after, high = share.after * to_before;
+    return {low * to_after, high * to_before, -2.0 * low, 2.0 * high};
   }
 };
 
-// Hat functions of the two nodes of the cell.
-struct Linear {
-  static Weights at(double f, double /*half*/) {
-    if (f >= 0.0) return {{0.0, 1.0 - f, f}, {0.0, -1.0, 1.0}};
-    return {{-f, 1.0 + f, 0.0}, {-1.0, 1.0, 0.0}};
-  }
-  // The nodes beside are half of both spans away.
-  static Weights graded(double f, double before, double after) {
-    const double d = f >= 0.0 ? 2.0 / (1.0 + after) : 2.0 / (1.0 + before);
-    if (f >= 0.0) return {{0.0, 1.0 - f * d, f * d}, {0.0, -d, d}};
-    return {{-f * d, 1.0 + f * d, 0.0}, {-d, d, 0.0}};
+// Hat functions of the two nodes of the cell. The nodes beside are half of both spans away.
+struct Linear : OfPoints {
+  template <class Real>
+  static OuterWeights<Real> outer(const Real& f, const SpanShares<Real>& share, const ParticleSize<Real>&) {
+    const Real zero{}, d_before = 2.0 * share.before, d_after = 2.0 * share.after;
+    return {f < 0.0 ? -f * d_before : zero, f < 0.0 ? zero : f * d_after, f < 0.0 ? -d_before : zero,
+            f < 0.0 ? zero : d_after};
   }
 };
 
 // Hat functions averaged over a particle's own length 2 half (in cells), not deformed: uGIMP (Bardenhagen & Kober
-// 2004).
+// 2004), for particles that do not reach beyond the nodes beside, half <= 1/2. With the distances A, B that a
+// particle's two ends go past the middle node, 0 where they do not, a node beside has N = (A^2 - B^2)/(4 half) and |dN|
+// = (A - B)/(2 half), in the form that keeps its digits where N is nearly zero: a particle that just touches a node
+// must not give it a mass of round-off. Scenes refuse graded grids.
 struct Ugimp {
-  static Weights at(double f, double half) {
-    Weights w{};
-    for (int a = 0; a < 3; ++a) {
-      const double lo = f - (a - 1) - half, hi = f - (a - 1) + half;
-      w.N[static_cast<std::size_t>(a)] = hat_integral(lo, hi) / (2.0 * half);
-      w.dN[static_cast<std::size_t>(a)] = (hat(hi) - hat(lo)) / (2.0 * half);
-    }
-    return w;
+  template <class Real>
+  static OuterWeights<Real> outer(const Real& f, const SpanShares<Real>&, const ParticleSize<Real>& size) {
+    const Real zero{};
+    const Real before_A = larger<Real>(zero, size.half - f), before_B = larger<Real>(zero, -size.half - f);
+    const Real after_A = larger<Real>(zero, f + size.half), after_B = larger<Real>(zero, f - size.half);
+    const Real before = (before_A - before_B) * size.per_size, after = (after_A - after_B) * size.per_size;
+    return {0.5 * before * (before_A + before_B), 0.5 * after * (after_A + after_B), -before, after};
   }
-  // Scenes refuse it: uGIMP is for points that move, graded grids for those that do not.
-  static Weights graded(double, double, double) { throw std::logic_error("uGIMP on a graded grid"); }
-
- private:
-  static double hat(double x) { return std::fmax(0.0, 1.0 - std::fabs(x)); }
-  // Integral of the hat function from lo to hi, in the form that keeps its digits where it is nearly zero: a particle
-  // that just touches a node must not give it a mass of round-off.
-  static double hat_integral(double lo, double hi) {
-    if (lo >= 0.0) return 0.5 * (hat(lo) + hat(hi)) * (hat(lo) - hat(hi));
-    if (hi <= 0.0) return 0.5 * (hat(hi) + hat(lo)) * (hat(hi) - hat(lo));
-    return 1.0 - 0.5 * (hat(lo) * hat(lo) + hat(hi) * hat(hi));
+  template <class Real, class Lanes>
+  static ParticleSize<Real> size(const Lanes& lanes, const double* half, double per_length) {
+    const Real cells = lanes.load(half) * per_length;
+    return {cells, lanes.used(0.5 / cells)};
   }
 };
+
+/// Weights of all three nodes at f, spans before and after of `before` and `after` times the middle one; half: half the
+/// size of a uGIMP particle in cells.
+template <class Shape>
+Weights graded_weights(double f, double before, double after, double half) {
+  const OuterWeights<double> w =
+      Shape::outer(f, SpanShares<double>{1.0 / (1.0 + before), 1.0 / (1.0 + after)}, {half, 0.5 / half});
+  return {{w.N_before, 1.0 - (w.N_before + w.N_after), w.N_after},
+          {w.dN_before, -(w.dN_before + w.dN_after), w.dN_after}};
+}
+
+/// The same on three equal spans.
+template <class Shape>
+Weights uniform_weights(double f, double half) {
+  return graded_weights<Shape>(f, 1.0, 1.0, half);
+}
 
 /// Weights at the coordinate x (m) of the nodes of columns i - 1, i and i + 1, where i (0 ... nx) is the one whose span
 /// holds x; half: half the size of a uGIMP particle (m). Derivatives are per span: divide by grid.span_x(i).
 template <class Shape>
 Weights weights_x(const Grid& grid, int i, double x, double half) {
-  if (grid.x_knots.empty()) return Shape::at(x / grid.h - i, half / grid.h);
+  if (grid.x_knots.empty()) return uniform_weights<Shape>(x / grid.h - i, half / grid.h);
   const double s = grid.span_x(i);
-  return Shape::graded((x - grid.x(i)) / s, grid.span_x(i - 1) / s, grid.span_x(i + 1) / s);
+  return graded_weights<Shape>((x - grid.x(i)) / s, grid.span_x(i - 1) / s, grid.span_x(i + 1) / s, half / s);
 }
 
 /// The same along y, of row j.
 template <class Shape>
 Weights weights_y(const Grid& grid, int j, double y, double half) {
-  if (grid.y_knots.empty()) return Shape::at(y / grid.h - j, half / grid.h);
+  if (grid.y_knots.empty()) return uniform_weights<Shape>(y / grid.h - j, half / grid.h);
   const double s = grid.span_y(j);
-  return Shape::graded((y - grid.y(j)) / s, grid.span_y(j - 1) / s, grid.span_y(j + 1) / s);
+  return graded_weights<Shape>((y - grid.y(j)) / s, grid.span_y(j - 1) / s, grid.span_y(j + 1) / s, half / s);
 }
 
 /// Calls f with the type of the scene's shape function, so that loops are compiled for each of them.
@@ -114,7 +144,7 @@ struct Gradients {
 };
 
 /// Weights of the scene's shape function at x (m), of the 3 x 3 nodes around column i and row j, whose spans hold x;
-/// half: half the size of a uGIMP particle (m). Throws nothing but std::logic_error for uGIMP on a graded grid.
+/// half: half the size of a uGIMP particle (m). Throws nothing.
 inline Gradients gradients_at(const Scene& scene, const Grid& grid, int i, int j, const Vec2& x, double half) {
   return with_shape(scene.numerics.shape, [&](auto shape) {
     const Weights X = weights_x<decltype(shape)>(grid, i, x.x(), half);

@@ -9,6 +9,7 @@
 #include "state/copies.hpp"
 #include "state/fluid_line.hpp"
 #include "state/grid.hpp"
+#include "state/nodal.hpp"
 #include "state/particles.hpp"
 #include "state/surfaces.hpp"
 #include "state/total_motion.hpp"
@@ -118,9 +119,20 @@ struct State {
   std::vector<std::vector<std::vector<StressSample>>>
       stress_samples;  // of each surface's points; empty where it never fails
   std::vector<std::vector<SurfaceStencil>> point_stencils, vertex_stencils;  // of each surface
-  std::vector<NodeSums> sums;
-  std::vector<NodeMotion> motion;
+  SpanTable x_spans, y_spans;
+  NodalSums sums;
+  NodalMotion motion;
+  bool gathered = false;   // sweep_particles() has left in sums what the particles now give
   std::vector<Vec2> body;  // force per mass of each particle (m/s^2), set anew at each time; empty: none
+  NodalSums body_sums;     // what it gives the nodes: f_x, f_y
+  // Kept for their memory alone: no step allocates any.
+  NodalSums filtered;                   // of XPIC(2)
+  std::vector<double> take_x, take_y;   // the same
+  std::vector<ParticleReport> reports;  // of each strip
+  std::vector<SplitPlace> places;       // of the solve for reactions
+  std::vector<InterfaceLaw> tie_laws;   // the same
+  std::vector<Vec2> carried;            // by the points of an interface, to see whether they fail
+  std::vector<char> failed;             // its columns that do
 
   const Surface& fracture() const { return surfaces.front(); }
   Surface& fracture() { return surfaces.front(); }

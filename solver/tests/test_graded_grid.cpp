@@ -255,7 +255,7 @@ TEMPLATE_TEST_CASE("graded functions and their derivatives", "", QuadraticBsplin
 // Requires that the weights of three equal spans are those of the uniform grid to round-off.
 TEMPLATE_TEST_CASE("graded weights of equal spans are uniform ones", "", QuadraticBspline, Linear) {
   for (const double f : {-0.5, -0.3, 0.0, 0.2, 0.5}) {
-    const Weights uniform = TestType::at(f, 0.0), graded = TestType::graded(f, 1.0, 1.0);
+    const Weights uniform = uniform_weights<TestType>(f, 0.0), graded = graded_weights<TestType>(f, 1.0, 1.0, 0.0);
     for (std::size_t a = 0; a < 3; ++a) {
       CHECK(graded.N[a] == Approx(uniform.N[a]).margin(1e-15));
       CHECK(graded.dN[a] == Approx(uniform.dN[a]).margin(1e-15));

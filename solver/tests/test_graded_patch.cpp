@@ -181,11 +181,12 @@ struct GradedInterface {
     State& state = run.state;
     const Particles& p = state.particles;
     for (const Bin& bin : state.bins) {
-      for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last); ++q) {
+      for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+           q += static_cast<std::size_t>(bin.stride)) {
         const Stress s = stress_of(run.rocks[p.rock[q]], p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]);
         const Gradients g = gradients_at(run.scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]);
         for (std::size_t n = 0; n < 9; ++n) {
-          NodeSums& sum = state.sums[static_cast<std::size_t>(bin.record[n])];
+          const NodalSums::Record sum = state.sums[static_cast<std::size_t>(bin.record[n])];
           sum.m += p.m[q] * g.N[n];
           sum.f_x -= p.V[q] * (s.xx * g.N_x[n] + s.xy * g.N_y[n]);
           sum.f_y -= p.V[q] * (s.xy * g.N_x[n] + s.yy * g.N_y[n]);

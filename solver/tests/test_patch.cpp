@@ -52,7 +52,7 @@ struct Bonded {
 };
 
 // Adds `times` the reactions of the only interface to the nodal sums.
-void add_reactions(const State& state, double times, std::vector<NodeSums>& sums) {
+void add_reactions(const State& state, double times, NodalSums& sums) {
   const auto& points = state.surfaces[0].points;
   for (std::size_t q = 0; q < points.size(); ++q)
     add_traction(state.point_stencils[0][q], times * points[q].reaction, points[q].A, sums);
@@ -138,17 +138,18 @@ TEST_CASE("the law of a soft interface gives the reactions of its jumps") {
       State& state = bonded.run.state;
       particles_to_grid(bonded.run.scene, bonded.run.rocks, state);
       update_stencil_weights(bonded.run.scene, state);
-      std::vector<NodeSums> missing(state.sums.size());
+      NodalSums missing(state.sums.size());
       add_reactions(state, -1.0, missing);
       double before = 0.0, after = 0.0;
       for (std::size_t r = 0; r < missing.size(); ++r) {
         const double m = state.sums[r].m;
         const Vec2 v = m > 0.0 ? Vec2{state.dt / m * Vec2{missing[r].f_x, missing[r].f_y}} : Vec2{0.0, 0.0};
-        state.motion[r] = {v.x(), v.y(), v.x(), v.y()};
+        state.motion[r] = NodeMotion{v.x(), v.y(), v.x(), v.y()};
         before = std::max(before, v.norm());
       }
       solve_reactions(bonded.run.scene, bonded.run.rocks, state);
-      for (const NodeMotion& node : state.motion) after = std::max(after, std::hypot(node.v_x, node.v_y));
+      for (std::size_t r = 0; r < state.motion.size(); ++r)
+        after = std::max(after, std::hypot(state.motion.v_x[r], state.motion.v_y[r]));
       CAPTURE(static_cast<int>(shape), at, before, after);
       CHECK(before > 0.01);
       CHECK(after < 1e-8 * before);

@@ -28,7 +28,8 @@ double hat(double x) {
 template <class Shape>
 double derivative_error(double f, double half) {
   const double d = 1e-6;
-  const Weights w = Shape::at(f, half), up = Shape::at(f + d, half), down = Shape::at(f - d, half);
+  const Weights w = uniform_weights<Shape>(f, half), up = uniform_weights<Shape>(f + d, half),
+                down = uniform_weights<Shape>(f - d, half);
   double most = 0.0;
   for (std::size_t a = 0; a < 3; ++a) most = std::max(most, std::abs(w.dN[a] - (up.N[a] - down.N[a]) / (2.0 * d)));
   return most;
@@ -44,7 +45,7 @@ TEMPLATE_TEST_CASE("weights reproduce constants and linear fields", "", Quadrati
   for (const double half : {0.25, 1.0 / 6.0, 0.125, 0.0625}) {
     for (int k = -501; k <= 501; ++k) {
       const double f = 1e-3 * k;
-      const Moments sum = moments(TestType::at(f, half));
+      const Moments sum = moments(uniform_weights<TestType>(f, half));
       CHECK(sum.N == Approx(1.0).epsilon(1e-14));
       CHECK(sum.linear == Approx(f).margin(1e-15));
       CHECK(sum.dN == Approx(0.0).margin(1e-13));
@@ -63,7 +64,7 @@ TEMPLATE_TEST_CASE("derivatives are those of the weights", "", QuadraticBspline,
 // corners are at the nodes).
 TEMPLATE_TEST_CASE("weights are continuous from bin to bin", "", QuadraticBspline, Linear, Ugimp) {
   for (const double half : {0.25, 0.125}) {
-    const Weights left = TestType::at(0.5, half), right = TestType::at(-0.5, half);
+    const Weights left = uniform_weights<TestType>(0.5, half), right = uniform_weights<TestType>(-0.5, half);
     for (std::size_t a = 0; a < 2; ++a) {
       CHECK(left.N[a + 1] == Approx(right.N[a]).epsilon(1e-14));
       CHECK(left.dN[a + 1] == Approx(right.dN[a]).epsilon(1e-14));
@@ -78,19 +79,20 @@ TEMPLATE_TEST_CASE("weights are continuous from bin to bin", "", QuadraticBsplin
 // Requires the values by hand: the B-spline at its node and at half a cell, hat functions at a third, uGIMP with a
 // quarter on both sides at its node, 1 - 1/8, and at half a cell, where it is the hat function.
 TEST_CASE("values by hand") {
-  const Weights spline = QuadraticBspline::at(0.0, 0.0), edge = QuadraticBspline::at(0.5, 0.0);
+  const Weights spline = uniform_weights<QuadraticBspline>(0.0, 0.0),
+                edge = uniform_weights<QuadraticBspline>(0.5, 0.0);
   CHECK(spline.N[0] == 0.125);
   CHECK(spline.N[1] == 0.75);
   CHECK(spline.dN[0] == -0.5);
   CHECK(spline.dN[2] == 0.5);
   CHECK(edge.N[1] == 0.5);
   CHECK(edge.dN[1] == -1.0);
-  const Weights third = Linear::at(-1.0 / 3.0, 0.0);
+  const Weights third = uniform_weights<Linear>(-1.0 / 3.0, 0.0);
   CHECK(third.N[0] == Approx(1.0 / 3.0));
   CHECK(third.N[1] == Approx(2.0 / 3.0));
   CHECK(third.dN[0] == -1.0);
   CHECK(third.dN[1] == 1.0);
-  const Weights gimp = Ugimp::at(0.0, 0.25), between = Ugimp::at(0.5, 0.25);
+  const Weights gimp = uniform_weights<Ugimp>(0.0, 0.25), between = uniform_weights<Ugimp>(0.5, 0.25);
   CHECK(gimp.N[1] == Approx(0.875));
   CHECK(gimp.N[0] == Approx(0.0625));
   CHECK(gimp.dN[0] == Approx(-0.5));
@@ -104,7 +106,7 @@ TEST_CASE("values by hand") {
 TEST_CASE("uGIMP averages hat functions") {
   for (const double half : {0.25, 0.125}) {
     for (const double f : {-0.5, -0.42, -0.2, 0.0, 0.11, 0.3, 0.5}) {
-      const Weights w = Ugimp::at(f, half);
+      const Weights w = uniform_weights<Ugimp>(f, half);
       for (int a = 0; a < 3; ++a) {
         double mean = 0.0;
         constexpr int n = 20000;
@@ -114,14 +116,14 @@ TEST_CASE("uGIMP averages hat functions") {
     }
   }
   // Overlap of 1e-9: (1e-9)^2/2 over the length 1/2.
-  CHECK(Ugimp::at(0.25 + 1e-9, 0.25).N[0] == 0.0);
-  CHECK(Ugimp::at(0.25 - 1e-9, 0.25).N[0] == Approx(1e-18).epsilon(1e-6));
+  CHECK(uniform_weights<Ugimp>(0.25 + 1e-9, 0.25).N[0] == 0.0);
+  CHECK(uniform_weights<Ugimp>(0.25 - 1e-9, 0.25).N[0] == Approx(1e-18).epsilon(1e-6));
 }
 
 // Requires that each scene's shape is the one that is used: at f = 0 their middle weights are 0.75, 1 and 0.875.
 TEST_CASE("the scene's shape is taken") {
   const auto middle = [](Numerics::Shape shape) {
-    return with_shape(shape, [](auto s) { return decltype(s)::at(0.0, 0.25).N[1]; });
+    return with_shape(shape, [](auto s) { return uniform_weights<decltype(s)>(0.0, 0.25).N[1]; });
   };
   CHECK(middle(Numerics::Shape::bspline2) == 0.75);
   CHECK(middle(Numerics::Shape::linear) == 1.0);

@@ -34,7 +34,7 @@ void prepare(Run& run) {
   update_stencil_weights(run.scene, run.state);
 }
 
-double power(const State& state, const std::vector<NodeSums>& forces) {
+double power(const State& state, const NodalSums& forces) {
   double sum = 0.0;
   for (std::size_t r = 0; r < forces.size(); ++r)
     sum += forces[r].f_x * state.motion[r].v_x + forces[r].f_y * state.motion[r].v_y;
@@ -73,8 +73,11 @@ TEST_CASE("the jump operator and the force of tractions are adjoint") {
       Run run(scene);
       prepare(run);
       State& state = run.state;
-      for (NodeMotion& node : state.motion) node = {uniform(random), uniform(random), 0.0, 0.0};
-      std::vector<NodeSums> forces(state.sums.size());
+      for (std::size_t r = 0; r < state.motion.size(); ++r) {
+        const double v_x = uniform(random), v_y = uniform(random);
+        state.motion[r] = NodeMotion{v_x, v_y, 0.0, 0.0};
+      }
+      NodalSums forces(state.sums.size());
       double by_jump = 0.0, scale = 0.0;
       for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
         for (std::size_t q = 0; q < state.surfaces[k].points.size(); ++q) {
@@ -120,7 +123,7 @@ TEST_CASE("jump, mean velocity and traction of a parted block") {
       const SurfaceStencil& stencil = state.point_stencils[0][middle];
       CHECK((jump(stencil, state.motion) - (a - b)).norm() < 1e-13);
       CHECK((mean_velocity(stencil, state.motion) - 0.5 * (a + b)).norm() < 1e-13);
-      std::vector<NodeSums> forces(state.sums.size());
+      NodalSums forces(state.sums.size());
       add_traction(stencil, {3.0, 4.0}, 0.5, forces);
       Vec2 up = Vec2::Zero(), down = Vec2::Zero();
       for (std::size_t r = 0; r < forces.size(); ++r) {
@@ -147,7 +150,7 @@ TEST_CASE("the fluid's work is P dV") {
       State before = state;
       particles_to_grid(run.scene, run.rocks, before);
       update_stencil_weights(run.scene, before);
-      std::vector<NodeSums> forces(before.sums.size());
+      NodalSums forces(before.sums.size());
       for (std::size_t q = 0; q < before.fracture().points.size(); ++q) {
         const SurfacePoint& s = before.fracture().points[q];
         add_traction(before.point_stencils[0][q], 1e6 * s.n, s.A, forces);

@@ -102,9 +102,9 @@ TEST_CASE("total and updated agree to the order of the strain") {
   }
 }
 
-// Requires that a growing run saved at a multiple of steps_between_bases and resumed goes on to the same digits, as run()
-// does (nodal velocities included), and that new points of its fracture start with the displacement of the rock around them:
-// within 20 % of the openings, which is what the tip's field varies by over a cell.
+// Requires that a growing run saved at a multiple of steps_between_bases and resumed goes on to the same digits, as
+// run() does (nodal velocities included), and that new points of its fracture start with the displacement of the rock
+// around them: within 20 % of the openings, which is what the tip's field varies by over a cell.
 TEST_CASE("a run in reference places resumes to the same digits") {
   const TemporaryFolder folder;
   Run run(growing(Kinematics::total));

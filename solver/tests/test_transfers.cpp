@@ -200,9 +200,9 @@ TEST_CASE("a linear field of node velocities has an exact gradient everywhere") 
     for (int r = 0; r < run.state.copies.records(); ++r) {
       const double x = run.state.grid.column(r), y = run.state.grid.row(r);
       const double v_x = rate[0] * x + rate[1] * y, v_y = rate[2] * x + rate[3] * y;
-      run.state.motion[static_cast<std::size_t>(r)] = {v_x, v_y, 0.0, 0.0};
+      run.state.motion[static_cast<std::size_t>(r)] = NodeMotion{v_x, v_y, 0.0, 0.0};
     }
-    grid_to_particles(run.scene, run.rocks, run.state, 1.0);
+    grid_to_particles(run.scene, run.rocks, {1.0, &run.state.motion.dv_x, &run.state.motion.dv_y}, run.state);
     CHECK(gradient_error(run, rate, 0.0) < 1e-11);
   }
 }

@@ -1,0 +1,322 @@
+// The kernel of an explicit step: motion from nodes to particles, stress, and sums of mass, momentum and internal force
+// back to nodes, for one block of bins: neighbours along a row, each a lane (see Bin). Interpolation is a product of
+// the two axes, a row of nodes first. On each axis the weights of three nodes sum to 1 and their derivatives to 0, so
+// that only those of the outer two are formed: with E_b = r_b - r_0 (b = before, after) of the middle node's value r_0,
+//   sum_a N_a r_a = r_0 + N_b E_b + N_a E_a,  sum_a dN_a r_a = dN_b E_b + dN_a E_a,
+// and what particles give to the middle node is the whole less the outer two. No digits are lost: the middle node's
+// weight is the largest.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "state/copies.hpp"
+#include "state/elasticity.hpp"
+#include "state/lanes.hpp"
+#include "state/nodal.hpp"
+#include "state/particles.hpp"
+#include "state/shape_functions.hpp"
+
+namespace strata {
+
+// The arrays that a sweep works on. take_x and take_y are what particles' velocities take up.
+struct SweepArrays {
+  double *x, *y, *u_x, *u_y, *v_x, *v_y, *g_xx, *g_xy, *g_yx, *g_yy;
+  const double *m, *V, *half;
+  const std::uint8_t* rock;
+  const double *node_v_x, *node_v_y, *take_x, *take_y;
+  double *sum_m, *sum_mom_x, *sum_mom_y, *sum_f_x, *sum_f_y;
+};
+
+struct SweepStep {
+  double dt = 0.0;    // s
+  double keep = 1.0;  // share of their own velocity that particles keep
+  double dt_x = 0.0;  // for places: dt, or 0 where they stay (s)
+};
+
+// Sums and maxima over the particles of a lane.
+template <class Real>
+struct LaneReport {
+  Real before{}, after{}, step_strain{}, largest_speed2{}, farthest_cells{};
+};
+
+// A span of one axis: its node's coordinate (m), 1/length (1/m), and 1/(1 + length of the span beside/own length).
+template <class Real>
+struct Span {
+  Real node, per_length;
+  SpanShares<Real> share;
+};
+
+template <class Lanes>
+struct BlockSpans {
+  Span<typename Lanes::Real> x;
+  Span<double> y;
+};
+
+// Coefficients of a quantity on a bin's nine nodes: [row][column] of (before, middle, after), outer ones less the
+// middle one's, along both axes.
+template <class Real>
+struct Coefficients {
+  Real v_x[3][3], v_y[3][3], take_x[3][3], take_y[3][3];
+};
+
+template <class Lanes>
+[[gnu::always_inline]] inline void load_coefficients(const Lanes lanes, const Bin& bin, const double* values,
+                                                     typename Lanes::Real (&c)[3][3]) {
+  for (std::size_t b = 0; b < 3; ++b) {
+    const auto middle = lanes.load(values + bin.record[3 * b + 1]);
+    c[b][0] = lanes.load(values + bin.record[3 * b]) - middle;
+    c[b][1] = middle;
+    c[b][2] = lanes.load(values + bin.record[3 * b + 2]) - middle;
+  }
+  for (std::size_t a = 0; a < 3; ++a) c[0][a] -= c[1][a], c[2][a] -= c[1][a];
+}
+
+// Outer weights of a place on both axes.
+template <class Real>
+struct PlaceWeights {
+  OuterWeights<Real> x, y;
+};
+
+template <class Shape, class Spans, class Real>
+[[gnu::always_inline]] inline PlaceWeights<Real> weights_at(const Spans& at, const Real& x, const Real& y,
+                                                            const ParticleSize<Real>& size) {
+  const SpanShares<Real> y_share{Real{} + at.y.share.before, Real{} + at.y.share.after};
+  return {Shape::outer((x - at.x.node) * at.x.per_length, at.x.share, size),
+          Shape::outer((y - at.y.node) * at.y.per_length, y_share, size)};
+}
+
+template <class Real>
+[[gnu::always_inline]] inline Real along_row(const Real (&c)[3], const OuterWeights<Real>& w) {
+  return c[1] + w.N_before * c[0] + w.N_after * c[2];
+}
+template <class Real>
+[[gnu::always_inline]] inline Real slope_of_row(const Real (&c)[3], const OuterWeights<Real>& w) {
+  return w.dN_before * c[0] + w.dN_after * c[2];
+}
+
+// Value and slopes (per span) of a quantity at a place.
+template <class Real>
+struct Interpolated {
+  Real value, d_x, d_y;
+};
+
+template <class Real>
+[[gnu::always_inline]] inline Interpolated<Real> interpolate(const Real (&c)[3][3], const PlaceWeights<Real>& w) {
+  const Real r[3] = {along_row(c[0], w.x), along_row(c[1], w.x), along_row(c[2], w.x)};
+  const Real s[3] = {slope_of_row(c[0], w.x), slope_of_row(c[1], w.x), slope_of_row(c[2], w.x)};
+  return {along_row(r, w.y), along_row(s, w.y), slope_of_row(r, w.y)};
+}
+
+template <class Real>
+[[gnu::always_inline]] inline Real value_at(const Real (&c)[3][3], const PlaceWeights<Real>& w) {
+  const Real r[3] = {along_row(c[0], w.x), along_row(c[1], w.x), along_row(c[2], w.x)};
+  return along_row(r, w.y);
+}
+
+// What a particle gives to the nodes: mass and momentum by N, and -V sigma, each component with the 1/length of the
+// axis along which it meets dN.
+template <class Real>
+struct Given {
+  PlaceWeights<Real> w;
+  Real m, mom_x, mom_y;
+  Real s_xx, s_xy_x;  // with dN/dx into f_x and f_y
+  Real s_xy_y, s_yy;  // with dN/dy
+};
+
+// Where particles are, and what moves and strains with them.
+template <class Real>
+struct ParticleState {
+  Real x, y, v_x, v_y, g_xx, g_xy, g_yx, g_yy;
+};
+
+template <class Lanes>
+[[gnu::always_inline]] inline ParticleState<typename Lanes::Real> load_particles(const Lanes lanes,
+                                                                                 const SweepArrays& p, std::size_t q) {
+  return {lanes.load(p.x + q),    lanes.load(p.y + q),    lanes.load(p.v_x + q),  lanes.load(p.v_y + q),
+          lanes.load(p.g_xx + q), lanes.load(p.g_xy + q), lanes.load(p.g_yx + q), lanes.load(p.g_yy + q)};
+}
+
+// Moves the particles at q, which are as `is` says, by the grid's motion over a step.
+template <class Lanes>
+[[gnu::always_inline]] inline void move(const Lanes lanes, const SweepArrays& p, const SweepStep& step,
+                                        const BlockSpans<Lanes>& at, const Coefficients<typename Lanes::Real>& c,
+                                        const PlaceWeights<typename Lanes::Real>& w, const Elasticity& rock,
+                                        std::size_t q, ParticleState<typename Lanes::Real>& is,
+                                        LaneReport<typename Lanes::Real>& report) {
+  using Real = typename Lanes::Real;
+  const auto change = [&](double* array, Real& value, const Real& by) {
+    value += by;
+    lanes.store(array + q, value);
+  };
+  const auto add = [&](double* array, const Real& by) { lanes.store(array + q, lanes.load(array + q) + by); };
+  const Interpolated<Real> x = interpolate(c.v_x, w), y = interpolate(c.v_y, w);
+  const Real m = lanes.load(p.m + q), V = lanes.load(p.V + q);
+  report.before += m * (is.v_x * is.v_x + is.v_y * is.v_y);
+  is.v_x = step.keep * is.v_x + value_at(c.take_x, w), is.v_y = step.keep * is.v_y + value_at(c.take_y, w);
+  lanes.store(p.v_x + q, is.v_x), lanes.store(p.v_y + q, is.v_y);
+  const Real speed2 = is.v_x * is.v_x + is.v_y * is.v_y;
+  report.after += m * speed2;
+  report.largest_speed2 = larger(report.largest_speed2, lanes.used(speed2));
+  change(p.x, is.x, step.dt_x * x.value), change(p.y, is.y, step.dt_x * y.value);
+  add(p.u_x, step.dt * x.value), add(p.u_y, step.dt * y.value);
+  const Real by_x = step.dt * at.x.per_length;
+  const double by_y = step.dt * at.y.per_length;
+  const Real e_xx = by_x * x.d_x, e_xy = by_y * x.d_y, e_yx = by_x * y.d_x, e_yy = by_y * y.d_y;
+  change(p.g_xx, is.g_xx, e_xx), change(p.g_xy, is.g_xy, e_xy);
+  change(p.g_yx, is.g_yx, e_yx), change(p.g_yy, is.g_yy, e_yy);
+  const Real shear = e_xy + e_yx, trace = e_xx + e_yy;
+  report.step_strain += V * (rock.lambda * trace * trace + 2.0 * rock.mu * (e_xx * e_xx + e_yy * e_yy) +
+                             rock.mu * shear * shear);  // V dsigma : de
+}
+
+// What the particles at q give as they are.
+template <class Lanes>
+[[gnu::always_inline]] inline void give(const Lanes lanes, const SweepArrays& p, const BlockSpans<Lanes>& at,
+                                        const Elasticity& rock, std::size_t q,
+                                        const ParticleState<typename Lanes::Real>& is,
+                                        Given<typename Lanes::Real>& to) {
+  using Real = typename Lanes::Real;
+  to.m = lanes.load(p.m + q);
+  to.mom_x = to.m * is.v_x, to.mom_y = to.m * is.v_y;
+  const Real V = lanes.load(p.V + q), V_x = -V * at.x.per_length, V_y = -V * at.y.per_length;
+  const Real trace = rock.lambda * (is.g_xx + is.g_yy), s_xy = rock.mu * (is.g_xy + is.g_yx);
+  to.s_xx = V_x * (trace + 2.0 * rock.mu * is.g_xx), to.s_xy_x = V_x * s_xy;
+  to.s_yy = V_y * (trace + 2.0 * rock.mu * is.g_yy), to.s_xy_y = V_y * s_xy;
+}
+
+// Sums of a quantity on one row of a bin's nodes.
+template <class Real>
+struct RowSums {
+  Real m[3]{}, mom_x[3]{}, mom_y[3]{}, f_x[3]{}, f_y[3]{};
+};
+
+template <class Real>
+[[gnu::always_inline]] inline void add_by_N(const OuterWeights<Real>& w, const Real& q, Real (&row)[3]) {
+  row[0] += w.N_before * q, row[1] += q, row[2] += w.N_after * q;
+}
+template <class Real>
+[[gnu::always_inline]] inline void add_by_dN(const OuterWeights<Real>& w, const Real& q, Real (&row)[3]) {
+  row[0] += w.dN_before * q, row[2] += w.dN_after * q;
+}
+
+// The row's middle node has the whole less the outer two.
+template <class Real>
+[[gnu::always_inline]] inline void finish_row(RowSums<Real>& row) {
+  row.m[1] -= row.m[0] + row.m[2];
+  row.mom_x[1] -= row.mom_x[0] + row.mom_x[2], row.mom_y[1] -= row.mom_y[0] + row.mom_y[2];
+  row.f_x[1] -= row.f_x[0] + row.f_x[2], row.f_y[1] -= row.f_y[0] + row.f_y[2];
+}
+
+// The sum of all three rows, and an outer one by its weights N and dN across.
+template <class Real>
+[[gnu::always_inline]] inline RowSums<Real> sum_all_rows(const Given<Real>* given, int n) {
+  RowSums<Real> row;
+  for (int k = 0; k < n; ++k) {
+    const Given<Real>& g = given[k];
+    add_by_N(g.w.x, g.m, row.m), add_by_N(g.w.x, g.mom_x, row.mom_x), add_by_N(g.w.x, g.mom_y, row.mom_y);
+    add_by_dN(g.w.x, g.s_xx, row.f_x), add_by_dN(g.w.x, g.s_xy_x, row.f_y);
+  }
+  finish_row(row);
+  return row;
+}
+template <class Real>
+[[gnu::always_inline]] inline RowSums<Real> sum_outer_row(const Given<Real>* given, int n, bool before) {
+  RowSums<Real> row;
+  for (int k = 0; k < n; ++k) {
+    const Given<Real>& g = given[k];
+    const Real N = before ? g.w.y.N_before : g.w.y.N_after, dN = before ? g.w.y.dN_before : g.w.y.dN_after;
+    add_by_N<Real>(g.w.x, N * g.m, row.m), add_by_N<Real>(g.w.x, N * g.mom_x, row.mom_x);
+    add_by_N<Real>(g.w.x, N * g.mom_y, row.mom_y);
+    add_by_N<Real>(g.w.x, dN * g.s_xy_y, row.f_x), add_by_dN<Real>(g.w.x, N * g.s_xx, row.f_x);
+    add_by_N<Real>(g.w.x, dN * g.s_yy, row.f_y), add_by_dN<Real>(g.w.x, N * g.s_xy_x, row.f_y);
+  }
+  finish_row(row);
+  return row;
+}
+
+// Adds a row's sums to the nodes, whose records are `record`.
+[[gnu::always_inline]] inline void add_row(const OneLane /*lanes*/, const int* record, const RowSums<double>& row,
+                                           const SweepArrays& to) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    to.sum_m[record[a]] += row.m[a];
+    to.sum_mom_x[record[a]] += row.mom_x[a], to.sum_mom_y[record[a]] += row.mom_y[a];
+    to.sum_f_x[record[a]] += row.f_x[a], to.sum_f_y[record[a]] += row.f_y[a];
+  }
+}
+
+// Lane l adds to the nodes l, l + 1 and l + 2 of the row: where their records follow each other, what lanes meet at is
+// added up before it goes to memory; beside a cut, where nodes and copies take turns, it goes there one after the
+// other.
+template <class Lanes>
+[[gnu::always_inline]] inline void add_row(const Lanes lanes, const int* record,
+                                           const RowSums<typename Lanes::Real>& row, const SweepArrays& to) {
+  const bool follow = record[1] == record[0] + 1 && record[2] == record[0] + 2;
+  const auto add = [&](double* array, const typename Lanes::Real(&sum)[3]) {
+    if (follow) return lanes.add_shifted(array + record[0], sum[0], sum[1], sum[2]);
+    for (std::size_t a = 0; a < 3; ++a) lanes.store(array + record[a], lanes.load(array + record[a]) + sum[a]);
+  };
+  add(to.sum_m, row.m), add(to.sum_mom_x, row.mom_x), add(to.sum_mom_y, row.mom_y);
+  add(to.sum_f_x, row.f_x), add(to.sum_f_y, row.f_y);
+}
+
+template <class Real>
+[[gnu::always_inline]] inline void less(RowSums<Real>& row, const RowSums<Real>& other) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    row.m[a] -= other.m[a], row.mom_x[a] -= other.mom_x[a], row.mom_y[a] -= other.mom_y[a];
+    row.f_x[a] -= other.f_x[a], row.f_y[a] -= other.f_y[a];
+  }
+}
+
+template <class Lanes>
+[[gnu::always_inline]] inline void add_given(const Lanes lanes, const Bin& bin,
+                                             const Given<typename Lanes::Real>* given, int n, const SweepArrays& to) {
+  RowSums<typename Lanes::Real> middle = sum_all_rows(given, n);
+  const RowSums<typename Lanes::Real> before = sum_outer_row(given, n, true);
+  less(middle, before);
+  add_row(lanes, bin.record.data(), before, to);
+  const RowSums<typename Lanes::Real> after = sum_outer_row(given, n, false);
+  less(middle, after);
+  add_row(lanes, bin.record.data() + 6, after, to);
+  add_row(lanes, bin.record.data() + 3, middle, to);
+}
+
+/// Sweeps the particles q = first, first + stride, ... below last of a block of bins whose first lane is `bin`; lanes'
+/// records follow that bin's one by one. Moves them (Move) by node_v and take over a step, and adds what they then give
+/// to the nodes' sums (Gather); rocks: of all particles, the same in all lanes. Throws nothing.
+template <class Shape, bool Move, bool Gather, class Lanes>
+void sweep_block(const Lanes lanes, const std::vector<Elasticity>& rocks, const SweepStep& step,
+                 const BlockSpans<Lanes>& at, const Bin& bin, const SweepArrays& arrays,
+                 LaneReport<typename Lanes::Real>& report) {
+  using Real = typename Lanes::Real;
+  constexpr int together = 4;  // particles of a lane whose weights are kept until their sums are formed
+  Coefficients<Real> c;
+  if constexpr (Move) {
+    load_coefficients(lanes, bin, arrays.node_v_x, c.v_x), load_coefficients(lanes, bin, arrays.node_v_y, c.v_y);
+    load_coefficients(lanes, bin, arrays.take_x, c.take_x), load_coefficients(lanes, bin, arrays.take_y, c.take_y);
+  }
+  Given<Real> given[together];
+  int n = 0;
+  for (int first = bin.first; first < bin.last; first += bin.stride) {
+    const auto q = static_cast<std::size_t>(first);
+    const Elasticity& rock = rocks[arrays.rock[q]];
+    const ParticleSize<Real> size = Shape::template size<Real>(lanes, arrays.half + q, at.y.per_length);
+    ParticleState<Real> is = load_particles(lanes, arrays, q);
+    if constexpr (Move) {
+      const Real off_x = (is.x - at.x.node) * at.x.per_length, off_y = (is.y - at.y.node) * at.y.per_length;
+      report.farthest_cells =
+          larger(report.farthest_cells, lanes.used(larger(larger(off_x, -off_x), larger(off_y, -off_y))));
+      const PlaceWeights<Real> w = weights_at<Shape>(at, is.x, is.y, size);
+      move(lanes, arrays, step, at, c, w, rock, q, is, report);
+    }
+    if constexpr (Gather) {
+      Given<Real>& to = given[n++];
+      to.w = weights_at<Shape>(at, is.x, is.y, size);
+      give(lanes, arrays, at, rock, q, is, to);
+      if (n == together || first + bin.stride >= bin.last) add_given(lanes, bin, given, n, arrays), n = 0;
+    }
+  }
+}
+
+}  // namespace strata
