@@ -51,9 +51,9 @@ double error_of(const TangentFactor& factor, const Contact& contact) {
 }  // namespace
 
 // Requires that a factor which follows places that open, slide and close again solves with the tangent of each to
-// 1e-9 (measured: see below), where contact is 1e4 times as stiff as the rock, and that it asks for a factorisation
-// when many have changed. Mutations that fail: M with the other sign, M twice, I - M U^T Z, columns of Z by order of
-// change instead of by place, places that close again left among the changed.
+// 1e-9, where contact is 1e4 times as stiff as the rock, and that it asks for a factorisation
+// when many have changed. Mutations that fail: M with the other sign, M twice, columns of Z by order of
+// change instead of by place.
 TEST_CASE("a factored tangent follows the places that change") {
   Contact contact = row_of_places(60);
   TangentFactor factor;

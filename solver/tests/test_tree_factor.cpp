@@ -51,8 +51,7 @@ std::vector<SparseVector> some_loads(int n) {
 }  // namespace
 
 // Requires that K x = f to 1e-12 against a dense solve, and that a solve from a few loads for a few unknowns has the
-// digits of the whole one there. Mutations that fail: branches without parents, loads of the asked branches alone,
-// blocks of seven columns with values of eight, the last odd row left out of the sums.
+// digits of the whole one there.
 TEST_CASE("a solve along branches is the whole solve where it is asked for") {
   const Eigen::SparseMatrix<double> K = grid_matrix(23, 31);
   const Eigen::Index n = K.rows();
@@ -70,8 +69,6 @@ TEST_CASE("a solve along branches is the whole solve where it is asked for") {
 }
 
 // Requires that Y_a . Y_b is g_a K^-1 g_b to 1e-12, and that the digits of Y do not depend on what else is solved for.
-// Mutations that fail: the work of one batch left for the next, a batch's branches for all of its columns with one of
-// them left out.
 TEST_CASE("forward gives one half of the inverse") {
   const Eigen::SparseMatrix<double> K = grid_matrix(19, 24);
   const auto n = static_cast<int>(K.rows());
@@ -97,8 +94,7 @@ TEST_CASE("a matrix that is not positive definite is refused with the text given
 }
 
 // Requires that the displacements of a few records have the digits that they have among all, and that between outputs
-// the particles which decide what happens next hold the fields that they hold when all do. Mutations that fail: jumps
-// load their own columns' first row alone, records of the watched bins without their last.
+// the particles which decide what happens next hold the fields that they hold when all do.
 TEST_CASE("displacements of a few records are those among all") {
   using namespace strata::test;
   Scene scene = block(16, 16);
