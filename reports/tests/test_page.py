@@ -69,9 +69,9 @@ def links_of(page: Path) -> Links:
 
 
 def make(runs: Path, out: Path, experiments: Path | None = None) -> int:
-    """Make a page; its exit status."""
-    where = experiments or runs.parent / "no_scenes"
-    return main(["--runs", str(runs), "--out", str(out), "--experiments", str(where), "--strict"])
+    """Make a page of these runs alone, without the chart of errors against time that is kept beside them; its exit status."""
+    where, chart = experiments or runs.parent / "no_scenes", runs.parent / "no_chart"
+    return main(["--runs", str(runs), "--out", str(out), "--experiments", str(where), "--precision", str(chart), "--strict"])
 
 
 @pytest.fixture(scope="module")
