@@ -59,7 +59,7 @@ void advance_updated(const Scene& scene, const std::vector<Elasticity>& rocks, b
   // v_p, x_p, grad u_p (and with it stress), and with fast kernels the next step's m_i, mom_i, f_i
   const auto move_particles = scene.numerics.in_lanes() ? sweep_particles : grid_to_particles;
   const ParticleReport particles = move_particles(scene, rocks, uptake, state);
-  follow_surfaces(scene, state);  // w += dt D v
+  follow_surfaces(state);  // w += dt D v
   state.time += state.dt;
   ++state.step;
   close_ledger(scene, grid, after, particles, state);

@@ -9,8 +9,8 @@
 namespace strata {
 
 // Derived members are rebuilt at multiples of these steps in every run (of steps_between_bases under kinematics =
-// "total"), and checkpoints are written at no others, so
-// that a resumed run starts from exactly what an uninterrupted one holds there.
+// "total"), and checkpoints are written at no others, so that a resumed run starts from exactly what an uninterrupted
+// one holds there.
 constexpr std::int64_t steps_between_rebuilds = 250;
 
 /// Advances the state by one explicit step of state.dt. Update stress last: forces come from the stress at the start of

@@ -40,49 +40,46 @@ Growth grow_on(State& state, int times, Step step) {
 
 constexpr int growths = 4;
 
+// Adds an event that happens to a copy of an order's state; event(work, state) says how long (s) it took.
+template <class Event>
+void add_event(Shop& shop, const std::string& name, const Order& order, const std::string& label, Event event) {
+  add(name, 1, [&shop, order, label, event](benchmark::State& bench) {
+    const Workpiece& work = shop.get(order);
+    time_part(bench, shop, {label, 1, 1.0, 0.0, 0.0}, [&] {
+      State state = work.state;
+      return event(work, state);
+    });
+  })->UseManualTime();
+}
+
 // An increment in a run with inertia: what the step in which it happens takes beyond the others.
 void add_explicit_growth(Shop& shop, const std::string& kinematics) {
-  const Order order{"growing", {"numerics.kinematics=" + kinematics}};
-  add("growth/explicit/" + kinematics, 1, [&shop, order, kinematics](benchmark::State& bench) {
-    const Workpiece& work = shop.get(order);
-    const About about{"mechanics=explicit kinematics=" + kinematics, 1, 1.0, 0.0, 0.0};
-    time_part(bench, shop, about, [&] {
-      State state = work.state;
-      const Growth taken = grow_on(state, growths, [&] { advance(work.scene, work.rocks, state); });
-      return taken.with - taken.without;
-    });
-  })->UseManualTime();
+  add_event(shop, "growth/explicit/" + kinematics, {"growing", {"numerics.kinematics=" + kinematics}},
+            "mechanics=explicit kinematics=" + kinematics, [](const Workpiece& work, State& state) {
+              const Growth taken = grow_on(state, growths, [&] { advance(work.scene, work.rocks, state); });
+              return taken.with - taken.without;
+            });
 }
 
-// An increment in a run without inertia: the whole step in which it happens, with the equilibrium that follows.
-void add_quasistatic_growth(Shop& shop, int cells) {
-  const Order order{"growing", {"numerics.mechanics=quasistatic", cell_setting(cells)}};
-  add(fmt::format("growth/quasistatic/cells{}", cells), 1, [&shop, order, cells](benchmark::State& bench) {
-    const Workpiece& work = shop.get(order);
-    const About about{fmt::format("mechanics=quasistatic cells={}", cells), 1, 1.0, 0.0, 0.0};
-    time_part(bench, shop, about, [&] {
-      State state = work.state;
-      Quasistatic run;
-      start_quasistatic(work.scene, work.rocks, state, run);
-      return grow_on(state, growths, [&] { advance_quasistatic(work.scene, work.rocks, 1.0, state, run); }).with;
-    });
-  })->UseManualTime();
-}
-
-// The start of a run without inertia: factor of the block, condensation, first equilibrium.
-void add_quasistatic_start(Shop& shop, int cells) {
-  const Order order{"", {"numerics.mechanics=quasistatic", cell_setting(cells)}};
-  add(fmt::format("start/quasistatic/cells{}", cells), 1, [&shop, order, cells](benchmark::State& bench) {
-    const Workpiece& work = shop.get(order);
-    const About about{fmt::format("mechanics=quasistatic cells={}", cells), 1, 1.0, 0.0, 0.0};
-    time_part(bench, shop, about, [&] {
-      State state = work.state;
-      Quasistatic run;
-      const Clock::time_point start = Clock::now();
-      start_quasistatic(work.scene, work.rocks, state, run);
-      return seconds_since(start);
-    });
-  })->UseManualTime();
+// An increment in a run without inertia: the whole step in which it happens, with the equilibrium that follows. And the
+// start of one: factor of the block, condensation, first equilibrium.
+void add_quasistatic_events(Shop& shop, int cells) {
+  const std::vector<std::string> settings{"numerics.mechanics=quasistatic", cell_setting(cells)};
+  const std::string label = fmt::format("mechanics=quasistatic cells={}", cells);
+  add_event(shop, fmt::format("growth/quasistatic/cells{}", cells), {"growing", settings}, label,
+            [](const Workpiece& work, State& state) {
+              Quasistatic run;
+              start_quasistatic(work.scene, work.rocks, state, run);
+              const auto step = [&] { advance_quasistatic(work.scene, work.rocks, 1.0, state, run); };
+              return grow_on(state, growths, step).with;
+            });
+  add_event(shop, fmt::format("start/quasistatic/cells{}", cells), {"", settings}, label,
+            [](const Workpiece& work, State& state) {
+              Quasistatic run;
+              const Clock::time_point start = Clock::now();
+              start_quasistatic(work.scene, work.rocks, state, run);
+              return seconds_since(start);
+            });
 }
 
 // Changes the pressure on the fracture (Pa) up and down in turn.
@@ -168,8 +165,7 @@ void add_writing(Shop& shop, const std::string& what) {
 void add_events(Shop& shop) {
   for (const std::string kinematics : {"updated", "total"}) add_explicit_growth(shop, kinematics);
   for (const int cells : {80, 160}) {
-    add_quasistatic_growth(shop, cells);
-    add_quasistatic_start(shop, cells);
+    add_quasistatic_events(shop, cells);
     for (const std::string variant : {"", "soft"}) add_equilibrium(shop, variant, cells);
     add_reynolds(shop, cells);
   }

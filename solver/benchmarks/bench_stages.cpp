@@ -106,7 +106,7 @@ void add_stages(Shop& shop) {
   add_stage(shop, "surfaces", block, 1, 2000, [](Workpiece& w) {
     update_stencil_weights(w.scene, w.state);
     add_net_tractions(w.state);
-    follow_surfaces(w.scene, w.state);
+    follow_surfaces(w.state);
   });
   add_stage(shop, "measure_tips", block, 1, 500, [](Workpiece& w) { measure_tips(w.scene, w.rocks, w.state); });
   add_stage(shop, "rebuild", block, 1, 10, [](Workpiece& w) { rebuild(w.scene, w.rocks, w.state); });

@@ -40,10 +40,6 @@ double times(const Row& row, const Eigen::VectorXd& j) {
   return sum;
 }
 
-Vec2 tangent_of(const Vec2& n) {
-  return {n.y(), -n.x()};
-}
-
 double pressure(const State& state, const ContactPlace& place) {
   return place.tie >= 0 ? 0.0 : state.surfaces[place.surface].points[place.point].P;
 }

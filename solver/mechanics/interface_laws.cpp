@@ -42,17 +42,13 @@ void add_entry(SplitPlace& place, const Master& master, double weight) {
   place.c_y[static_cast<std::size_t>(k)] += weight * master.y;
 }
 
-Vec2 tangent_of(const SurfacePoint& s) {
-  return {s.n.y(), -s.n.x()};
-}
-
 SplitPlace make_place(const State& state, const SurfaceStencil& stencil, SurfacePoint& s, const InterfaceLaw& law,
                       double k) {
   SplitPlace place;
   place.s = &s;
   place.law = &law;
   place.k = k;
-  place.r_t_start = s.reaction.dot(tangent_of(s));
+  place.r_t_start = s.reaction.dot(tangent_of(s.n));
   for (std::size_t n = 0; n < 9; ++n) {
     if (stencil.plus[n] == stencil.minus[n]) continue;
     add_entry(place, state.masters[static_cast<std::size_t>(stencil.plus[n])], stencil.N[n]);
@@ -93,7 +89,7 @@ Vec2 jump_rate(const SplitPlace& place, const NodalMotion& motion) {
 // allows; returns how much the reaction changed (Pa).
 double relax(const SplitPlace& place, double dt, NodalMotion& motion) {
   SurfacePoint& s = *place.s;
-  const Vec2 tangent = tangent_of(s);
+  const Vec2 tangent = tangent_of(s.n);
   const Vec2 w = s.w + dt * jump_rate(place, motion);
   const FreeJump free{w.dot(s.n) - place.per_n * s.reaction.dot(s.n),
                       w.dot(tangent) - place.per_t * s.reaction.dot(tangent),
@@ -179,9 +175,19 @@ InterfaceLaw tie_law(const TipTie& tie) {
 // friction, which is then negative by as much while load comes on. All of it is counted, so the ledger closes.
 double spring_energy_at(const InterfaceLaw& law, const SurfacePoint& s) {
   if (law.kind != Kind::soft || !s.split) return 0.0;
-  const double w_n = s.opening(), w_t = s.w.dot(tangent_of(s));
+  const double w_n = s.opening(), w_t = s.w.dot(tangent_of(s.n));
   const bool closed = law.compression == InterfaceLaw::Compression::contact && w_n < 0.0;
   return 0.5 * s.A * ((closed ? 0.0 : law.normal_stiffness_Pa_m * w_n * w_n) + law.shear_stiffness_Pa_m * w_t * w_t);
+}
+
+void note_jump(const InterfaceLaw& law, const Vec2& dw, SurfacePoint& s, State& state) {
+  SurfacePoint after = s;
+  after.w += dw;
+  const double stored = spring_energy_at(law, after) - spring_energy_at(law, s);
+  state.ledger.friction -= s.A * s.reaction.dot(dw) + stored;
+  if (law.kind != Kind::soft) s.slip += std::abs(dw.dot(tangent_of(s.n)));
+  const bool closes = law.kind != Kind::soft || law.compression == InterfaceLaw::Compression::contact;
+  if (closes) state.monitors.largest_penetration = std::max(state.monitors.largest_penetration, -after.opening());
 }
 
 bool fails(const InterfaceLaw& law, const Reaction& r) {
@@ -222,17 +228,13 @@ bool fail_interfaces(const Scene& scene, const std::vector<Elasticity>& rocks, S
 }
 
 void solve_reactions(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
-  // Change of a sweep, of the largest reaction. What is left is not lost: the next step starts from these reactions and
-  // sees the jumps they led to.
-  constexpr double tolerance = 1e-6;
-  constexpr int most_sweeps = 200;  // bounds the time of a step; steps that end here are counted in the monitors
   const InterfaceLaw faces = face_law();
   find_split_places(scene, rocks, faces, state);
   const std::vector<SplitPlace>& places = state.places;
   for (const SplitPlace& place : places) push(place, place.s->reaction, state.motion);
   int sweeps = 0;
   for (double change = 1.0, largest = 0.0;
-       sweeps < most_sweeps && !places.empty() && change > tolerance * std::max(largest, 1.0); ++sweeps) {
+       sweeps < most_sweeps && !places.empty() && change > reaction_tolerance * std::max(largest, 1.0); ++sweeps) {
     change = largest = 0.0;
     for (const SplitPlace& place : places) {
       change = std::max(change, relax(place, state.dt, state.motion));
@@ -241,18 +243,8 @@ void solve_reactions(const Scene& scene, const std::vector<Elasticity>& rocks, S
   }
   state.monitors.contact_sweeps += sweeps;
   if (sweeps == most_sweeps) ++state.monitors.contact_unconverged;
-  for (const SplitPlace& place : places) {
-    SurfacePoint& s = *place.s;
-    const Vec2 dw = state.dt * jump_rate(place, state.motion);
-    const Vec2 tangent = tangent_of(s);
-    SurfacePoint after = s;
-    after.w += dw;
-    const double stored = spring_energy_at(*place.law, after) - spring_energy_at(*place.law, s);
-    state.ledger.friction -= s.A * s.reaction.dot(dw) + stored;
-    if (place.law->kind != Kind::soft) s.slip += std::abs(dw.dot(tangent));
-    const bool closes = place.law->kind != Kind::soft || place.law->compression == InterfaceLaw::Compression::contact;
-    if (closes) state.monitors.largest_penetration = std::max(state.monitors.largest_penetration, -after.opening());
-  }
+  for (const SplitPlace& place : places)
+    note_jump(*place.law, state.dt * jump_rate(place, state.motion), *place.s, state);
   state.places.clear();  // they point into the surfaces
 }
 

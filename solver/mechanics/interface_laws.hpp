@@ -30,6 +30,12 @@ struct Reaction {
 /// equilibrium of the law itself, whatever the step. perfect: none.
 Reaction react(const InterfaceLaw& law, double k, const FreeJump& w);
 
+// Change of a sweep, of the largest reaction, at which a step's sweeps over its places end. What is left is not lost:
+// the next step starts from these reactions and sees the jumps they led to.
+constexpr double reaction_tolerance = 1e-6;
+// Bounds the time of a step; steps that end here are counted in the monitors.
+constexpr int most_sweeps = 200;
+
 /// One visit of successive over-relaxation to a place whose reaction is `now`: past react(), but never out of what the
 /// law allows.
 Reaction over_relax(const InterfaceLaw& law, double k, const FreeJump& w, const Reaction& now);
@@ -39,6 +45,10 @@ InterfaceLaw tie_law(const TipTie& tie);
 
 /// Energy in the springs of a place under its law (J/m); 0 where it is not split or has none.
 double spring_energy_at(const InterfaceLaw& law, const SurfacePoint& s);
+
+/// Notes that the jump of a place changes by dw (m) under its reaction: slip (m), the ledger's friction and the
+/// monitored penetration. Leaves the jump itself as it is.
+void note_jump(const InterfaceLaw& law, const Vec2& dw, SurfacePoint& s, State& state);
 
 /// True if a bonded place fails under the reaction r: weak by (S/Sc)^2 + (N/Nc)^2 >= 1 with N in tension only (the
 /// study's eq. 5); friction where |t| > mu n or in tension.

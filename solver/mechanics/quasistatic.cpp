@@ -12,10 +12,6 @@ namespace strata {
 
 namespace {
 
-Vec2 tangent_of(const Vec2& n) {
-  return {n.y(), -n.x()};
-}
-
 // Fields of the particles of some bins; `which` empty: of all.
 void set_particles(const Scene& scene, const std::vector<Vec2>& u, const std::vector<char>& which, State& state) {
   Particles& p = state.particles;

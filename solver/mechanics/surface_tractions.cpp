@@ -86,15 +86,13 @@ void add_net_tractions(State& state) {
   }
 }
 
-void follow_surfaces(const Scene& scene, State& state) {
-  const bool stays = scene.numerics.keeps_places();
+void follow_surfaces(State& state) {
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
     Surface& surface = state.surfaces[k];
     for (std::size_t q = 0; q < surface.points.size(); ++q) {
       SurfacePoint& s = surface.points[q];
       const Vec2 dw = state.dt * jump(state.point_stencils[k][q], state.motion);
       s.w += dw;
-      if (stays) s.u += state.dt * mean_velocity(state.point_stencils[k][q], state.motion);
       if (!s.split) continue;
       state.ledger.fluid_work += s.A * s.P * s.n.dot(dw);
       state.ledger.in_situ_work -= s.A * s.in_situ.dot(dw);
@@ -102,10 +100,9 @@ void follow_surfaces(const Scene& scene, State& state) {
     for (std::size_t q = 0; q < surface.vertices.size(); ++q) {
       const SurfaceStencil& stencil = state.vertex_stencils[k][q];
       surface.vertices[q].w += state.dt * jump(stencil, state.motion);
-      Vec2& follows = stays ? surface.vertices[q].u : surface.vertices[q].x;
-      follows += state.dt * mean_velocity(stencil, state.motion);
+      surface.vertices[q].x += state.dt * mean_velocity(stencil, state.motion);
     }
-    if (!stays) update_geometry(surface);
+    update_geometry(surface);
   }
   for (TipTie& tie : state.ties) {
     const NodeMotion plus = state.motion[static_cast<std::size_t>(tie.plus)],

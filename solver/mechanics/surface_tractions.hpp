@@ -25,8 +25,8 @@ void add_traction(const SurfaceStencil& stencil, const Vec2& t, double A, NodalS
 /// t = -in_situ on interfaces, whose laws then add their reactions.
 void add_net_tractions(State& state);
 
-/// Moves surfaces with the rock for state.dt and adds up jumps: w += dt D v, x += dt mean(v), or u += dt mean(v) under
-/// kinematics = "total", where x stays. The ledger's fluid and in-situ work take up t A dw of each point.
-void follow_surfaces(const Scene& scene, State& state);
+/// Moves surfaces with the rock for state.dt and adds up jumps: w += dt D v, x += dt mean(v). The ledger's fluid and
+/// in-situ work take up t A dw of each point.
+void follow_surfaces(State& state);
 
 }  // namespace strata

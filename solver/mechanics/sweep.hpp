@@ -32,7 +32,6 @@ struct SweepArrays {
 struct SweepStep {
   double dt = 0.0;    // s
   double keep = 1.0;  // share of their own velocity that particles keep
-  double dt_x = 0.0;  // for places: dt, or 0 where they stay (s)
 };
 
 // Sums and maxima over the particles of a lane.
@@ -159,7 +158,7 @@ template <class Lanes>
   const Real speed2 = is.v_x * is.v_x + is.v_y * is.v_y;
   report.after += m * speed2;
   report.largest_speed2 = larger(report.largest_speed2, lanes.used(speed2));
-  change(p.x, is.x, step.dt_x * x.value), change(p.y, is.y, step.dt_x * y.value);
+  change(p.x, is.x, step.dt * x.value), change(p.y, is.y, step.dt * y.value);
   add(p.u_x, step.dt * x.value), add(p.u_y, step.dt * y.value);
   const Real by_x = step.dt * at.x.per_length;
   const double by_y = step.dt * at.y.per_length;

@@ -42,7 +42,7 @@ std::vector<Eigen::Matrix2d> reaction_tangents(const std::vector<ContactPlace>& 
 }  // namespace
 
 Eigen::Matrix2d tangent_matrix(const ContactPlace& place, const LawAnswer& r) {
-  const Vec2 t{place.n.y(), -place.n.x()};
+  const Vec2 t = tangent_of(place.n);
   return r.dn_dn * place.n * place.n.transpose() + r.dt_dn * t * place.n.transpose() + r.dt_dt * t * t.transpose();
 }
 
@@ -100,6 +100,7 @@ void TangentFactor::solve_for(const std::vector<ContactPlace>& places, const std
   for (const std::size_t k : which) {
     if (known_[k] < 0) fresh.push_back(k);
   }
+  if (fresh.empty()) return;
   Eigen::MatrixXd U = Eigen::MatrixXd::Zero(scale_.size(), 2 * static_cast<Eigen::Index>(fresh.size()));
   const Eigen::Index before = Z_all_.cols();
   for (std::size_t f = 0; f < fresh.size(); ++f) {
@@ -108,7 +109,6 @@ void TangentFactor::solve_for(const std::vector<ContactPlace>& places, const std
       for (const auto& [row, value] : places[fresh[f]].D[c]) U(row, static_cast<Eigen::Index>(2 * f + c)) += value;
     }
   }
-  if (fresh.empty()) return;
   Z_all_.conservativeResize(Eigen::NoChange, before + U.cols());
   Z_all_.rightCols(U.cols()) = solve_first(U);
 }

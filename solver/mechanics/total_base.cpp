@@ -13,21 +13,6 @@ namespace strata {
 
 namespace {
 
-template <class Shape>
-Gradients gradients_of(const Grid& grid, const Bin& bin, const Vec2& x, double half) {
-  const Weights X = weights_x<Shape>(grid, bin.i, x.x(), half), Y = weights_y<Shape>(grid, bin.j, x.y(), half);
-  const double per_x = 1.0 / grid.span_x(bin.i), per_y = 1.0 / grid.span_y(bin.j);
-  Gradients out;
-  for (std::size_t b = 0; b < 3; ++b) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      out.N[3 * b + a] = X.N[a] * Y.N[b];
-      out.N_x[3 * b + a] = X.dN[a] * Y.N[b] * per_x;
-      out.N_y[3 * b + a] = X.N[a] * Y.dN[b] * per_y;
-    }
-  }
-  return out;
-}
-
 // Calls visit(bin, particle, its weights) for all particles, bin by bin.
 template <class Visit>
 void for_each_particle(const Scene& scene, const State& state, Visit visit) {
@@ -36,7 +21,7 @@ void for_each_particle(const Scene& scene, const State& state, Visit visit) {
     for (const Bin& bin : state.bins) {
       for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
            q += static_cast<std::size_t>(bin.stride))
-        visit(bin, q, gradients_of<decltype(shape)>(state.grid, bin, {p.x[q], p.y[q]}, p.half[q]));
+        visit(bin, q, gradients_of<decltype(shape)>(state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]));
     }
   });
 }

@@ -14,10 +14,6 @@ namespace {
 
 using Kind = InterfaceLaw::Kind;
 
-Vec2 tangent_of(const SurfacePoint& s) {
-  return {s.n.y(), -s.n.x()};
-}
-
 template <class AnyState>
 auto& point_of(AnyState& state, const TotalPlace& place) {
   const auto k = static_cast<std::size_t>(place.point);
@@ -148,7 +144,7 @@ void push_all(const State& state, TotalSurfaces& surfaces) {
 // One visit of successive over-relaxation, as in solve_reactions(); returns how much the reaction changed (Pa).
 double relax(double dt, std::size_t k, SurfacePoint& s, TotalSurfaces& surfaces) {
   const TotalPlace& place = surfaces.places[k];
-  const Vec2 tangent = tangent_of(s);
+  const Vec2 tangent = tangent_of(s.n);
   const Vec2 w = s.w + dt * Vec2{surfaces.rate_x[k], surfaces.rate_y[k]};
   const Reaction now{s.reaction.dot(s.n), s.reaction.dot(tangent)};
   const FreeJump free{w.dot(s.n) - place.per_n * now.n,
@@ -171,8 +167,6 @@ double relax(double dt, std::size_t k, SurfacePoint& s, TotalSurfaces& surfaces)
 }
 
 void find_reactions(State& state, TotalSurfaces& surfaces) {
-  constexpr double tolerance = 1e-6;  // both as in solve_reactions()
-  constexpr int most_sweeps = 200;
   // With fewer, what the tolerance leaves keeps nodes trembling: a bar on a stiff spring came to rest at a kinetic
   // energy of 3e-17 J instead of 7e-33 J.
   constexpr int least_sweeps = 4;
@@ -180,7 +174,7 @@ void find_reactions(State& state, TotalSurfaces& surfaces) {
   int sweeps = 0;
   const auto goes_on = [&](double change, double largest) {
     if (sweeps < least_sweeps) return change > 0.0;
-    return sweeps < most_sweeps && change > tolerance * std::max(largest, 1.0);
+    return sweeps < most_sweeps && change > reaction_tolerance * std::max(largest, 1.0);
   };
   for (double change = 1.0, largest = 0.0; goes_on(change, largest); ++sweeps) {
     change = largest = 0.0;
@@ -197,13 +191,8 @@ void find_reactions(State& state, TotalSurfaces& surfaces) {
 // The place's jump at the end of the step, and what was done on the way.
 void follow(const TotalPlace& place, const InterfaceLaw& law, const Vec2& dw, State& state) {
   SurfacePoint& s = point_of(state, place);
-  const double before = spring_energy_at(law, s);
+  note_jump(law, dw, s, state);
   s.w += dw;
-  const double stored = spring_energy_at(law, s) - before;
-  state.ledger.friction -= s.A * s.reaction.dot(dw) + stored;
-  if (law.kind != Kind::soft) s.slip += std::abs(dw.dot(tangent_of(s)));
-  const bool closes = law.kind != Kind::soft || law.compression == InterfaceLaw::Compression::contact;
-  if (closes) state.monitors.largest_penetration = std::max(state.monitors.largest_penetration, -s.opening());
   state.ledger.fluid_work += s.A * s.P * s.n.dot(dw);
   state.ledger.in_situ_work -= s.A * s.in_situ.dot(dw);
 }
@@ -260,7 +249,7 @@ double step_surfaces(double keep, State& state) {
   }
   for (std::size_t k = 0; k < surfaces.places.size(); ++k) {
     const SurfacePoint& s = point_of(state, surfaces.places[k]);
-    surfaces.r_t_start[k] = s.reaction.dot(tangent_of(s));
+    surfaces.r_t_start[k] = s.reaction.dot(tangent_of(s.n));
   }
   push_all(state, surfaces);
   find_reactions(state, surfaces);
@@ -278,7 +267,7 @@ namespace {
 std::vector<int> bins_of_particles(const State& state) {
   std::vector<int> of(state.particles.size(), -1);
   for (std::size_t b = 0; b < state.bins.size(); ++b) {
-    for (int q = state.bins[b].first; q < state.bins[b].last; ++q)
+    for (int q = state.bins[b].first; q < state.bins[b].last; q += state.bins[b].stride)
       of[static_cast<std::size_t>(q)] = static_cast<int>(b);
   }
   return of;
@@ -344,7 +333,7 @@ bool any_bond_fails(const Scene& scene, const State& state) {
     }
     const Surface& surface = state.surfaces[static_cast<std::size_t>(sensor.surface)];
     const SurfacePoint& s = surface.points[static_cast<std::size_t>(sensor.point)];
-    if (fails(scene.laws[surface.law], {carried.dot(s.n), carried.dot(tangent_of(s))})) return true;
+    if (fails(scene.laws[surface.law], {carried.dot(s.n), carried.dot(tangent_of(s.n))})) return true;
   }
   return false;
 }

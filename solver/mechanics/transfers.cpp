@@ -87,7 +87,7 @@ ParticleReport sweep(const Scene& scene, const std::vector<Elasticity>& rocks, c
   if (Gather) state.sums.clear(state.sums.size());
   state.reports.assign(state.strips.size(), {});
   const SweepArrays arrays = arrays_of(uptake, state);
-  const SweepStep step{state.dt, uptake.keep, scene.numerics.keeps_places() ? 0.0 : state.dt};
+  const SweepStep step{state.dt, uptake.keep};
   with_shape(scene.numerics.shape, [&](auto shape) {
     for_each_strip(state, [&](std::size_t k) {
       state.reports[k] = sweep_strip<decltype(shape), Move, Gather>(rocks, step, state, arrays, state.strips[k]);

@@ -28,7 +28,7 @@ void filter_velocity(const Scene& scene, State& state);
 
 /// Grid to particles over state.dt: v_p = keep v_p + sum_i N_ip take_i, x_p and u_p += dt sum_i N_ip v_i, g_p += dt
 /// sum_i v_i grad N_ip. FLIP keeps v_p (keep = 1 without damping) and adds increments; PIC and XPIC keep nothing and
-/// take up the whole velocity. Under kinematics = "total" x_p stays.
+/// take up the whole velocity.
 ParticleReport grid_to_particles(const Scene& scene, const std::vector<Elasticity>& rocks, const Uptake& uptake,
                                  State& state);
 

@@ -79,6 +79,17 @@ void check_shape_functions(const Scene& scene, const Positions& positions, Fault
                          quasistatic ? "mechanics = \"quasistatic\"" : "kinematics = \"total\""));
 }
 
+// The middle one of three stands on the border of two spans: at a loaded edge, which halves a span, its weights do not
+// integrate the derivative of a B-spline, and a uniform stress would not be in equilibrium.
+void check_nine_points(const Scene& scene, const Positions& positions, std::string_view key, double value,
+                       Faults& faults) {
+  if (scene.numerics.particles_per_cell != 9 || !positions.sound("numerics.particles_per_cell")) return;
+  faults.add(where_is(positions, "numerics.particles_per_cell"),
+             fmt::format("numerics.particles_per_cell = 9 is for uniform grids, but {} = {} grades this one. Use 4 or "
+                         "16, or leave {} out.",
+                         key, number_text(value), key.substr(key.find('.') + 1)));
+}
+
 void check_beyond(const Scene& scene, const Positions& positions, Faults& faults) {
   const double beyond = scene.domain.beyond_m, cell = scene.numerics.cell_m;
   if (beyond == 0.0 || !usable(positions, "domain.beyond_m") || !usable(positions, "numerics.cell_m")) return;
@@ -89,26 +100,14 @@ void check_beyond(const Scene& scene, const Positions& positions, Faults& faults
                            "or 0: the rock ends there.",
                            number_text(beyond), number_text(least)));
   }
-  if (scene.numerics.particles_per_cell == 9 && positions.sound("numerics.particles_per_cell")) {
-    faults.add(where_is(positions, "numerics.particles_per_cell"),
-               fmt::format("numerics.particles_per_cell = 9 is for uniform grids, but domain.beyond_m = {} grades this "
-                           "one. Use 4 or 16, or leave beyond_m out.",
-                           number_text(beyond)));
-  }
+  check_nine_points(scene, positions, "domain.beyond_m", beyond, faults);
 }
 
 void check_far_cell(const Scene& scene, const Positions& positions, Faults& faults) {
   const Numerics& numerics = scene.numerics;
   if (!numerics.far_cell_m || !usable(positions, "numerics.far_cell_m") || !usable(positions, "numerics.cell_m"))
     return;
-  // The middle one of three stands on the border of two spans: at a loaded edge, which halves a span, its weights do
-  // not integrate the derivative of a B-spline, and a uniform stress would not be in equilibrium.
-  if (numerics.particles_per_cell == 9 && positions.sound("numerics.particles_per_cell")) {
-    faults.add(where_is(positions, "numerics.particles_per_cell"),
-               fmt::format("numerics.particles_per_cell = 9 is for uniform grids, but numerics.far_cell_m = {} grades "
-                           "this one. Use 4 or 16, or leave far_cell_m out.",
-                           number_text(*numerics.far_cell_m)));
-  }
+  check_nine_points(scene, positions, "numerics.far_cell_m", *numerics.far_cell_m, faults);
   if (*numerics.far_cell_m >= numerics.cell_m) return;
   faults.add(where_is(positions, "numerics.far_cell_m"),
              fmt::format("numerics.far_cell_m = {} is below numerics.cell_m = {}: cells grow away from the fracture. "

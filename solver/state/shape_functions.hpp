@@ -143,21 +143,25 @@ struct Gradients {
   std::array<double, 9> N{}, N_x{}, N_y{};
 };
 
-/// Weights of the scene's shape function at x (m), of the 3 x 3 nodes around column i and row j, whose spans hold x;
-/// half: half the size of a uGIMP particle (m). Throws nothing.
+/// Weights at x (m) of the 3 x 3 nodes around column i and row j, whose spans hold x; half: half the size of a uGIMP
+/// particle (m). Throws nothing.
+template <class Shape>
+Gradients gradients_of(const Grid& grid, int i, int j, const Vec2& x, double half) {
+  const Weights X = weights_x<Shape>(grid, i, x.x(), half), Y = weights_y<Shape>(grid, j, x.y(), half);
+  const double s_x = grid.span_x(i), s_y = grid.span_y(j);
+  Gradients out;
+  for (std::size_t n = 0; n < 9; ++n) {
+    out.N[n] = X.N[n % 3] * Y.N[n / 3];
+    out.N_x[n] = X.dN[n % 3] * Y.N[n / 3] / s_x;
+    out.N_y[n] = X.N[n % 3] * Y.dN[n / 3] / s_y;
+  }
+  return out;
+}
+
+/// The same with the scene's shape function.
 inline Gradients gradients_at(const Scene& scene, const Grid& grid, int i, int j, const Vec2& x, double half) {
-  return with_shape(scene.numerics.shape, [&](auto shape) {
-    const Weights X = weights_x<decltype(shape)>(grid, i, x.x(), half);
-    const Weights Y = weights_y<decltype(shape)>(grid, j, x.y(), half);
-    const double s_x = grid.span_x(i), s_y = grid.span_y(j);
-    Gradients out;
-    for (std::size_t n = 0; n < 9; ++n) {
-      out.N[n] = X.N[n % 3] * Y.N[n / 3];
-      out.N_x[n] = X.dN[n % 3] * Y.N[n / 3] / s_x;
-      out.N_y[n] = X.N[n % 3] * Y.dN[n / 3] / s_y;
-    }
-    return out;
-  });
+  return with_shape(scene.numerics.shape,
+                    [&](auto shape) { return gradients_of<decltype(shape)>(grid, i, j, x, half); });
 }
 
 }  // namespace strata

@@ -35,6 +35,11 @@ struct NumericalFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// The tangent that goes with a surface's normal n.
+inline Vec2 tangent_of(const Vec2& n) {
+  return {n.y(), -n.x()};
+}
+
 inline double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }

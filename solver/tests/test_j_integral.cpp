@@ -117,6 +117,22 @@ Errors errors(Run& run, bool at_back) {
 
 }  // namespace
 
+// Requires that an increment turns by a third of the kink for each of its cells, and by no more than turn_share of it.
+TEST_CASE("an increment turns by its share of the kink") {
+  Run run = cracked({{10.0, 4.0}, {10.0, 16.0}});
+  impose(run, true, {K_unit, 0.3 * K_unit});
+  for (const double share : {1.0, 0.5, 0.2}) {
+    for (const double increment : {0.3, 0.9, 1.8, 6.0}) {
+      run.scene.fracture->turn_share = share, run.scene.fracture->increment_m = increment;
+      measure(run, true);
+      const Tip& tip = tip_of(run.state, true);
+      CAPTURE(share, increment, tip.kink);
+      CHECK(tip.kink < -0.3);
+      CHECK(tip.turn == Approx(std::min(share, increment / 3.0) * tip.kink).epsilon(1e-12));
+    }
+  }
+}
+
 // Requires K_I, K_II and J of an imposed near-tip field, with free faces and with pressure on them, at both ends of a
 // fracture on a grid line and at mid-cell, along and across the grid. Measured: K 0.04 % and J 0.04 % on a grid
 // line, 0.09 % and 0.12 % at mid-cell.

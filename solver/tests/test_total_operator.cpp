@@ -69,8 +69,8 @@ Vec2 nodal_momentum(const State& state) {
 
 // Requires that the composed stencils give random nodal displacements the forces that the particles give them, to 1e-11
 // of the largest, in 150 random blocks with cracks at any angle, interfaces and contrasts, layers of either direction,
-// edges of every kind: both by runs, mirrored sides included, and by groups. Mutation that fails: the last vectors
-// of a run left out.
+// edges of every kind: both by runs, mirrored sides included, and by groups. Mutations that fail: the last
+// vectors of a run left out, images of the other sign, the base left out of runs, K_xy of the other sign, groups twice.
 TEST_CASE("composed stencils are the particles' operator") {
   double in_runs = 0.0, in_groups = 0.0, worst = 0.0;
   std::size_t images = 0;

@@ -190,7 +190,8 @@ TEST_CASE("a linear velocity field has an exact gradient in the interior") {
   }
 }
 
-// Requires that a linear field given at the nodes is found exactly by every particle, those at the edges too.
+// Requires that a linear field given at the nodes is found exactly by every particle, those at the edges too: as
+// gradient, and in how far it moves.
 TEST_CASE("a linear field of node velocities has an exact gradient everywhere") {
   const std::array<double, 4> rate{-0.4, 0.1, 0.6, 0.2};
   for (const auto shape : shapes) {
@@ -202,8 +203,18 @@ TEST_CASE("a linear field of node velocities has an exact gradient everywhere") 
       const double v_x = rate[0] * x + rate[1] * y, v_y = rate[2] * x + rate[3] * y;
       run.state.motion[static_cast<std::size_t>(r)] = NodeMotion{v_x, v_y, 0.0, 0.0};
     }
+    const Particles before = run.state.particles;
     grid_to_particles(run.scene, run.rocks, {1.0, &run.state.motion.dv_x, &run.state.motion.dv_y}, run.state);
     CHECK(gradient_error(run, rate, 0.0) < 1e-11);
+    const Particles& p = run.state.particles;
+    double off = 0.0;
+    for (std::size_t q = 0; q < p.size(); ++q) {
+      const double x = before.x[q], y = before.y[q], dt = run.state.dt;
+      const double u_x = dt * (rate[0] * x + rate[1] * y), u_y = dt * (rate[2] * x + rate[3] * y);
+      off = std::max({off, std::abs(p.u_x[q] - u_x), std::abs(p.u_y[q] - u_y), std::abs(p.x[q] - x - u_x),
+                      std::abs(p.y[q] - y - u_y)});
+    }
+    CHECK(off < 1e-13);
   }
 }
 
