@@ -299,7 +299,7 @@ std::vector<ContactPlace> contact_places(const Scene& scene, const std::vector<E
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
     const Surface& surface = state.surfaces[k];
     const bool fracture = surface.kind == Surface::Kind::fracture;
-    const InterfaceLaw law = fracture ? face_law() : scene.laws[surface.law];
+    const InterfaceLaw law = fracture ? face_law(scene) : scene.laws[surface.law];
     const double stiffness = contact_stiffness(law, rocks, state.grid);
     for (std::size_t q = 0; q < surface.points.size(); ++q) {
       const SurfacePoint& s = surface.points[q];

@@ -228,7 +228,7 @@ bool fail_interfaces(const Scene& scene, const std::vector<Elasticity>& rocks, S
 }
 
 void solve_reactions(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
-  const InterfaceLaw faces = face_law();
+  const InterfaceLaw faces = face_law(scene);
   find_split_places(scene, rocks, faces, state);
   const std::vector<SplitPlace>& places = state.places;
   for (const SplitPlace& place : places) push(place, place.s->reaction, state.motion);

@@ -73,8 +73,14 @@ LawAnswer law_at(const InterfaceLaw& law, double k, const LawInput& in) {
   return r;
 }
 
-InterfaceLaw face_law() {
+InterfaceLaw face_law(const Scene& scene) {
   InterfaceLaw law;
+  if (scene.fracture && scene.fracture->faces == Fracture::Faces::free) {
+    law.kind = InterfaceLaw::Kind::soft;
+    law.normal_stiffness_Pa_m = law.shear_stiffness_Pa_m = 0.0;
+    law.compression = InterfaceLaw::Compression::spring;
+    return law;
+  }
   law.kind = InterfaceLaw::Kind::friction;
   law.coefficient = 0.0;
   return law;

@@ -41,7 +41,8 @@ double contact_stiffness(const InterfaceLaw& law, const std::vector<Elasticity>&
 /// Continuous and, but for the bound of friction, the gradient of a convex energy. Throws nothing.
 LawAnswer law_at(const InterfaceLaw& law, double k, const LawInput& in);
 
-/// The law of the fracture's own faces: contact without friction.
-InterfaceLaw face_law();
+/// The law of the fracture's own faces: contact without friction, or none at all (fracture.faces = "free"): a spring of
+/// no stiffness both ways.
+InterfaceLaw face_law(const Scene& scene);
 
 }  // namespace strata

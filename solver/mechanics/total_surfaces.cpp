@@ -220,7 +220,7 @@ TotalSurfaces make_total_surfaces(const Scene& scene, const std::vector<Elastici
     build.out.laws.push_back(tie_law(state.ties[k]));
     build.add(place, weights_of(state, state.ties[k]));
   }
-  build.out.laws.push_back(face_law());
+  build.out.laws.push_back(face_law(scene));
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
     const Surface& surface = state.surfaces[k];
     const bool faces = surface.kind == Surface::Kind::fracture;

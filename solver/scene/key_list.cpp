@@ -251,6 +251,12 @@ std::vector<Key> fracture_keys() {
           "fracture.crossing_increment_m", "m", positive,
           +[](Scene& s, std::size_t) -> std::optional<double>& { return s.fracture->crossing_increment_m; },
           "Length over which the energy of crossing is released; by default increment_m."),
+      word(
+          "fracture.faces", {as("contact", Fracture::Faces::contact), as("free", Fracture::Faces::free)},
+          [](Scene& s, std::size_t) -> Fracture::Faces& { return s.fracture->faces; },
+          "Where the fracture closes its faces meet, or they pass through each other as rock does not: to see what "
+          "contact "
+          "is worth."),
   };
 }
 

@@ -121,6 +121,7 @@ struct Fracture {
   enum class Growth { none, J, energy };
   enum class Direction { straight, max_hoop };
   enum class Crossing { J, energy };
+  enum class Faces { contact, free };
   std::vector<std::array<double, 2>> path_m;  // an end on the symmetry line comes first
   Growth growth = Growth::J;
   double increment_m = 1.0;
@@ -128,6 +129,7 @@ struct Fracture {
   Direction direction = Direction::straight;
   Crossing crossing = Crossing::J;             // left out of a quasi-static scene: energy
   std::optional<double> crossing_increment_m;  // absent: increment_m
+  Faces faces = Faces::contact;
 
   double crossing_increment() const { return crossing_increment_m.value_or(increment_m); }
 

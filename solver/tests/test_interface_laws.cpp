@@ -171,7 +171,7 @@ TEST_CASE("a step's reaction satisfies the law at its end") {
                                           weak_law(1e5, 1e5),
                                           soft_law(1e12, 2e11),
                                           soft_law(1e12, 2e11, Compression::spring),
-                                          face_law()};
+                                          face_law(Scene{})};
   for (const InterfaceLaw& law : laws) {
     for (const double per : {0.0, 1e-12}) {
       for (const double w_n : {-4e-6, -1e-9, 0.0, 1e-9, 3e-6}) {

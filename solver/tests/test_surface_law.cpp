@@ -47,7 +47,7 @@ std::vector<Case> cases() {
       }
     }
     const LawInput in{0.0, 0.0, 0.0, 0.0, -1.0, n_rest};
-    all.push_back({"face", face_law(), in});
+    all.push_back({"face", face_law(Scene{}), in});
     all.push_back({"failed weak", weak_law(1e5, 1e5), in});
     for (const double D : {1e9, 0.4 * k, 2.5 * k}) {
       all.push_back({"soft contact", soft_law(D, 0.3 * D), in});
@@ -95,8 +95,12 @@ TEST_CASE("laws by hand") {
   const auto n = [](const InterfaceLaw& law, double n_rest, double w_n) {
     return law_at(law, k, {w_n, 0.0, 0.0, 0.0, -1.0, n_rest}).n;
   };
-  CHECK(n(face_law(), 7e5, -1e-6) == Approx(1.7e6));
-  CHECK(n(face_law(), 7e5, 0.8e-6) == 0.0);
+  CHECK(n(face_law(Scene{}), 7e5, -1e-6) == Approx(1.7e6));
+  CHECK(n(face_law(Scene{}), 7e5, 0.8e-6) == 0.0);
+  Scene free;
+  free.fracture.emplace().faces = Fracture::Faces::free;
+  CHECK(n(face_law(free), 7e5, -1e-6) == 0.0);
+  CHECK(n(face_law(free), 7e5, 0.8e-6) == 0.0);
   CHECK(n(soft_law(0.4 * k, 0.0), 7e5, -1e-6) == Approx(1.7e6));
   CHECK(n(soft_law(0.4 * k, 0.0), 7e5, 1e-6) == Approx(-3e5));
   CHECK(n(soft_law(0.4 * k, 0.0), 7e5, 3e-6) == Approx(-1.2e6));
@@ -179,7 +183,7 @@ TEST_CASE("energy of a law is what its reaction takes up") {
       CHECK(r.energy == Approx(work_taken(c, c.start(), w)).margin(5e-4));
       CHECK(r.energy == Approx(work_taken(c, c.start(), corner) + work_taken(c, corner, w)).margin(5e-4));
     } else if (r.n > 0.0) {
-      const double contact = Case{"face", face_law(), c.at}(w).energy;
+      const double contact = Case{"face", face_law(Scene{}), c.at}(w).energy;
       CHECK(r.energy == Approx(contact + (r.t * r.t - c.at.r_t_start * c.at.r_t_start) / (2.0 * k)));
     }
   });
