@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -257,19 +258,35 @@ def spread_of(run: Run) -> float | None:
 
 def suspicions(run: Run, runs: Sequence[Run] = ()) -> list[str]:
     """What the run itself or its data mark as not to be trusted, in words; J at an interface unless a run confirms it."""
-    flags = [str(flag) for flag in run.summary.get("suspect") or run.summary.get("warnings") or []]
+    flags = marks_of(run)
     if run.drawable:
         by_J = [arrest for arrest in outcome_of(run, runs).arrests if flag_of(arrest)]
         if by_J:
             places = list(dict.fromkeys(metres(arrest.height_m) for arrest in by_J))
             flags.append(f"{BY_J} ({listed(places)})")
+    if "suspect" in run.summary:
+        return flags
     closure = closure_of(run)
     if closure is not None and abs(closure) > 0.01:
         flags.append(f"energy open by {share(abs(closure))}")
     return flags + [f"{words} {number(size)}" for words, size in open_monitors(run)]
 
 
-# Monitors of a quasi-static run that are to be next to nothing, with what they are called.
+def marks_of(run: Run) -> list[str]:
+    """Why the run's own monitors mark it as suspect, each with its value; empty for a sound run and for one that has none."""
+    marks = run.summary.get("suspect") or []
+    return [_mark_words(mark) for mark in marks if isinstance(mark, dict)]
+
+
+def _mark_words(mark: dict[str, Any]) -> str:
+    """One mark of a summary in words: its sentence and, where it has one, its value against the threshold."""
+    why, value, threshold = str(mark.get("why") or mark.get("monitor")), mark.get("value"), mark.get("threshold")
+    if not isinstance(value, (int, float)) or not isinstance(threshold, (int, float)):
+        return why
+    return f"{why} ({number(float(value))} against {number(float(threshold))})"
+
+
+# Monitors of a quasi-static run that are to be next to nothing, with what they are called; for runs that do not judge theirs.
 MONITORS: dict[str, str] = {"volume_balance": "fluid volume open by", "contact_residual": "contact open by"}
 CLOSED = 1e-8  # what volume and contact are to be satisfied to, relative to the run's own
 

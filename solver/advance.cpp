@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "advance_monitors.hpp"
 #include "advance_total.hpp"
 #include "flow/paper_flow.hpp"
 #include "fracture/growth.hpp"
@@ -35,9 +36,8 @@ void close_ledger(const Scene& scene, const GridEnergy& grid, const GridEnergyAf
   ledger.transfer += (after.kinetic - grid.mapped) - (particles.after - particles.before);
   ledger.integration += after.increment - particles.step_strain;
   ledger.interface_strain = spring_energy(scene, state);
-  Monitors& monitors = state.monitors;
-  monitors.largest_particle_velocity =
-      std::max(monitors.largest_particle_velocity, std::sqrt(particles.largest_speed2));
+  note_largest(state.monitors.largest_particle_velocity, std::sqrt(particles.largest_speed2));
+  note_largest(state.monitors.largest_kinetic_J, ledger.kinetic);
   ledger.largest = std::max({ledger.largest, std::abs(ledger.fluid_work), std::abs(ledger.in_situ_work),
                              std::abs(ledger.body_work), ledger.kinetic});
 }
@@ -63,6 +63,7 @@ void advance_updated(const Scene& scene, const std::vector<Elasticity>& rocks, b
   state.time += state.dt;
   ++state.step;
   close_ledger(scene, grid, after, particles, state);
+  expect_momentum(scene, state);
   bool changed = fail_interfaces(scene, rocks, state);           // bonded places that now let go
   if (look) measure_tips(scene, rocks, state);                   // J, K_I, K_II with the same P
   if (grow_now) changed = grow(scene, rocks, state) || changed;  // a new point ahead of the tip

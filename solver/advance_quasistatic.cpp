@@ -5,6 +5,8 @@
 #include <numbers>
 
 #include "advance_fluid.hpp"
+#include "advance_monitors.hpp"
+#include "flow/paper_flow.hpp"
 #include "fracture/growth.hpp"
 #include "fracture/j_integral.hpp"
 #include "mechanics/failure.hpp"
@@ -243,10 +245,13 @@ void accept(const Scene& scene, const LoadPoint& before, Change change, State& s
   remember(state, run.model, run.equilibrium);
   Monitors& monitors = state.monitors;
   monitors.contact_sweeps += run.equilibrium.iterations;
-  monitors.contact_residual = std::max(monitors.contact_residual, run.equilibrium.residual);
+  note_largest(monitors.contact_residual, run.equilibrium.residual);
+  note_largest(monitors.largest_imbalance, std::abs(monitors.volume_balance));
+  monitors.delivered_m2 += (state.time - before.time) * inflow(scene, state);
   monitors.mirror = run.model.body->halved();
   watch_tips(scene, state);
   ++state.step;
+  watch_row(scene, state);
 }
 
 void rebuild_all(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "advance_monitors.hpp"
 #include "flow/paper_flow.hpp"
 #include "fracture/growth.hpp"
 #include "fracture/j_integral.hpp"
@@ -44,8 +45,8 @@ void close_ledger(const Scene& scene, const NodeTotals& moved, double external, 
   ledger.kinetic = moved.kinetic;
   ledger.integration += moved.increment - 0.5 * state.dt * (moved.power - external - elastic);
   ledger.interface_strain = spring_energy(scene, state);
-  Monitors& monitors = state.monitors;
-  monitors.largest_particle_velocity = std::max(monitors.largest_particle_velocity, std::sqrt(moved.largest_speed2));
+  note_largest(state.monitors.largest_particle_velocity, std::sqrt(moved.largest_speed2));
+  note_largest(state.monitors.largest_kinetic_J, ledger.kinetic);
   ledger.largest = std::max({ledger.largest, std::abs(ledger.fluid_work), std::abs(ledger.in_situ_work),
                              std::abs(ledger.body_work), ledger.kinetic});
 }
@@ -76,6 +77,7 @@ void advance_total(const Scene& scene, const std::vector<Elasticity>& rocks, boo
   if (look) note_motion(state);
   const double elastic = find_accelerations(scene, rocks, state);  // a_i = -(M^-1 K u)_i + ...
   close_ledger(scene, moved, external, elastic, state);
+  expect_momentum(scene, state);
   bool changed = false;
   if (any_bond_fails(scene, state)) {
     bring_up_to_date(scene, state);

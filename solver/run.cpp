@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "advance.hpp"
+#include "advance_monitors.hpp"
 #include "advance_quasistatic.hpp"
 #include "advance_total.hpp"
 #include "initialise.hpp"
@@ -114,6 +115,7 @@ void complete_fields(Run& run) {
     complete_particles(run.scene, run.state);
     run.state.ledger.strain = strain_energy(run.rocks, run.state.particles);
   }
+  watch_row(run.scene, run.state);
 }
 
 void output(Run& run) {
@@ -165,6 +167,7 @@ void step_and_record(Run& run, double interval) {
     output(run);
   } else if (fracture_points(run.state) != points) {
     if (!run.statics) run.state.ledger.strain = strain_energy(run.rocks, run.state.particles);
+    watch_row(run.scene, run.state);
     run.recorder.row(run.scene, run.state);
   }
 }

@@ -261,6 +261,17 @@ def test_open_monitors_are_suspect(tmp_path: Path) -> None:
     assert suspicions(run) == ["fluid volume open by 1.00×10⁻⁵"]
 
 
+def test_a_run_s_own_marks_are_told_with_their_values(tmp_path: Path) -> None:
+    """What a run says of itself stands in place of what older runs are judged by."""
+    run = load_run(write_run(tmp_path, 1, Plan("perfect", mechanics="quasistatic")))
+    mark = {"monitor": "energy_closure", "value": 0.025, "threshold": 0.01, "why": "the ledger stayed open"}
+    run.summary |= {"suspect": [mark, mark | {"value": None, "why": "momentum is not a finite number"}]}
+    run.summary["monitors"]["volume_balance"] = 1e-5
+    assert suspicions(run) == ["the ledger stayed open (0.025 against 0.01)", "momentum is not a finite number"]
+    run.summary["suspect"] = []
+    assert suspicions(run) == []
+
+
 # --- open points
 
 POINT = Point("flow", "flow law", "the study's", (

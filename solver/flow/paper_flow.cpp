@@ -77,6 +77,20 @@ Channel channel_of(const Scene& scene, const State& state) {
   return channel;
 }
 
+double inflow(const Scene& scene, const State& state) {
+  if (!state.has_fracture || scene.fluid.law != Fluid::Law::paper) return 0.0;
+  const FluidLine& line = state.fluid;
+  const auto& points = state.fracture().points;
+  double q = 0.0;
+  const auto add_side = [&](std::size_t segment, std::size_t next) {
+    const double w = std::max(points[segment].opening(), scene.fluid.minimum_opening_m);
+    q += w * w * w / (12.0 * scene.fluid.viscosity_Pa_s) * (line.P[line.inlet] - line.P[next]) / points[segment].A;
+  };
+  if (line.inlet < points.size()) add_side(line.inlet, line.inlet + 1);
+  if (line.inlet > 0) add_side(line.inlet - 1, line.inlet - 1);
+  return q;
+}
+
 void advance_pressure(const Scene& scene, State& state) {
   if (!state.has_fracture) return;
   const Fluid& fluid = scene.fluid;
@@ -90,6 +104,7 @@ void advance_pressure(const Scene& scene, State& state) {
             line.inlet_Pa, line.P);
   }
   for (std::size_t k = 0; k < fracture.points.size(); ++k) fracture.points[k].P = 0.5 * (line.P[k] + line.P[k + 1]);
+  state.monitors.delivered_m2 += state.dt * inflow(scene, state);
 }
 
 }  // namespace strata

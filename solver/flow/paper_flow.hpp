@@ -41,6 +41,10 @@ class Diffusion {
   std::vector<double> factor_, inverse_, upper_;  // of elimination; upper over its pivot
 };
 
+/// What the pressure's slope beside the inlet drives into the fracture by the flow that (3) balances, q = -(w^3/(12
+/// mu)) dP/ds, both ways (m^2/s), with openings of at least minimum_opening_m; 0 under other laws. Throws nothing.
+double inflow(const Scene& scene, const State& state);
+
 /// Pressure at the end of the step state.dt: the inlet's ramp, and along the fracture by the scene's law with the
 /// opening of the step's start, at least minimum_opening_m; passes vertex pressures on to the fracture's points.
 /// Throws as diffuse().

@@ -286,6 +286,14 @@ void note_growth(State& state, Tip& tip, const char* by, bool trusted) {
   tip.criterion = by;
   tip.last_growth_s = state.time;
   tip.last_growth_Pa = state.fluid.inlet_Pa;
+  Monitors& monitors = state.monitors;
+  if (tip.at_interface) {
+    ++monitors.growths_apart;
+  } else {
+    ++monitors.growths;
+    monitors.J_spread_sum += tip.J_spread;
+    note_largest(monitors.largest_J_spread, tip.J_spread);
+  }
   tip.J_at_growth = tip.J;
   tip.J_spread_at_growth = tip.J_spread;
 }

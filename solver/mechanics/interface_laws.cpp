@@ -187,7 +187,16 @@ void note_jump(const InterfaceLaw& law, const Vec2& dw, SurfacePoint& s, State& 
   state.ledger.friction -= s.A * s.reaction.dot(dw) + stored;
   if (law.kind != Kind::soft) s.slip += std::abs(dw.dot(tangent_of(s.n)));
   const bool closes = law.kind != Kind::soft || law.compression == InterfaceLaw::Compression::contact;
-  if (closes) state.monitors.largest_penetration = std::max(state.monitors.largest_penetration, -after.opening());
+  if (!closes) return;
+  note_largest(state.monitors.largest_penetration, -after.opening());
+  note_largest(state.monitors.largest_contact_Pa, s.reaction.dot(s.n));
+}
+
+void note_sweeps(int sweeps, double change, double largest, Monitors& monitors) {
+  monitors.contact_sweeps += sweeps;
+  if (sweeps < most_sweeps) return;
+  ++monitors.contact_unconverged;
+  note_largest(monitors.contact_left, change / std::max(largest, 1.0));
 }
 
 bool fails(const InterfaceLaw& law, const Reaction& r) {
@@ -233,16 +242,15 @@ void solve_reactions(const Scene& scene, const std::vector<Elasticity>& rocks, S
   const std::vector<SplitPlace>& places = state.places;
   for (const SplitPlace& place : places) push(place, place.s->reaction, state.motion);
   int sweeps = 0;
-  for (double change = 1.0, largest = 0.0;
-       sweeps < most_sweeps && !places.empty() && change > reaction_tolerance * std::max(largest, 1.0); ++sweeps) {
+  double change = 1.0, largest = 0.0;
+  for (; sweeps < most_sweeps && !places.empty() && change > reaction_tolerance * std::max(largest, 1.0); ++sweeps) {
     change = largest = 0.0;
     for (const SplitPlace& place : places) {
       change = std::max(change, relax(place, state.dt, state.motion));
       largest = std::max(largest, place.s->reaction.norm());
     }
   }
-  state.monitors.contact_sweeps += sweeps;
-  if (sweeps == most_sweeps) ++state.monitors.contact_unconverged;
+  note_sweeps(sweeps, change, largest, state.monitors);
   for (const SplitPlace& place : places)
     note_jump(*place.law, state.dt * jump_rate(place, state.motion), *place.s, state);
   state.places.clear();  // they point into the surfaces

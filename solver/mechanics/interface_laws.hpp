@@ -47,8 +47,12 @@ InterfaceLaw tie_law(const TipTie& tie);
 double spring_energy_at(const InterfaceLaw& law, const SurfacePoint& s);
 
 /// Notes that the jump of a place changes by dw (m) under its reaction: slip (m), the ledger's friction and the
-/// monitored penetration. Leaves the jump itself as it is.
+/// monitored penetration and contact pressure. Leaves the jump itself as it is.
 void note_jump(const InterfaceLaw& law, const Vec2& dw, SurfacePoint& s, State& state);
+
+/// Notes how many sweeps a step took and, where it ran out of them, what they left: the last change of a reaction (Pa)
+/// against the largest reaction (Pa, 1 at least).
+void note_sweeps(int sweeps, double change, double largest, Monitors& monitors);
 
 /// True if a bonded place fails under the reaction r: weak by (S/Sc)^2 + (N/Nc)^2 >= 1 with N in tension only (the
 /// study's eq. 5); friction where |t| > mu n or in tension.

@@ -176,7 +176,8 @@ void find_reactions(State& state, TotalSurfaces& surfaces) {
     if (sweeps < least_sweeps) return change > 0.0;
     return sweeps < most_sweeps && change > reaction_tolerance * std::max(largest, 1.0);
   };
-  for (double change = 1.0, largest = 0.0; goes_on(change, largest); ++sweeps) {
+  double change = 1.0, largest = 0.0;
+  for (; goes_on(change, largest); ++sweeps) {
     change = largest = 0.0;
     for (std::size_t k = 0; k < surfaces.places.size(); ++k) {
       SurfacePoint& s = point_of(state, surfaces.places[k]);
@@ -184,8 +185,7 @@ void find_reactions(State& state, TotalSurfaces& surfaces) {
       largest = std::max(largest, s.reaction.norm());
     }
   }
-  state.monitors.contact_sweeps += sweeps;
-  if (sweeps == most_sweeps) ++state.monitors.contact_unconverged;
+  note_sweeps(sweeps, change, largest, state.monitors);
 }
 
 // The place's jump at the end of the step, and what was done on the way.

@@ -17,7 +17,7 @@ namespace strata {
 namespace {
 
 constexpr std::string_view magic = "strata-checkpoint\n";
-constexpr std::uint32_t format_version = 5;  // to be raised with every change of what is saved
+constexpr std::uint32_t format_version = 6;  // to be raised with every change of what is saved
 constexpr std::uint32_t byte_order = 0x01020304;
 
 std::uint64_t fnv1a(std::string_view bytes) {
@@ -109,9 +109,14 @@ void fields(Archive& ar, Is<Ledger> auto& ledger) {
 template <class Archive>
 void fields(Archive& ar, Is<Monitors> auto& monitors) {
   auto& [largest_courant, largest_penetration, contact_sweeps, contact_unconverged, largest_particle_velocity,
-         contact_residual, volume_balance, mirror] = monitors;
+         contact_residual, volume_balance, mirror, largest_open_J, largest_made_J, largest_strain_J, largest_kinetic_J,
+         expected_x, expected_y, largest_drift, largest_momentum, force_balance, largest_imbalance, delivered_m2,
+         growths, growths_apart, J_spread_sum, largest_J_spread, contact_left, largest_contact_Pa, largest_tension_Pa] =
+      monitors;
   ar(largest_courant, largest_penetration, contact_sweeps, contact_unconverged, largest_particle_velocity,
-     contact_residual, volume_balance, mirror);
+     contact_residual, volume_balance, mirror, largest_open_J, largest_made_J, largest_strain_J, largest_kinetic_J,
+     expected_x, expected_y, largest_drift, largest_momentum, force_balance, largest_imbalance, delivered_m2, growths,
+     growths_apart, J_spread_sum, largest_J_spread, contact_left, largest_contact_Pa, largest_tension_Pa);
 }
 
 // All of the state but what rebuild_copies() derives of it.

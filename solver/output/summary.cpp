@@ -8,6 +8,7 @@
 
 #include "output/history.hpp"
 #include "output/run_folder.hpp"
+#include "output/suspect.hpp"
 
 namespace strata {
 
@@ -70,15 +71,34 @@ Json events_json(const std::vector<Event>& events) {
   return list;
 }
 
-Json monitors_json(const Monitors& monitors) {
-  return {{"largest_courant", monitors.largest_courant},
-          {"largest_penetration_m", monitors.largest_penetration},
-          {"contact_sweeps", monitors.contact_sweeps},
-          {"contact_unconverged", monitors.contact_unconverged},
-          {"largest_particle_velocity_m_s", monitors.largest_particle_velocity},
-          {"contact_residual", monitors.contact_residual},
-          {"volume_balance", monitors.volume_balance},
-          {"mirror", monitors.mirror}};
+// Counts and sizes first, then the shares that are judged.
+Json monitors_json(const Monitors& monitors, const std::vector<Watched>& shares) {
+  Json json = {{"largest_courant", monitors.largest_courant},
+               {"largest_penetration_m", monitors.largest_penetration},
+               {"contact_sweeps", monitors.contact_sweeps},
+               {"contact_unconverged", monitors.contact_unconverged},
+               {"largest_particle_velocity_m_s", monitors.largest_particle_velocity},
+               {"contact_residual", monitors.contact_residual},
+               {"volume_balance", monitors.volume_balance},
+               {"mirror", monitors.mirror},
+               {"growths", monitors.growths},
+               {"growths_at_interfaces", monitors.growths_apart},
+               {"largest_contact_Pa", monitors.largest_contact_Pa},
+               {"largest_tension_Pa", monitors.largest_tension_Pa},
+               {"largest_kinetic_J", monitors.largest_kinetic_J},
+               {"largest_strain_J", monitors.largest_strain_J}};
+  for (const Watched& share : shares) json[share.monitor] = share.value;
+  return json;
+}
+
+Json suspect_json(const std::vector<Watched>& marks) {
+  Json list = Json::array();
+  for (const Watched& mark : marks) {
+    // A figure that is only told marks a run, too, where it is no number.
+    const Json threshold = mark.threshold ? Json(*mark.threshold) : Json(nullptr);
+    list.push_back({{"monitor", mark.monitor}, {"value", mark.value}, {"threshold", threshold}, {"why", mark.why}});
+  }
+  return list;
 }
 
 }  // namespace
@@ -119,7 +139,8 @@ std::string summary_json(const Scene& scene, const State& state, const RunRecord
   summary["fracture_volume_m2"] = fracture_volume(state);
   summary["tips"] = tips_json(state);
   summary["events"] = events_json(state.events);
-  summary["monitors"] = monitors_json(state.monitors);
+  summary["monitors"] = monitors_json(state.monitors, watched(scene, state));
+  summary["suspect"] = suspect_json(suspicions(scene, state));
   // The library writes numbers that are not finite as null; bytes that are no UTF-8 are replaced, not refused.
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }

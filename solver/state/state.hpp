@@ -9,6 +9,7 @@
 #include "state/copies.hpp"
 #include "state/fluid_line.hpp"
 #include "state/grid.hpp"
+#include "state/monitors.hpp"
 #include "state/nodal.hpp"
 #include "state/particles.hpp"
 #include "state/surfaces.hpp"
@@ -77,19 +78,8 @@ struct Ledger {
   double supplied() const { return fluid_work + in_situ_work + edge_work + body_work + initial_kinetic; }
   double stored() const { return kinetic + strain + interface_strain; }
   double dissipated() const { return damping + transfer + integration + friction + fracture; }
-  double closure() const { return largest > 0.0 ? (stored() + dissipated() - supplied()) / largest : 0.0; }
-};
-
-// What to watch in a run; reported in its summary.
-struct Monitors {
-  double largest_courant = 0.0;            // c_P dt / h
-  double largest_penetration = 0.0;        // of closed contact (m)
-  std::int64_t contact_sweeps = 0;         // Gauss-Seidel sweeps, summed
-  std::int64_t contact_unconverged = 0;    // steps whose contact solve ran out of sweeps
-  double largest_particle_velocity = 0.0;  // m/s
-  double contact_residual = 0.0;           // largest force out of balance in an equilibrium, over the largest load
-  double volume_balance = 0.0;             // fluid missing now, over what was injected (law = "reynolds")
-  bool mirror = false;                     // solved on half of a mirror-symmetric block
+  double open() const { return stored() + dissipated() - supplied(); }
+  double closure() const { return largest > 0.0 ? open() / largest : 0.0; }
 };
 
 struct State {

@@ -109,6 +109,18 @@ inline Tip made_tip(bool at_back, Numbers& number) {
   return tip;
 }
 
+inline void fill_monitors(Numbers& number, Monitors& m) {
+  m = {number.next(), number.next(), 77, 3, number.next()};
+  for (double* value : {&m.contact_residual, &m.volume_balance, &m.largest_open_J, &m.largest_made_J,
+                        &m.largest_strain_J, &m.largest_kinetic_J, &m.expected_x, &m.expected_y, &m.largest_drift,
+                        &m.largest_momentum, &m.force_balance, &m.largest_imbalance, &m.delivered_m2, &m.J_spread_sum,
+                        &m.largest_J_spread, &m.contact_left, &m.largest_contact_Pa, &m.largest_tension_Pa}) {
+    *value = number.next();
+  }
+  m.mirror = true;
+  m.growths = 14, m.growths_apart = 5;
+}
+
 // Fracture from (4, 0) to (4, 2) with normals towards -x, and the scene's upper interface, of 13 particles.
 inline State made_state() {
   Numbers number;
@@ -146,7 +158,7 @@ inline State made_state() {
     *value = number.next();
   }
   l.largest = 1.0 + l.largest * l.largest;
-  state.monitors = {number.next(), number.next(), 77, 3, number.next()};
+  fill_monitors(number, state.monitors);
   return state;
 }
 

@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <vector>
 
 #include "output/checkpoint.hpp"
 #include "output/run_folder.hpp"
@@ -142,7 +143,17 @@ void require_same(const State& a, const State& b) {
   CHECK(a.monitors.largest_penetration == b.monitors.largest_penetration);
   CHECK(a.monitors.contact_sweeps == b.monitors.contact_sweeps);
   CHECK(a.monitors.contact_unconverged == b.monitors.contact_unconverged);
-  CHECK(a.monitors.largest_particle_velocity == b.monitors.largest_particle_velocity);
+  const auto values = [](const Monitors& m) {
+    return std::vector<double>{
+        m.largest_particle_velocity, m.contact_residual,  m.volume_balance,     m.largest_open_J,    m.largest_made_J,
+        m.largest_strain_J,          m.largest_kinetic_J, m.expected_x,         m.expected_y,        m.largest_drift,
+        m.largest_momentum,          m.force_balance,     m.largest_imbalance,  m.delivered_m2,      m.J_spread_sum,
+        m.largest_J_spread,          m.contact_left,      m.largest_contact_Pa, m.largest_tension_Pa};
+  };
+  CHECK(values(a.monitors) == values(b.monitors));
+  CHECK(a.monitors.mirror == b.monitors.mirror);
+  CHECK(a.monitors.growths == b.monitors.growths);
+  CHECK(a.monitors.growths_apart == b.monitors.growths_apart);
 }
 
 const OutputMark mark{{17, 4321}, 5};

@@ -2,10 +2,14 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <string>
+#include <vector>
 
+#include "output/history.hpp"
 #include "output/progress.hpp"
 #include "output/run_folder.hpp"
 #include "output/summary.hpp"
+#include "output/suspect.hpp"
 #include "output_state.hpp"
 
 using namespace strata;
@@ -86,6 +90,9 @@ TEST_CASE("the summary holds the keys of the contract with the values of the sta
   CHECK(monitors.at("contact_sweeps") == 77);
   CHECK(monitors.at("contact_unconverged") == 3);
   CHECK(monitors.at("largest_particle_velocity_m_s") == state.monitors.largest_particle_velocity);
+  CHECK(monitors.at("growths") == 14);
+  CHECK(monitors.at("growths_at_interfaces") == 5);
+  CHECK(monitors.at("J_spread_mean").get<double>() == Approx(state.monitors.J_spread_sum / 14.0).epsilon(1e-14));
 }
 
 TEST_CASE("what is not finite is null, and text that is no UTF-8 does not break the summary") {
@@ -175,4 +182,121 @@ TEST_CASE("progress is told in words that a reader knows") {
   CHECK(duration_text(12.4) == "12 s");
   CHECK(duration_text(std::numeric_limits<double>::quiet_NaN()) == "?");
   CHECK(duration_text(-1.0) == "?");
+}
+
+namespace {
+
+const double nan_value = std::numeric_limits<double>::quiet_NaN();
+
+// A run of which nothing is to be said: a ledger that closes, a step within its limit.
+State sound_state() {
+  State state = made_state();
+  state.ledger = Ledger{};
+  state.ledger.fluid_work = state.ledger.strain = 100.0, state.ledger.largest = 1000.0;
+  state.monitors = Monitors{};
+  state.monitors.largest_courant = 0.5;
+  state.monitors.largest_strain_J = 100.0, state.monitors.largest_momentum = 10.0;
+  state.monitors.largest_contact_Pa = 1e6;
+  state.monitors.growths = 10;
+  return state;
+}
+
+Scene scene_of(Numerics::Mechanics mechanics, Fluid::Law law) {
+  Scene scene = made_scene();
+  scene.numerics.mechanics = mechanics;
+  scene.fluid.law = law;
+  scene.domain.sides = Edge::traction;  // so that momentum counts
+  return scene;
+}
+
+std::vector<std::string> marks(const Scene& scene, const State& state) {
+  std::vector<std::string> names;
+  for (const Watched& mark : suspicions(scene, state)) names.push_back(mark.monitor);
+  return names;
+}
+
+using Names = std::vector<std::string>;
+constexpr auto inertia = Numerics::Mechanics::explicit_dynamics, rest = Numerics::Mechanics::quasistatic;
+
+}  // namespace
+
+TEST_CASE("each monitor marks the run beyond its threshold and not below") {
+  struct Case {
+    const char* monitor;
+    Numerics::Mechanics mechanics;
+    double Monitors::*member;
+    double below, above;  // thresholds are positive; a few have the scale of sound_state()
+  };
+  const auto c = GENERATE(values<Case>({{"energy_closure", inertia, &Monitors::largest_open_J, 9.9, 10.1},
+                                        {"energy_closure", rest, &Monitors::largest_open_J, 9.9, 10.1},
+                                        {"energy_made", inertia, &Monitors::largest_made_J, 9.9, 10.1},
+                                        {"kinetic_share", inertia, &Monitors::largest_kinetic_J, 99.0, 101.0},
+                                        {"largest_courant", inertia, &Monitors::largest_courant, 1.16, 1.18},
+                                        {"momentum", inertia, &Monitors::largest_drift, 0.9e-7, 1.1e-7},
+                                        {"contact_residual", rest, &Monitors::contact_residual, 0.9e-8, 1.1e-8},
+                                        {"force_balance", rest, &Monitors::force_balance, 0.9e-6, 1.1e-6},
+                                        {"fluid_imbalance", rest, &Monitors::largest_imbalance, 0.9e-8, 1.1e-8},
+                                        {"fluid_imbalance", rest, &Monitors::volume_balance, -0.9e-8, -1.1e-8},
+                                        {"J_spread_mean", rest, &Monitors::J_spread_sum, 0.99, 1.01},
+                                        {"J_spread_mean", inertia, &Monitors::J_spread_sum, 0.99, 1.01},
+                                        {"tension_share", rest, &Monitors::largest_tension_Pa, 0.9e-3, 1.1e-3},
+                                        {"contact_left", inertia, &Monitors::contact_left, 0.009, 0.011}}));
+  CAPTURE(c.monitor, c.below, c.above);
+  const Scene scene = scene_of(c.mechanics, Fluid::Law::reynolds);
+  State state = sound_state();
+  CHECK(marks(scene, state).empty());
+  state.monitors.*c.member = c.below;
+  CHECK(marks(scene, state).empty());
+  state.monitors.*c.member = c.above;
+  CHECK(marks(scene, state) == Names{c.monitor});
+  const auto json = nlohmann::json::parse(summary_json(scene, state, record));
+  REQUIRE(json.at("suspect").size() == 1);
+  const auto& mark = json.at("suspect")[0];
+  CHECK(mark.at("monitor") == c.monitor);
+  CHECK(mark.at("value").get<double>() > mark.at("threshold").get<double>());
+  CHECK(mark.at("value") == json.at("monitors").at(c.monitor));
+  CHECK(mark.at("why").get<std::string>().size() > 20);
+  state.monitors.*c.member = nan_value;  // no comparison hides it
+  CHECK(marks(scene, state) == Names{c.monitor});
+  CHECK(suspicions(scene, state)[0].why == std::string(c.monitor) + " is not a finite number");
+  CHECK(nlohmann::json::parse(summary_json(scene, state, record)).at("suspect")[0].at("value").is_null());
+}
+
+TEST_CASE("a ledger that is no number marks the run even if no row has seen it") {
+  State state = sound_state();
+  state.ledger.strain = nan_value;
+  CHECK(marks(scene_of(rest, Fluid::Law::uniform), state) == Names{"energy_closure"});
+  state.ledger.strain = 100.0 + 10.1;  // open by that at the end alone
+  CHECK(marks(scene_of(inertia, Fluid::Law::uniform), state) == Names{"energy_closure"});
+}
+
+TEST_CASE("faces that overlap mark the run by what a cell deforms under their pressure") {
+  State state = sound_state();
+  const Scene scene = scene_of(inertia, Fluid::Law::uniform);
+  const double cell = 1e6 * state.grid.h * (1.0 - 0.25 * 0.25) / 40e9;  // m, of the stiffer rock
+  state.monitors.largest_penetration = 0.0099 * cell;
+  CHECK(marks(scene, state).empty());
+  state.monitors.largest_penetration = 0.0101 * cell;
+  CHECK(marks(scene, state) == Names{"penetration_share"});
+  state.monitors = Monitors{};
+  state.monitors.largest_penetration = 1e-9;  // with nothing that presses
+  CHECK(marks(scene, state) == Names{"penetration_share"});
+}
+
+TEST_CASE("what does not apply to a run is not said of it") {
+  State state = sound_state();
+  state.monitors.largest_drift = 1.0;
+  Scene scene = scene_of(inertia, Fluid::Law::uniform);
+  scene.domain.sides = Edge::fixed;  // the bottom holds the other axis
+  CHECK(marks(scene, state).empty());
+  state = sound_state();
+  state.monitors.largest_kinetic_J = 1e3;
+  scene.initial.velocity_m_s = Formulas{"1", "0"};
+  CHECK(marks(scene, state).empty());  // a scene that throws its block
+  state = sound_state();
+  state.monitors.delivered_m2 = 0.25 * fracture_volume(state);
+  scene.fluid.law = Fluid::Law::paper;
+  const auto json = nlohmann::json::parse(summary_json(scene, state, record));
+  CHECK(json.at("suspect") == nlohmann::json::array());
+  CHECK_FALSE(json.at("monitors").contains("momentum"));
 }

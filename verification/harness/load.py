@@ -54,6 +54,19 @@ class Tip:
 
 
 @dataclass(frozen=True)
+class Suspicion:
+    """Why a run is suspect: the monitor, its value (NaN where it was no finite number), the threshold and a sentence.
+
+    The threshold is NaN for a figure that marks a run only where it is no number.
+    """
+
+    monitor: str
+    value: float
+    threshold: float
+    why: str
+
+
+@dataclass(frozen=True)
 class Summary:
     """What summary.json says, in SI units; `raw` is all of it."""
 
@@ -78,6 +91,7 @@ class Summary:
     events: tuple[Event, ...]
     monitors: dict[str, Any]
     raw: dict[str, Any] = field(repr=False)
+    suspect: tuple[Suspicion, ...] = ()  # empty for a sound run, and for one of before there were marks
 
 
 @dataclass(frozen=True)
@@ -159,11 +173,12 @@ def read_summary(path: Path) -> Summary:
         sizes = ("time_s", "inlet_Pa", "wall_s", "particle_steps_per_s", "peak_memory_MB", "mouth_opening_m", "fracture_volume_m2")
         numbers = {name: number(raw[name]) for name in sizes}
         monitors = dict(raw.get("monitors") or {})
+        suspect = tuple(build(Suspicion, mark, path) for mark in raw.get("suspect") or ())
     except KeyError as error:
         raise LoadError(f"{path}: no key {error.args[0]}") from error
     except (OSError, ValueError, TypeError, AttributeError) as error:
         raise LoadError(f"{path}: {error}") from error
-    return Summary(**words, **counts, **numbers, energy=energy, tips=tips, events=events, monitors=monitors, raw=raw)
+    return Summary(**words, **counts, **numbers, energy=energy, tips=tips, events=events, monitors=monitors, raw=raw, suspect=suspect)
 
 
 def read_history(path: Path) -> dict[str, Array]:

@@ -66,5 +66,23 @@ def test_what_a_quasistatic_run_adds_is_optional(tmp_path: Path) -> None:
     summary["monitors"] = {"volume_balance": 1e-12, "mirror": True}
     (folder / "summary.json").write_text(json.dumps(summary))
     run = load(folder)
+    assert run.summary.suspect == ()
     assert run.summary.tips[0].G_N_m == 205.0 and run.summary.monitors["mirror"] is True
     assert [(event.by, event.at_interface) for event in run.summary.events[1:3]] == [("energy", False), ("J", True)]
+
+
+def test_marks_of_a_run_are_read(tmp_path: Path) -> None:
+    """A mark's value may be null, which stands for no finite number; a torn mark is an error that names its key."""
+    folder = write_run(tmp_path / "exp" / "weak", climb())
+    assert load(folder).summary.suspect == ()
+    summary = json.loads((folder / "summary.json").read_text())
+    mark = {"monitor": "energy_closure", "value": 0.02, "threshold": 0.01, "why": "it stayed open"}
+    summary["suspect"] = [mark, mark | {"monitor": "momentum", "value": None}]
+    (folder / "summary.json").write_text(json.dumps(summary))
+    first, second = load(folder).summary.suspect
+    assert (first.monitor, first.value, first.threshold, first.why) == ("energy_closure", 0.02, 0.01, "it stayed open")
+    assert second.monitor == "momentum" and math.isnan(second.value)
+    del summary["suspect"][0]["why"]
+    (folder / "summary.json").write_text(json.dumps(summary))
+    with pytest.raises(LoadError, match="no key why"):
+        load(folder)

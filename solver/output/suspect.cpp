@@ -1,0 +1,140 @@
+#include "output/suspect.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "output/history.hpp"
+
+namespace strata {
+
+namespace {
+
+// a/b where both are sums of the same kind; 0 where there is nothing of either.
+double share(double a, double b) {
+  if (a == 0.0 && !std::isnan(b)) return 0.0;
+  return b != 0.0 ? a / b : std::numeric_limits<double>::infinity();
+}
+
+// What a per cent of the energy stands for in results: K and openings go with its root, so half a per cent of them.
+constexpr double energy_threshold = 0.01;
+
+void watch_energy(const Scene& scene, const State& state, std::vector<Watched>& out) {
+  const Monitors& m = state.monitors;
+  const bool inertia = scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics;
+  double open = m.largest_open_J;
+  note_largest(open, std::abs(state.ledger.open()));
+  out.push_back({"energy_closure", share(open, state.ledger.largest), energy_threshold,
+                 "the energy ledger stayed open by more than 1 % of the largest energy exchanged"});
+  if (!inertia) return;
+  // With a step beyond its limit modes grow that no work has fed, and contact that does not converge can feed them,
+  // too; what the step and the transfer make shows as dissipation below zero.
+  out.push_back({"energy_made", share(m.largest_made_J, state.ledger.largest), energy_threshold,
+                 "the time step and the transfer made more than 1 % of the largest energy exchanged out of nothing"});
+  // Free vibration has as much of one energy as of the other, a suddenly loaded body less of the kinetic; more comes of
+  // parts that fly. Below, inertia is the physics of unstable growth: a figure that tells how far from the quasi-static
+  // answer a run may be, and no fault. Blocks that a scene itself throws or pulls are not judged.
+  const bool thrown = scene.initial.velocity_m_s || scene.body.acceleration_m_s2;
+  if (thrown && m.largest_strain_J == 0.0) return;
+  out.push_back({"kinetic_share", share(m.largest_kinetic_J, m.largest_strain_J),
+                 thrown ? std::nullopt : std::optional(1.0),
+                 "the largest kinetic energy exceeded the largest strain energy: parts of the block fly freely"});
+}
+
+void watch_motion(const Scene& scene, const State& state, std::vector<Watched>& out) {
+  const Monitors& m = state.monitors;
+  const double limit = courant_limit(scene.numerics.shape);
+  if (scene.numerics.mechanics == Numerics::Mechanics::quasistatic) {
+    // What Newton's method on the pieces solves to (1e-9 of the load), with some room for round-off.
+    out.push_back({"contact_residual", m.contact_residual, 1e-8,
+                   "forces at surfaces were out of balance by more than 1e-8 of the load"});
+    out.push_back({"force_balance", m.force_balance, 1e-6,
+                   "forces at the nodes were out of balance by more than 1e-6 of the load"});
+    return;
+  }
+  out.push_back(
+      {"largest_courant", m.largest_courant, limit, "the time step is beyond the stability limit of the shape"});
+  // Each step keeps momentum to round-off, 1e-16 of it; 1e6 steps that all erred to one side make 1e-10.
+  if (!scene.domain.holds_x() || !scene.domain.holds_y())
+    out.push_back({"momentum", share(m.largest_drift, m.largest_momentum), 1e-8,
+                   "momentum along an axis that no edge holds is not what started the block and the body force gave"});
+}
+
+void watch_fluid(const Scene& scene, const State& state, std::vector<Watched>& out) {
+  const Monitors& m = state.monitors;
+  if (!state.has_fracture) return;
+  if (scene.fluid.law == Fluid::Law::reynolds) {
+    double imbalance = m.largest_imbalance;
+    note_largest(imbalance, std::abs(m.volume_balance));
+    out.push_back({"fluid_imbalance", imbalance, 1e-8, "more than 1e-8 of the fluid is missing or was made"});
+  }
+  // The study's law (3) has no dw/dt: the fracture takes what opening it needs whatever has come in. The figure says by
+  // how much; no run of this law can do better, so it marks none.
+  if (scene.fluid.law == Fluid::Law::paper) {
+    const double opened = fracture_volume(state);
+    if (!(opened <= 0.0)) out.push_back({"fluid_imbalance", (opened - m.delivered_m2) / opened, std::nullopt, ""});
+  }
+}
+
+void watch_growth(const State& state, std::vector<Watched>& out) {
+  const Monitors& m = state.monitors;
+  if (m.growths == 0) return;
+  const auto n = static_cast<double>(m.growths);
+  // A tenth of J is a twentieth of K, and of the pressure at which a tip grows.
+  out.push_back({"J_spread_mean", m.J_spread_sum / n, 0.1,
+                 "J differed between its rings by more than a tenth at growth, on average away from interfaces"});
+  out.push_back({"J_spread_largest", m.largest_J_spread, std::nullopt, ""});
+}
+
+void watch_contact(const Scene& scene, const State& state, std::vector<Watched>& out) {
+  const Monitors& m = state.monitors;
+  double stiffest = 0.0;  // E' (Pa)
+  for (const Rock& rock : scene.rocks)
+    stiffest = std::max(stiffest, rock.youngs_modulus_Pa / (1.0 - rock.poisson_ratio * rock.poisson_ratio));
+  // By the laws' contact stiffness faces overlap by 1e-4 of what a cell deforms under the same pressure: a hundred
+  // times as much is no longer the law's, and a per cent of what a cell does is where results would show it.
+  const double overlap = m.largest_penetration * stiffest / state.grid.h;
+  out.push_back({"penetration_share", share(overlap, m.largest_contact_Pa), 0.01,
+                 "closed faces overlapped by more than 1 % of what a cell deforms under the largest contact pressure"});
+  out.push_back({"tension_share", share(m.largest_tension_Pa, m.largest_contact_Pa), 1e-9,
+                 "faces that carry no tension by their law carried some"});
+  if (scene.numerics.mechanics != Numerics::Mechanics::explicit_dynamics) return;
+  out.push_back({"contact_left", m.contact_left, 0.01,
+                 "a step's contact ran out of sweeps while a reaction still changed by more than 1 % of the largest"});
+}
+
+}  // namespace
+
+double courant_limit(Numerics::Shape shape) {
+  switch (shape) {
+    case Numerics::Shape::linear:
+      return 0.91;
+    case Numerics::Shape::gimp:
+      return 0.55;
+    default:
+      return 1.17;
+  }
+}
+
+std::vector<Watched> watched(const Scene& scene, const State& state) {
+  std::vector<Watched> out;
+  watch_energy(scene, state, out);
+  watch_motion(scene, state, out);
+  watch_fluid(scene, state, out);
+  watch_growth(state, out);
+  watch_contact(scene, state, out);
+  return out;
+}
+
+std::vector<Watched> suspicions(const Scene& scene, const State& state) {
+  std::vector<Watched> all = watched(scene, state);
+  std::erase_if(all, [](const Watched& w) {
+    return std::isfinite(w.value) && !(w.threshold && w.value > *w.threshold);  // a figure that is none marks, too
+  });
+  for (Watched& w : all) {
+    if (!std::isfinite(w.value)) w.why = w.monitor + " is not a finite number";
+  }
+  return all;
+}
+
+}  // namespace strata
