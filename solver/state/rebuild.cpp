@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "state/blocks.hpp"
+#include "state/light_copies.hpp"
 #include "state/make_grid.hpp"
 
 namespace strata {
@@ -392,6 +393,7 @@ void rebuild_copies(const Scene& scene, State& state) {
   make_masters(scene, state);
   make_stress_samples(scene, state);
   make_surface_stencils(state);
+  join_light_copies(scene, state);
   state.x_spans = spans_along_x(state.grid), state.y_spans = spans_along_y(state.grid);
   const auto records = static_cast<std::size_t>(state.copies.records());
   state.sums.clear(records), state.motion.clear(records);

@@ -1,0 +1,26 @@
+// Copies of nodes of whose rock hardly anything is left, where a fracture passes a column or row of particles at a
+// small angle: the particle or two in them cannot carry what the fracture's faces there exert.
+#pragma once
+
+#include "state/state.hpp"
+
+namespace strata {
+
+// What faces exert on a copy is balanced by the stress in its rock: int grad N_i dV = -+ int N_i n ds, of which
+// particles and points are quadratures. Under a uniform pressure their ratio is the stress of the copy's rock in
+// pressures. Where whole columns of 4 x 4 particles a cell belong to a copy it is at most 2.25 (a fracture just before
+// the next column), and 1 for 2 x 2 at a grid line or mid-cell. More of it means that a corner with few particles is
+// all there is.
+constexpr double most_load = 2.5;
+
+// int N_i ds in cells from which on a straight fracture finds a column of 4 x 4 particles in the copy: (1/2) (1/8)^2. A
+// copy that less reaches is of no use to a fracture, and may not bear more than its particles are worth.
+constexpr double least_reach = 1.0 / 128.0;
+
+/// Where int N_i ds over a surface's split points is more than most_load (of copies below least_reach: 1) times sum_p
+/// V_p |grad N_i| over the particles of a copy, the surface's stencils no longer tell its two sides apart at that node,
+/// as if the copy had no particles: neither tractions nor jumps reach it (D and D^T alike), its particles follow the
+/// rock beside. Needs bins, masters and stencils of `state` (rebuild.hpp), changes its stencils. Throws nothing.
+void join_light_copies(const Scene& scene, State& state);
+
+}  // namespace strata
