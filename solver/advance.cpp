@@ -23,15 +23,9 @@ namespace {
 
 // Stored energies now, and what the transfer lost: the grid's gain in kinetic energy that the particles did not take
 // up.
-void close_ledger(const Scene& scene, const GridEnergy& grid, const GridEnergyAfter& after,
-                  const ParticleReport& particles, State& state) {
+void close_ledger(const Scene& scene, const std::vector<Elasticity>& rocks, const GridEnergy& grid,
+                  const GridEnergyAfter& after, const ParticleReport& particles, State& state) {
   Ledger& ledger = state.ledger;
-  if (!std::isfinite(particles.after)) {
-    throw NumericalFailure(
-        "step " + std::to_string(state.step) +
-        ": the kinetic energy is not finite; the motion has become unstable. Lower numerics.courant (now " +
-        std::to_string(scene.numerics.courant) + ")");
-  }
   ledger.kinetic = particles.after;
   ledger.transfer += (after.kinetic - grid.mapped) - (particles.after - particles.before);
   ledger.integration += after.increment - particles.step_strain;
@@ -40,6 +34,7 @@ void close_ledger(const Scene& scene, const GridEnergy& grid, const GridEnergyAf
   note_largest(state.monitors.largest_kinetic_J, ledger.kinetic);
   ledger.largest = std::max({ledger.largest, std::abs(ledger.fluid_work), std::abs(ledger.in_situ_work),
                              std::abs(ledger.body_work), ledger.kinetic});
+  require_stable(scene, rocks, state);
 }
 
 void advance_updated(const Scene& scene, const std::vector<Elasticity>& rocks, bool look, bool grow_now, State& state) {
@@ -62,7 +57,7 @@ void advance_updated(const Scene& scene, const std::vector<Elasticity>& rocks, b
   follow_surfaces(state);  // w += dt D v
   state.time += state.dt;
   ++state.step;
-  close_ledger(scene, grid, after, particles, state);
+  close_ledger(scene, rocks, grid, after, particles, state);
   expect_momentum(scene, state);
   bool changed = fail_interfaces(scene, rocks, state);           // bonded places that now let go
   if (look) measure_tips(scene, rocks, state);                   // J, K_I, K_II with the same P

@@ -7,6 +7,7 @@
 #include "flow/paper_flow.hpp"
 #include "fracture/growth.hpp"
 #include "fracture/j_integral.hpp"
+#include "mechanics/explicit_step.hpp"
 #include "mechanics/interface_laws.hpp"
 #include "mechanics/tip_ties.hpp"
 #include "mechanics/total_base.hpp"
@@ -32,14 +33,9 @@ void note_motion(State& state) {
 // Energies at the step's end. external: power sum m v . a of all forces but the rock's own; elastic: of the rock's at
 // the step's end. What the rock stores and what its force of the step's start does differ by v K v dt^2/2, which
 // follows from the change of that force.
-void close_ledger(const Scene& scene, const NodeTotals& moved, double external, double elastic, State& state) {
+void close_ledger(const Scene& scene, const std::vector<Elasticity>& rocks, const NodeTotals& moved, double external,
+                  double elastic, State& state) {
   Ledger& ledger = state.ledger;
-  if (!std::isfinite(moved.kinetic)) {
-    throw NumericalFailure(
-        "step " + std::to_string(state.step) +
-        ": the kinetic energy is not finite; the motion has become unstable. Lower numerics.courant (now " +
-        std::to_string(scene.numerics.courant) + ")");
-  }
   const double keep = 1.0 - scene.numerics.damping_1_s * state.dt;
   ledger.damping += (1.0 - keep * keep) * ledger.kinetic;
   ledger.kinetic = moved.kinetic;
@@ -49,6 +45,7 @@ void close_ledger(const Scene& scene, const NodeTotals& moved, double external, 
   note_largest(state.monitors.largest_kinetic_J, ledger.kinetic);
   ledger.largest = std::max({ledger.largest, std::abs(ledger.fluid_work), std::abs(ledger.in_situ_work),
                              std::abs(ledger.body_work), ledger.kinetic});
+  require_stable(scene, rocks, state);
 }
 
 // Copies after an event. Nodes go on with the velocities they had.
@@ -76,7 +73,7 @@ void advance_total(const Scene& scene, const std::vector<Elasticity>& rocks, boo
   ++state.step;
   if (look) note_motion(state);
   const double elastic = find_accelerations(scene, rocks, state);  // a_i = -(M^-1 K u)_i + ...
-  close_ledger(scene, moved, external, elastic, state);
+  close_ledger(scene, rocks, moved, external, elastic, state);
   expect_momentum(scene, state);
   bool changed = false;
   if (any_bond_fails(scene, state)) {

@@ -1,7 +1,10 @@
 #include "mechanics/explicit_step.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "state/lanes.hpp"
 
@@ -106,6 +109,24 @@ Uptake prepare_transfer(const Scene& scene, State& state) {
     state.take_x[r] = master.x * state.take_x[from], state.take_y[r] = master.y * state.take_y[from];
   }
   return {0.0, &state.take_x, &state.take_y};
+}
+
+void require_stable(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
+  constexpr double times_supplied = 10.0;  // 1/(1 - (omega dt/2)^2) at 0.95 of the largest stable step
+  constexpr double rounding = 1e-10;       // of the speed of sound
+  const Ledger& ledger = state.ledger;
+  const double supplied = std::abs(ledger.fluid_work) + std::abs(ledger.in_situ_work) + std::abs(ledger.edge_work) +
+                          std::abs(ledger.body_work) + std::abs(ledger.initial_kinetic);
+  if (ledger.kinetic <= times_supplied * supplied) return;
+  const Particles& p = state.particles;
+  double floor = 0.0;
+  for (std::size_t q = 0; q < p.size(); ++q) floor += p.m[q] * std::pow(rounding * rocks[p.rock[q]].c_P, 2);
+  if (ledger.kinetic <= floor) return;
+  throw NumericalFailure(
+      fmt::format("step {}: the motion has become unstable: its kinetic energy, {:.3g} J/m, is more than {:g} times "
+                  "all that was put "
+                  "in, {:.3g} J/m. Lower numerics.courant (now {})",
+                  state.step, ledger.kinetic, times_supplied, supplied, scene.numerics.courant));
 }
 
 double time_step(const Scene& scene, double fastest) {

@@ -1,7 +1,10 @@
 // The nodal part of an explicit step, between the two loops over particles.
 #pragma once
 
+#include <vector>
+
 #include "mechanics/transfers.hpp"
+#include "state/elasticity.hpp"
 #include "state/state.hpp"
 
 namespace strata {
@@ -38,6 +41,11 @@ double body_work(const State& state);
 /// What particles take up under the scene's transfer, and the share of their own velocity they keep: FLIP dv and
 /// 1 - damping dt; PIC v and XPIC(2) 2 v - v** + dv with the mapped v, and nothing.
 Uptake prepare_transfer(const Scene& scene, State& state);
+
+/// Throws NumericalFailure where the motion has become unstable: where its kinetic energy is not finite, or more than
+/// 10 times all that loads have put in or drawn out and the block started with, and more than rounding makes, m (1e-10
+/// c_P)^2. A stable step keeps it below what was put in but for a factor 1/(1 - (omega dt/2)^2) of its fastest mode.
+void require_stable(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state);
 
 /// Time step (s): courant h/c_P of the fastest rock. The limits are 1.17 (B-spline) and 0.91 (linear) times h/c_P by
 /// the largest eigenvalue of M^-1 K, and 4/(2 - S) instead of 4 in (omega dt)^2 where the transfer smooths

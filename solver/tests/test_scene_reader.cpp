@@ -95,7 +95,7 @@ TEST_CASE("Bounds are open or closed as declared") {
     return with(layered, "cell_m = 1", std::string("cell_m = 1\ncourant = ") + value);
   };
   CHECK(good(courant("1")).numerics.courant == 1.0);
-  CHECK_THAT(errors(courant("0")), Catch::Contains("courant = 0 is outside (0, 1]"));
+  CHECK_THAT(errors(courant("0")), Catch::Contains("courant = 0 is outside (0, 2]"));
 }
 
 TEST_CASE("All mistakes are reported at once, in the order of the file") {

@@ -106,7 +106,7 @@ def test_variants_prints_names_alone(tmp_path: Path) -> None:
     ("arguments", "expected"),
     [
         (["--variant", "fin"], "good.toml: there is no variant fin. It has fine, coarse. Did you mean fine?"),
-        (["--set", "numerics.courant=2"], "--set numerics.courant=2: numerics.courant = 2 is outside (0, 1]"),
+        (["--set", "numerics.courant=3"], "--set numerics.courant=3: numerics.courant = 3 is outside (0, 2]"),
         (["--set", "numerics.shape=gmp"], '--set numerics.shape=gmp: numerics.shape = "gmp" is not allowed'),
         (["--set", "numerics.cel_m=2"], "--set numerics.cel_m=2: unknown key numerics.cel_m. Did you mean cell_m?"),
         (["--set", "numerics.cell_m"], "--set numerics.cell_m: this is not key.path=value"),

@@ -1,0 +1,84 @@
+"""Walks the families of the stability atlas across their edges and judges what was found.
+
+usage: ci/atlas [--family NAME[,NAME...]] [--smoke] [--accept] [--list]
+
+Runs go to runs/atlas/FAMILY/POINT; what is there for the same scene, settings and solver is not run again. Without --accept nothing is
+written: what differs from the records (verification/stability/records) is told.
+Exit status: 0 all as declared and as recorded, 1 some are not, 2 wrong use.
+"""
+from __future__ import annotations
+
+import argparse
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+from verification.harness.paths import solver
+from verification.stability import store
+from verification.stability.catalogue import choose, families
+from verification.stability.family import BadFamily, Family
+from verification.stability.judge import changes, headline, problems
+from verification.stability.runner import RUNS, walk
+
+
+def parser() -> argparse.ArgumentParser:
+    """The options."""
+    options = argparse.ArgumentParser("ci/atlas", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options.add_argument("--family", default="", help="families by the beginnings of their names, comma-separated (default: all)")
+    options.add_argument("--smoke", action="store_true", help="only the points that ci/test runs too, by the recorded edges")
+    options.add_argument("--accept", action="store_true", help="write what was found as the record")
+    options.add_argument("--list", action="store_true", help="name the families; run nothing")
+    options.add_argument("--runs", type=Path, default=RUNS, help="folder of the runs")
+    return options
+
+
+def say(line: str) -> None:
+    """Print a line at once."""
+    print(line, flush=True)
+
+
+def judged(family: Family, options: argparse.Namespace) -> list[str]:
+    """Walk a family; what is wrong with it, and with what was recorded of it."""
+    before = store.read(family.name)
+    now = walk(family, options.smoke, options.runs, tell=say)
+    if options.smoke:
+        now = replace(now, edge=before.edge if before is not None else None)
+    wrong = problems(family, now, options.smoke)
+    told = changes(before, now)
+    for line in told:
+        print(f"  {line}")
+    if options.accept:
+        store.write(now)
+    else:
+        wrong += told
+    if now.edge is not None and now.edge.measured is not None:
+        theory = "" if now.edge.difference is None else f", predicted {now.edge.predicted:.5g} ({100.0 * now.edge.difference:+.2f} %)"
+        print(f"{family.name}: edge {now.edge.measured:.5g}{theory}")
+    cpu_s = sum(point.cpu_s for point in now.points)
+    say(f"{family.name}: {'; '.join(wrong) or 'as it is to be'} ({cpu_s:.1f} s of CPU time)")
+    return wrong
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Walk what is asked for."""
+    command = parser()
+    options = command.parse_args(arguments)
+    try:
+        chosen = choose(families(), [name for name in options.family.split(",") if name])
+    except BadFamily as error:
+        command.error(str(error))
+    if options.list:
+        for family in chosen.values():
+            print(f"{family.name}: {family.title} ({len(family.points)} points)")
+        return 0
+    if options.smoke and options.accept:
+        command.error("--accept needs all points: without --smoke")
+    if not solver().is_file():
+        command.error(f"there is no {solver()}: build it first")
+    verdicts = [judged(family, options) for family in chosen.values()]
+    print(headline(verdicts))
+    return 1 if any(verdicts) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

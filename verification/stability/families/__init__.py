@@ -1,0 +1,1 @@
+"""The families of the atlas: every module here lists some as FAMILIES."""

@@ -1,0 +1,152 @@
+"""What a family of the stability atlas is: scenes that walk across the edge of what a method can do, and what must hold of each.
+
+A family only describes; running (runner.py), judging (judge.py), keeping (store.py) and drawing (reports/stability.py) are elsewhere.
+`verification/stability/families/*.py` list theirs as FAMILIES.
+"""
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from verification.harness.load import Run
+
+# How a point ended.
+STABLE = "stable"  # completed, the check holds, nothing is suspect
+MARKED = "marked"  # completed, and the run says itself that it is not to be trusted
+REFUSED = "refused"  # exit 2 with its text
+FAILED = "failed"  # exit 3 with its reason and the last good state
+GARBAGE = "garbage"  # completed, not marked, and the check does not hold (or a run that ended in no such way): must never be
+OUTCOMES = (STABLE, MARKED, REFUSED, FAILED, GARBAGE)
+SAFE = (STABLE, MARKED, REFUSED, FAILED)  # what a family may declare of its points beyond the edge
+
+STRATA = "strata"  # the program of a point that is run through the command line
+
+LEAST_REFUSED = 0.9  # no check may hold for a value that is off by more than this: zero and twice must fail
+
+
+@dataclass(frozen=True)
+class Checked:
+    """What a check found: the value, what it is to be, the relative error, whether that is good enough, and words for the table."""
+
+    value: float
+    reference: float
+    error: float
+    holds: bool
+    words: str = ""
+
+
+Check = Callable[[Run], Checked]  # may raise LoadError: then nothing is known of the run, which is garbage
+
+
+def close(value: float, reference: float, tolerance: float, words: str = "", scale: float | None = None) -> Checked:
+    """A value that is to be within `tolerance` of a reference, relative to it, or to `scale` (same unit, > 0) where that is zero.
+
+    Raises ValueError for a tolerance by which zero would pass.
+    """
+    size = abs(reference) if scale is None else scale
+    if not 0.0 < tolerance <= LEAST_REFUSED or not size > 0.0:
+        raise ValueError(f"a tolerance of {tolerance:g} of {size:g} would let anything pass")
+    error = (value - reference) / size
+    return Checked(value, reference, error, math.isfinite(error) and abs(error) <= tolerance, words)
+
+
+def at_most(value: float, bound: float, words: str = "") -> Checked:
+    """A size (>= 0) that is to stay below a bound; the error is value / bound, so that 1 is the edge of what passes."""
+    return Checked(value, bound, value / bound, math.isfinite(value) and 0.0 <= value <= bound, words)
+
+
+@dataclass(frozen=True)
+class Point:
+    """A scene with settings, at a value of the walked parameter.
+
+    program: STRATA, or the name of another measured way (Family.ways). smoke: run in ci/test too; of each family two or three
+    fast ones, on both sides of its edge. beyond: whether it is beyond the edge, where that does not follow from the value.
+    """
+
+    label: str  # unique in its family, as in a file name
+    value: float
+    scene: Path
+    settings: tuple[str, ...] = ()
+    variant: str = ""
+    program: str = STRATA
+    smoke: bool = False
+    beyond: bool | None = None
+
+
+@dataclass(frozen=True)
+class Edge:
+    """Where a family ceases to be sound.
+
+    predicted: computed by Python or strata-reference without the solver, None where no theory gives it; source: whose theory, and how
+    it was computed, a sentence. at: the point at any value, by which the edge is measured: bisection in `bracket` (sound end first) until
+    the ends differ by `resolution` of the value. Without it the edge is read from the points' runs by `read`, or else lies between
+    the last sound and the first unsound point. A difference of more than `tolerance` is a failure.
+    """
+
+    source: str
+    predicted: Callable[[], float] | None = None
+    at: Callable[[float], Point] | None = None
+    bracket: tuple[float, float] = (0.0, 0.0)
+    resolution: float = 0.005
+    tolerance: float = 0.03
+    unsound_above: bool = True
+    read: Callable[[Mapping[str, Run]], float] | None = None  # of completed runs by the labels of their points
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """What is walked."""
+
+    name: str
+    unit: str = ""
+    log: bool = False
+
+
+def no_flag(run: Run) -> str:
+    """Nothing but the run's own list of what is suspect counts as a mark."""
+    del run
+    return ""
+
+
+def tip_at_interface(run: Run) -> str:
+    """The mark of a run that has a tip too near to an interface for its J and K."""
+    near = [tip for tip in run.summary.raw["tips"] if tip.get("at_interface")]
+    return "the tip is flagged at_interface: J and K there are not to be trusted" if near else ""
+
+
+@dataclass(frozen=True)
+class Family:
+    """A known failure, walked across. beyond: what strata does beyond the edge, any of SAFE; without an edge all points must be so.
+
+    section: families of the same section share a heading and a figure (its first family's `about` stands above). check_name: what is on
+    the figure's vertical axis. flag: words for a completed run that is marked otherwise than by `suspect`. ways: other programs
+    than strata by name, each giving what the check would.
+    """
+
+    name: str  # unique over all families, as in a file name
+    title: str
+    says: str
+    parameter: Parameter
+    points: tuple[Point, ...]
+    check: Check
+    beyond: tuple[str, ...] = (STABLE,)
+    edge: Edge | None = None
+    section: str = ""
+    about: str = ""
+    check_name: str = "relative error"
+    flag: Callable[[Run], str] = no_flag
+    ways: Mapping[str, Callable[[Point], Checked]] = field(default_factory=dict)
+    remark: str = ""  # what the walk showed, in words, for the page
+
+    def point(self, label: str) -> Point:
+        """The point of a label; raises KeyError."""
+        found = next((point for point in self.points if point.label == label), None)
+        if found is None:
+            raise KeyError(f"{self.name} has no point {label}")
+        return found
+
+
+class BadFamily(Exception):
+    """A family that the atlas cannot judge; the message says which and why."""

@@ -1,0 +1,56 @@
+"""The stability atlas: what is recorded of every family is as it is to be, and its smoke points still end as recorded."""
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from verification.harness.paths import solver
+from verification.stability import store
+from verification.stability.catalogue import families
+from verification.stability.family import STABLE
+from verification.stability.judge import changes, problems, side
+from verification.stability.runner import walk
+
+FAMILIES = families()
+pytestmark = pytest.mark.skipif(not solver().is_file(), reason="no solver is built")
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_what_is_recorded_is_as_it_is_to_be(name: str) -> None:
+    """No garbage, the edge where theory says, beyond it what is declared; every point is in the record, on both sides of the edge."""
+    assert problems(FAMILIES[name], store.read(name)) == []
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_smoke_points_end_as_recorded(name: str) -> None:
+    """Runs of the points on both sides of the edge: outcomes and errors are those of the record."""
+    family, record = FAMILIES[name], store.read(name)
+    assert record is not None
+    found = replace(walk(family, smoke=True), edge=record.edge)
+    assert problems(family, found, smoke=True) == []
+    assert changes(record, found) == []
+
+
+def test_smoke_points_are_on_both_sides() -> None:
+    """Of each section with an edge ci/test runs sound points and points beyond it."""
+    sides: dict[str, set[bool | None]] = {}
+    for name, family in FAMILIES.items():
+        record = store.read(name)
+        if family.edge is None or record is None:
+            continue
+        own = {side(family, point, record) for point in family.points if point.smoke}
+        sides.setdefault(family.section or name, set()).update(own)
+    assert [name for name, found in sides.items() if not {True, False} <= found] == []
+
+
+def test_no_record_is_left_over() -> None:
+    """Every record belongs to a family."""
+    assert {path.stem for path in store.RECORDS.glob("*.json")} - set(FAMILIES) == set()
+
+
+def test_something_is_stable_everywhere() -> None:
+    """No family consists of points beyond its edge alone."""
+    for name in FAMILIES:
+        record = store.read(name)
+        assert record is not None and any(point.outcome == STABLE for point in record.points), name

@@ -1,0 +1,190 @@
+"""The atlas' judge on made-up families: what it must refuse."""
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from verification.stability import store
+from verification.stability.catalogue import check
+from verification.stability.family import (
+    FAILED, GARBAGE, MARKED, REFUSED, STABLE, BadFamily, Checked, Edge, Family, Parameter, Point, at_most, close,
+)  # fmt: skip
+from verification.stability.judge import changes, problems
+from verification.stability.runner import bisected, found, of_failure, walk
+from verification.stability.store import EdgeFound, PointFound, Record
+
+SCENE = Path(__file__)
+
+
+def no_check(run: Any) -> Checked:
+    """Never called."""
+    raise AssertionError(run)
+
+
+def walked(**more: Any) -> Family:
+    """A family with points at 0.5, 0.9, 1.1 and 2 whose edge is to be at 1."""
+    points = tuple(Point(f"{value:g}", value, SCENE, smoke=value < 1.0) for value in (0.5, 0.9, 1.1, 2.0))
+    edge = Edge("Made up.", lambda: 1.0, lambda value: Point(f"at {value}", value, SCENE), (0.5, 2.0))
+    given = {"beyond": (FAILED,), "edge": edge} | more
+    return Family("walk", "A walk", "It walks.", Parameter("x"), points, no_check, **given)
+
+
+def recorded(outcomes: str = "ssff", measured: float | None = 1.01) -> Record:
+    """A record of that family: outcomes by their first letters (x: garbage)."""
+    names = {"s": STABLE, "m": MARKED, "r": REFUSED, "f": FAILED, "x": GARBAGE}
+    points = tuple(PointFound(f"{value:g}", value, names[letter], Checked(1.0, 1.0, 0.1, True)) for value, letter in zip((0.5, 0.9, 1.1, 2.0), outcomes))
+    return Record("walk", "1", points, EdgeFound(1.0, measured, 1.0, 1.02))
+
+
+def test_a_sound_record_passes() -> None:
+    """As declared, with the edge one per cent off."""
+    assert problems(walked(), recorded()) == []
+
+
+@pytest.mark.parametrize(
+    ("record", "said"),
+    [
+        (recorded("ssfx"), "2: garbage"),
+        (recorded("sxff"), "0.9: garbage"),
+        (recorded("ssfs"), "2: stable beyond the edge"),
+        (recorded("ssfr"), "2: refused beyond the edge"),
+        (recorded("ssfm"), "2: marked beyond the edge"),
+        (recorded("sfff"), "0.9: failed before the edge"),
+        (recorded("smff"), "0.9: marked before the edge"),
+        (recorded(measured=1.05), "+5.0 % off"),
+        (recorded(measured=0.95), "-5.0 % off"),
+        (recorded(measured=0.0), "-100.0 % off"),
+        (recorded(measured=2.0), "+100.0 % off"),
+        (recorded(measured=-1.0), "-200.0 % off"),
+        (recorded(measured=math.nan), "nan"),
+        (recorded(measured=None), "not found"),
+        (recorded("ssf"), "2: not measured"),
+        (None, "never measured"),
+    ],
+)  # fmt: skip
+def test_what_is_not_as_declared_is_refused(record: Record | None, said: str) -> None:
+    """Garbage anywhere, other outcomes than declared on either side, an edge 5 % off, an edge or a point that was not measured."""
+    assert any(said in problem for problem in problems(walked(), record)), problems(walked(), record)
+
+
+def test_a_theory_that_was_not_computed_is_refused() -> None:
+    """A record without the predicted edge, and one with an edge that the family does not have."""
+    record = recorded()
+    assert problems(walked(), replace(record, edge=EdgeFound(None, 1.0, 0.9, 1.1))) != []
+    assert problems(walked(edge=None, beyond=(STABLE, FAILED)), record) == ["an edge was measured that the family does not have"]
+
+
+def test_at_the_edge_either_side_will_do_but_garbage_never() -> None:
+    """A point within the tolerance of the edge may be sound or not."""
+    points = (*walked().points, Point("1.02", 1.02, SCENE))
+    for outcome, fine in ((STABLE, True), (FAILED, True), (REFUSED, False), (GARBAGE, False)):
+        record = replace(recorded(), points=(*recorded().points, PointFound("1.02", 1.02, outcome)))
+        assert (problems(replace(walked(), points=points), record) == []) == fine, outcome
+
+
+def test_an_edge_below_turns_the_sides() -> None:
+    """unsound_above = False: what lies below the edge is beyond it."""
+    edge = replace(walked().edge or Edge(""), unsound_above=False)
+    assert problems(walked(edge=edge), recorded("ffss")) == []
+    assert problems(walked(edge=edge), recorded("ssff")) != []
+
+
+def test_points_on_one_side_alone_are_refused() -> None:
+    """An edge that no point is beyond has not been walked across."""
+    edge = replace(walked().edge or Edge(""), predicted=lambda: 3.0)
+    record = replace(recorded("ssss"), edge=EdgeFound(3.0, 3.0, 2.9, 3.1))
+    assert problems(walked(edge=edge), record) == ["no points on both sides of the edge"]
+
+
+def test_without_an_edge_all_points_are_as_declared() -> None:
+    """Stable by construction means everywhere."""
+    family = walked(edge=None, beyond=(STABLE,))
+    assert problems(family, replace(recorded("ssss"), edge=None)) == []
+    assert problems(family, replace(recorded("sssf"), edge=None)) != []
+
+
+def test_checks_refuse_zero_twice_and_the_other_sign() -> None:
+    """No tolerance lets them pass; not a number never does."""
+    assert close(1.04, 1.0, 0.05).holds
+    assert not any(close(value, 1.0, 0.9).holds for value in (0.0, 2.0, -1.0, math.nan, math.inf))
+    assert at_most(0.9, 1.0).holds
+    assert not any(at_most(value, 1.0).holds for value in (1.1, -0.1, math.nan, math.inf))
+    for tolerance in (1.0, 0.0, -0.1):
+        with pytest.raises(ValueError):
+            close(1.0, 1.0, tolerance)
+    with pytest.raises(ValueError):
+        close(1.0, 0.0, 0.1)
+
+
+def test_bisection_finds_the_edge() -> None:
+    """From either side, to its resolution; a bracket that does not enclose it is an error."""
+    edge = Edge("", bracket=(0.5, 2.0), resolution=0.001)
+    good, bad = bisected(lambda value: value < 1.234, edge)
+    assert good < 1.234 <= bad and bad - good < 0.002
+    good, bad = bisected(lambda value: value > 1.234, replace(edge, bracket=(2.0, 0.5)))
+    assert bad <= 1.234 < good and good - bad < 0.002
+    for wrong in ((0.5, 1.0), (1.5, 2.0)):
+        with pytest.raises(ValueError):
+            bisected(lambda value: value < 1.234, replace(edge, bracket=wrong))
+
+
+def test_families_are_checked() -> None:
+    """Twice the same label, no smoke point, an outcome that may not be declared, a scene that is not there."""
+    family = walked()
+    check(family)
+    wrong = (
+        replace(family, points=(*family.points, family.points[0])), replace(family, beyond=(GARBAGE,)), replace(family, beyond=()),
+        replace(family, points=tuple(replace(point, smoke=False) for point in family.points)), replace(family, says=""),
+        replace(family, points=(*family.points, Point("3", 3.0, Path("no/such.toml")))),
+        replace(family, points=(*family.points, Point("3", 3.0, SCENE, program="abacus"))),
+    )  # fmt: skip
+    for one in wrong:
+        with pytest.raises(BadFamily):
+            check(one)
+
+
+def test_records_are_read_back(tmp_path: Path) -> None:
+    """All of it but the digits beyond seven; numbers that are not finite stay so."""
+    record = replace(recorded(), points=(*recorded().points, PointFound("3", 3.0, MARKED, Checked(math.nan, 1.0, math.inf, False, "w"), "why", 0.5)))
+    store.write(record, tmp_path)
+    again = store.read("walk", tmp_path)
+    assert again is not None and again.edge == record.edge and again.points[:4] == record.points[:4]
+    assert math.isnan(again.points[4].checked.value) and again.points[4].reason == "why"  # type: ignore[union-attr]
+    assert store.read("stroll", tmp_path) is None
+    (tmp_path / "torn.json").write_text('{"family": "torn"', encoding="utf-8")
+    with pytest.raises(ValueError):
+        store.read("torn", tmp_path)
+
+
+def test_changes_are_told() -> None:
+    """Outcomes, errors and edges that are not as they were accepted; rounding is not told."""
+    record = recorded()
+    assert changes(record, record) == []
+    first, second, *others = record.points
+    slightly = replace(second, checked=Checked(1.0, 1.0, 0.1 + 1e-9, True))
+    assert changes(record, replace(record, points=(first, slightly, *others))) == []
+    much = replace(second, checked=Checked(1.0, 1.0, 0.2, True))
+    assert len(changes(record, replace(record, points=(first, much, *others)))) == 1
+    assert len(changes(record, replace(record, points=(replace(first, outcome=MARKED), second, *others)))) == 1
+    assert len(changes(record, replace(record, edge=EdgeFound(1.0, 1.03)))) == 1
+    assert changes(None, record) == ["walk: new"]
+
+
+def test_other_ways_and_killed_runs() -> None:
+    """Another measured way is checked as a run is; a run that died without the solver's word is garbage."""
+    way = {"sum": lambda point: at_most(point.value, 1.0, "as is")}
+    family = walked(ways=way, beyond=(STABLE,), edge=None)
+    points = tuple(replace(point, program="sum") for point in family.points)
+    outcomes = [found(family, point).outcome for point in points]
+    assert outcomes == [STABLE, STABLE, GARBAGE, GARBAGE]
+    assert len(walk(replace(family, points=points), smoke=True).points) == 2
+    from verification.harness.run import Outcome
+
+    died = Outcome("scene", "", "failed", -9, "killed by signal 9", 1.0, "")
+    for exit_status, outcome in ((-9, GARBAGE), (1, GARBAGE), (124, GARBAGE), (2, REFUSED), (3, FAILED)):
+        assert of_failure(points[0], replace(died, exit_status=exit_status), 0.0).outcome == outcome
+    assert of_failure(points[0], replace(died, exit_status=3, reason=""), 0.0).outcome == GARBAGE
