@@ -14,6 +14,7 @@ from reports.figures import catalogue, make  # noqa: E402  (after the path to th
 from reports.page import write_page  # noqa: E402
 from reports.precision_page import write_precision  # noqa: E402
 from reports.runs import add_missing, declared_runs, load_runs  # noqa: E402
+from reports.stability_page import write_stability  # noqa: E402
 from reports.verification import write_verification  # noqa: E402
 from verification.harness.choices import read_points  # noqa: E402
 from verification.harness.claim_data import read_claims  # noqa: E402
@@ -36,14 +37,15 @@ def main(arguments: list[str] | None = None) -> int:
     verified = write_verification(options.runs, options.out, with_index=True)
     said = verified.headline if verified else ""
     chart = write_precision(options.out, options.precision)
-    page = write_page(options.out, runs, read_claims(options.runs / "claims.json"), figures, points, said, chart)
-    for defect in [*(verified.defects if verified else []), *filter(None, [chart.defect])]:
+    atlas = write_stability(options.out)
+    page = write_page(options.out, runs, read_claims(options.runs / "claims.json"), figures, points, said, chart, atlas)
+    for defect in [*(verified.defects if verified else []), *filter(None, [chart.defect, atlas.defect])]:
         print(defect, file=sys.stderr)
     for made in figures:
         if made.reason:
             print(f"{made.label}: {made.reason}\n{made.defect}", file=sys.stderr)
     print(f"{page}: {sum(made.ok for made in figures)} of {len(figures)} figures, {len(runs)} runs")
-    broken = any(made.defect for made in figures) or bool(verified and verified.defects) or bool(chart.defect)
+    broken = any(made.defect for made in figures) or bool(verified and verified.defects) or bool(chart.defect or atlas.defect)
     return 1 if options.strict and broken else 0
 
 

@@ -19,6 +19,7 @@ from reports.layout import flat_keys
 from reports.ledger import closure_of, differences, spread_of, suspicions
 from reports.outcome import interface_states, outcome_of
 from reports.precision_page import Front
+from reports.stability_page import Front as Atlas
 from reports.runs import Run, mechanics_in
 from reports.sensitivity import SYMBOLS, sensitivity
 from reports.verdicts import ClaimRow, claim_rows, counts, mechanics_of_rows
@@ -52,16 +53,17 @@ def write_page(
     points: Sequence[Point] = (),
     verified: str = "",
     precision: Front | None = None,
+    stability: Atlas | None = None,
 ) -> Path:
     """Write index.html and copies of each run's small files; `verified`: what verification.html beside it says, if it is there;
-    `precision`: the chart of error against time, which comes first."""
+    `precision`: the chart of error against time, which comes first; `stability`: what stability.html beside it says."""
     out.mkdir(parents=True, exist_ok=True)
     for run in runs:
         _copy_sources(run, out)
     loader = jinja2.FileSystemLoader(Path(__file__).parent / "templates")
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
     page = out / "index.html"
-    content = {**context(runs, claims, figures, points), "verified": verified, "precision": precision}
+    content = {**context(runs, claims, figures, points), "verified": verified, "precision": precision, "stability": stability}
     page.write_text(environment.get_template("page.html").render(content), encoding="utf-8")
     return page
 

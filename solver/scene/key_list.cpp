@@ -362,7 +362,7 @@ std::vector<Key> numerics_keys() {
       number(
           "numerics.courant", "", {0.0, 2.0, true, false},
           +[](Scene& s, std::size_t) -> double& { return s.numerics.courant; }, "Time step as c_P dt / cell_m.",
-          "Steps are stable up to 0.9 to 1.2 by shape and transfer, uGIMP beside loaded edges up to 0.55; a run that "
+          "Steps are stable up to 0.65 to 1.2 by shape and transfer, uGIMP beside loaded edges up to 0.48; a run that "
           "becomes unstable ends and says so."),
       number(
           "numerics.damping_1_s", "1/s", not_negative,

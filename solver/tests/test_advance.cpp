@@ -205,3 +205,21 @@ TEST_CASE("a run that is not finite ends") {
   run.state.particles.v_x[10] = std::numeric_limits<double>::infinity();
   CHECK_THROWS_AS(run.advance(2), NumericalFailure);
 }
+
+// Requires that a motion which grows ends the run with a reason long before it is no longer finite, in either
+// kinematics, and that the steps below do not: 1.2 and 0.5 times h/c_P, by B-splines with points that carry the
+// velocity (limit 0.86) and nodes that keep it (1.16).
+TEST_CASE("a motion that becomes unstable ends the run") {
+  for (const auto kinematics : {Numerics::Kinematics::updated, Numerics::Kinematics::total}) {
+    Scene scene = pressed(6.0, 0.0);
+    scene.domain.sides = scene.domain.top = Edge::traction;
+    scene.numerics.kinematics = kinematics;
+    scene.numerics.courant = 0.5;
+    Run sound(scene);
+    CHECK_NOTHROW(sound.advance(400));
+    scene.numerics.courant = 1.3;
+    Run unsound(scene);
+    CHECK_THROWS_WITH(unsound.advance(400), Catch::Contains("the motion has become unstable"));
+    CHECK(std::isfinite(unsound.state.ledger.kinetic));
+  }
+}
