@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from verification.ladder.catalogue import folder_name
 from verification.stability import families as package
-from verification.stability.family import SAFE, STRATA, BadFamily, Family
+from verification.stability.family import MARKED, SAFE, STABLE, STRATA, BadFamily, Family
 
 
 def families() -> dict[str, Family]:
@@ -32,6 +32,8 @@ def check(family: Family) -> None:
         raise BadFamily(f"{family.name}: fewer than two points, or nothing said of it")
     if not family.beyond or set(family.beyond) - set(SAFE):
         raise BadFamily(f"{family.name}: beyond must be any of {', '.join(SAFE)}")
+    if not family.before or set(family.before) - {STABLE, MARKED}:
+        raise BadFamily(f"{family.name}: before must be {STABLE}, or {MARKED} for a reason")
     if not 1 <= sum(point.smoke for point in family.points) <= 3:
         raise BadFamily(f"{family.name}: one to three points are to be run in ci/test")
     for point in family.points:

@@ -138,6 +138,7 @@ class Family:
     check_name: str = "relative error"
     flag: Callable[[Run], str] = no_flag
     ways: Mapping[str, Callable[[Point], Checked]] = field(default_factory=dict)
+    before: tuple[str, ...] = (STABLE,)  # outcomes of points before the edge, which bisection takes as sound: with MARKED only for a reason
     remark: str = ""  # what the walk showed, in words, for the page
 
     def point(self, label: str) -> Point:

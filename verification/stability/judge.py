@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from verification.stability.family import GARBAGE, STABLE, Family, Point
+from verification.stability.family import GARBAGE, Family, Point
 from verification.stability.store import PointFound, Record
 
 
@@ -44,7 +44,7 @@ def problem_of_point(family: Family, point: Point, found: PointFound, record: Re
     if found.outcome == GARBAGE:
         return f"garbage: {found.reason or (found.checked.words if found.checked else '')}"
     beyond = side(family, point, record)
-    allowed = {True: family.beyond, False: (STABLE,), None: (STABLE, *family.beyond)}[beyond]
+    allowed = {True: family.beyond, False: family.before, None: (*family.before, *family.beyond)}[beyond]
     if found.outcome in allowed:
         return ""
     where = {True: "beyond the edge", False: "before the edge", None: "at the edge"}[beyond]

@@ -107,12 +107,12 @@ def bisected(sound: Callable[[float], bool], edge: Edge) -> tuple[float, float]:
     return good, bad
 
 
-def between(points: Iterable[PointFound], edge: Edge) -> tuple[float | None, float | None]:
+def between(points: Iterable[PointFound], edge: Edge, before: tuple[str, ...] = (STABLE,)) -> tuple[float | None, float | None]:
     """The last sound value before the first unsound one, and that; None where there is no such."""
     ordered = sorted(points, key=lambda point: point.value, reverse=not edge.unsound_above)
     good: float | None = None
     for point in ordered:
-        if point.outcome != STABLE:
+        if point.outcome not in before:
             return good, point.value
         good = point.value
     return good, None
@@ -128,14 +128,14 @@ def edge_of(family: Family, points: tuple[PointFound, ...], runs: Path = RUNS, b
         made = {point.label: load(folder_of(family, family.point(point.label), runs)) for point in points if point.checked is not None}
         return EdgeFound(predicted, edge.read(made))
     if edge.at is None:
-        good, bad = between(points, edge)
+        good, bad = between(points, edge, family.before)
     else:
         at = edge.at
 
         def sound(value: float) -> bool:
             one = found(family, at(value), runs, binary)
             tell(f"{family.name}: edge at {value:.5g}? {one.outcome}")
-            return one.outcome == STABLE
+            return one.outcome in family.before
 
         good, bad = bisected(sound, edge)
     measured = 0.5 * (good + bad) if good is not None and bad is not None else None

@@ -93,6 +93,14 @@ def test_an_edge_below_turns_the_sides() -> None:
     assert problems(walked(edge=edge), recorded("ssff")) != []
 
 
+def test_marks_before_the_edge_are_fine_only_where_declared() -> None:
+    """before = (STABLE, MARKED); nothing else may be declared."""
+    family = walked(before=(STABLE, MARKED))
+    assert problems(family, recorded("smff")) == [] and problems(family, recorded("sfff")) != []
+    with pytest.raises(BadFamily):
+        check(walked(before=(FAILED,)))
+
+
 def test_points_on_one_side_alone_are_refused() -> None:
     """An edge that no point is beyond has not been walked across."""
     edge = replace(walked().edge or Edge(""), predicted=lambda: 3.0)
