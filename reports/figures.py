@@ -20,7 +20,7 @@ from reports.curves import (
     HeightFigure, PathFigure, ProfileFigure, height_figure, held, path_figure, profile_figure,
 )
 from reports.layout import layout_of
-from reports.ledger import LedgerFigure, VariantFigure, ledger_figure, variant_figure
+from reports.ledger import LedgerFigure, VariantFigure, ledger_figure, marks_of, variant_figure
 from reports.runs import NotAvailable, Run, lead_of, mechanics_in, output_times
 from reports.words import listed, mechanics_name, metres, mpa, plain
 from verification.harness.choices import Point
@@ -39,6 +39,7 @@ class Spec:
     prepare: Callable[[], Any]
     draw: Callable[[Any], Any]
     caption: Callable[[Any], str]
+    runs: Sequence[Run] = ()  # those drawn, whose marks the caption tells
 
 
 @dataclass
@@ -70,10 +71,12 @@ def catalogue(runs: list[Run], points: Sequence[Point] = ()) -> list[Spec]:
     for number in (1, 2, 3, 4):
         group = of.get(number, [])
         specs.append(Spec(f"fig{number + 2}", f"Figure {number + 2}", number, "experiment", _bind(height_figure, group),
-                          draw_heights, _height_words(group)))
-    specs.append(Spec("fig7", "Figure 7", 4, "experiment", _bind(profile_figure, of.get(4, [])), draw_profiles, _profile_words))
+                          draw_heights, _height_words(group), _drawn(group)))
+    specs.append(Spec("fig7", "Figure 7", 4, "experiment", _bind(profile_figure, of.get(4, [])), draw_profiles, _profile_words,
+                      _drawn(of.get(4, []))))
     sideways = [of.get(number, []) for number in (5, 6)]
-    specs.append(Spec("fig8", "Figure 8", 5, "experiment", _bind(path_figure, sideways), draw_paths, _path_words))
+    specs.append(Spec("fig8", "Figure 8", 5, "experiment", _bind(path_figure, sideways), draw_paths, _path_words,
+                      _drawn([run for group in sideways for run in group])))
     for point in points:
         specs.append(Spec(f"choice_{point.id}", "", 0, "choice", _bind2(choice_figure, point, runs), draw_choice, _choice_words))
     groups = [of[number] for number in sorted(of)]
@@ -84,9 +87,14 @@ def catalogue(runs: list[Run], points: Sequence[Point] = ()) -> list[Spec]:
     for number in sorted(of):
         for mechanics in mechanics_in(run for run in of[number] if run.drawable):
             specs.append(Spec(f"energy{number}_{mechanics}", "", number, "energy", _bind2(ledger_figure, of[number], mechanics),
-                              draw_ledger, _ledger_words))
+                              draw_ledger, _ledger_words, _drawn(of[number], mechanics)))
     labels = iter(range(9, 9 + len(specs)))
     return [spec if spec.label else replace(spec, label=f"Figure {next(labels)}") for spec in specs]
+
+
+def _drawn(runs: Sequence[Run], mechanics: str = "") -> list[Run]:
+    """The runs that a figure of an experiment draws: its main variants with a history, of one mechanics or of all."""
+    return [run for run in runs if run.is_main and run.drawable and mechanics in ("", run.mechanics)]
 
 
 def _by_number(runs: list[Run]) -> dict[int, list[Run]]:
@@ -108,13 +116,23 @@ def _bind2(function: Callable[[Any, Any], Any], first: Any, second: Any) -> Call
     return lambda: function(first, second)
 
 
+def suspect_words(runs: Sequence[Run]) -> str:
+    """A sentence that names the runs of a figure that mark themselves as suspect, with why; nothing where none does."""
+    marked = [(run, marks_of(run)) for run in runs]
+    words = [
+        f"Experiment {run.number} {plain(run.variant)}, {mechanics_name(run.mechanics)}: {'; '.join(marks)}"
+        for run, marks in marked if marks
+    ]
+    return f" Suspect runs: {'. '.join(words)}." if words else ""
+
+
 def make(spec: Spec, folder: Path) -> Made:
     """Make one figure's files; whatever is missing or wrong is told on the page and stops nothing."""
     made = Made(spec.name, spec.label, spec.experiment, spec.part)
     try:
         data = spec.prepare()
         save(spec.draw(data), folder, spec.name)
-        made.title, made.caption = data.title, spec.caption(data)
+        made.title, made.caption = data.title, spec.caption(data) + suspect_words(spec.runs)
     except NotAvailable as lack:
         made.reason = str(lack)
     except Exception as error:  # a defect in one figure must not cost the reader all the others

@@ -31,7 +31,6 @@ void close_ledger(const Scene& scene, const std::vector<Elasticity>& rocks, cons
   ledger.integration += after.increment - particles.step_strain;
   ledger.interface_strain = spring_energy(scene, state);
   note_largest(state.monitors.largest_particle_velocity, std::sqrt(particles.largest_speed2));
-  note_largest(state.monitors.largest_kinetic_J, ledger.kinetic);
   ledger.largest = std::max({ledger.largest, std::abs(ledger.fluid_work), std::abs(ledger.in_situ_work),
                              std::abs(ledger.body_work), ledger.kinetic});
   require_stable(scene, rocks, state);

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "mechanics/surface_law.hpp"
+#include "mechanics/surface_tractions.hpp"
+#include "mechanics/transfers.hpp"
 
 namespace strata {
 
@@ -15,6 +17,7 @@ void watch_energies(State& state) {
   note_largest(m.largest_open_J, std::abs(ledger.open()));
   note_largest(m.largest_made_J, -(ledger.transfer + ledger.integration));
   note_largest(m.largest_strain_J, ledger.strain + ledger.interface_strain);
+  note_largest(m.largest_kinetic_J, ledger.kinetic);
 }
 
 void watch_momentum(const Scene& scene, State& state) {
@@ -50,6 +53,21 @@ void watch_contact(const Scene& scene, State& state) {
   }
 }
 
+// D^T r A of split places and of the springs of tips.
+void add_reactions(State& state) {
+  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
+    const std::vector<SurfacePoint>& points = state.surfaces[k].points;
+    for (std::size_t q = 0; q < points.size(); ++q) {
+      if (points[q].split) add_traction(state.point_stencils[k][q], points[q].reaction, points[q].A, state.sums);
+    }
+  }
+  for (const TipTie& tie : state.ties) {
+    SurfaceStencil stencil;  // one node's two copies
+    stencil.plus[0] = tie.plus, stencil.minus[0] = tie.minus, stencil.N[0] = 1.0;
+    add_traction(stencil, tie.s.reaction, 1.0, state.sums);
+  }
+}
+
 }  // namespace
 
 void expect_momentum(const Scene& scene, State& state) {
@@ -59,6 +77,30 @@ void expect_momentum(const Scene& scene, State& state) {
   for (std::size_t q = 0; q < state.body.size(); ++q) force += state.particles.m[q] * state.body[q];
   m.expected_x = keep * m.expected_x + state.dt * force.x();
   m.expected_y = keep * m.expected_y + state.dt * force.y();
+}
+
+void watch_forces(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+  const NodalSums kept = state.sums;
+  particles_to_grid(scene, rocks, state);
+  update_stencil_weights(scene, state);
+  NodalSums rock = state.sums;
+  for (std::size_t r = 0; r < rock.size(); ++r) state.sums[r].f_x = state.sums[r].f_y = 0.0;
+  add_body_force(scene, state);
+  add_net_tractions(state);
+  add_reactions(state);
+  fold_to_masters(state, rock);
+  fold_to_masters(state, state.sums);
+  double left = 0.0, load = 0.0;
+  for (std::size_t r = 0; r < rock.size(); ++r) {
+    const Master& master = state.masters[r];
+    if (master.record != static_cast<int>(r) || !(rock[r].m > 0.0)) continue;
+    const Vec2 free{std::abs(master.x), std::abs(master.y)};  // what an edge holds takes any force
+    const Vec2 of_rock{rock[r].f_x, rock[r].f_y}, of_load{state.sums[r].f_x, state.sums[r].f_y};
+    note_largest(left, free.cwiseProduct(of_rock + of_load).norm());
+    note_largest(load, free.cwiseProduct(of_load).norm());
+  }
+  state.sums = kept;
+  if (load != 0.0) note_largest(state.monitors.force_balance, left / load);
 }
 
 void watch_row(const Scene& scene, State& state) {

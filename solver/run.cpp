@@ -111,6 +111,7 @@ std::size_t fracture_points(const State& state) {
 void complete_fields(Run& run) {
   if (run.statics) {
     set_all_particles(run.scene, run.state, run.statics->model);
+    watch_forces(run.scene, run.rocks, run.state);
   } else {
     complete_particles(run.scene, run.state);
     run.state.ledger.strain = strain_energy(run.rocks, run.state.particles);

@@ -12,6 +12,7 @@ from reports.choices import choice_figure
 from reports.comparison import comparisons, inertia_words
 from reports.crack import raster, side_of
 from reports.curves import height_figure, largest_turn, path_figure, profile_figure
+from reports.figures import catalogue, make, suspect_words
 from reports.layout import layout_of
 from reports.ledger import base_of, closure_of, differences, suspicions
 from reports.outcome import finding, outcome_of, outcomes_of
@@ -268,8 +269,21 @@ def test_a_run_s_own_marks_are_told_with_their_values(tmp_path: Path) -> None:
     run.summary |= {"suspect": [mark, mark | {"value": None, "why": "momentum is not a finite number"}]}
     run.summary["monitors"]["volume_balance"] = 1e-5
     assert suspicions(run) == ["the ledger stayed open (0.025 against 0.01)", "momentum is not a finite number"]
+    words = suspect_words([run])
+    assert words.startswith(" Suspect runs: Experiment 1 perfect") and "the ledger stayed open (0.025 against 0.01)" in words
     run.summary["suspect"] = []
-    assert suspicions(run) == []
+    assert suspicions(run) == [] and suspect_words([run]) == ""
+
+
+def test_a_figure_s_caption_tells_of_its_suspect_runs_alone(tmp_path: Path) -> None:
+    """Of the runs drawn, not of those of other experiments."""
+    write_run(tmp_path, 1, Plan("perfect"))
+    write_run(tmp_path, 2, Plan("perfect"))
+    runs = load_runs(tmp_path)
+    runs[1].summary["suspect"] = [{"monitor": "momentum", "value": None, "threshold": 1e-8, "why": "it drifted"}]
+    specs = {spec.name: spec for spec in catalogue(runs)}
+    assert suspect_words(specs["fig3"].runs) == "" and "it drifted" in suspect_words(specs["fig4"].runs)
+    assert "it drifted" in make(specs["fig4"], tmp_path).caption
 
 
 # --- open points

@@ -23,7 +23,7 @@ struct Monitors {
   double largest_open_J = 0.0;     // |stored + dissipated - supplied| of the ledger, at rows
   double largest_made_J = 0.0;     // energy that the time step and the transfer have made, net, at rows
   double largest_strain_J = 0.0;   // strain energy of rock and interfaces, at rows
-  double largest_kinetic_J = 0.0;  // of all steps
+  double largest_kinetic_J = 0.0;  // at rows, too
 
   double expected_x = 0.0, expected_y = 0.0;  // momentum of the block by its start, body force and damping (kg/s)
   double largest_drift = 0.0;                 // of the momentum from that along axes that no edge holds, at rows (kg/s)

@@ -74,6 +74,11 @@ def finite(number: float) -> float | None:
     return number if math.isfinite(number) else None
 
 
+def marks(run: Run) -> list[str]:
+    """A flag a mark that the run's own monitors have set on it, with the run's name."""
+    return [f"suspect run {run.name}: {mark.why}" for mark in run.summary.suspect]
+
+
 def evaluate_case(case: Case, experiment: str, runs: Runs) -> CaseResult:
     """Measure a case on the runs."""
     run, problem = runs.get(experiment, case.variant)
@@ -87,6 +92,7 @@ def evaluate_case(case: Case, experiment: str, runs: Runs) -> CaseResult:
     found: Measured = measure(case.observable, case.parameters, run, against)
     holds = found.holds(case.at_least, case.at_most)
     flags = found.flags if found.exact else (*found.flags, "bound only")
+    flags = (*flags, *(mark for one in (run, against) if one is not None for mark in marks(one)))
     return CaseResult(
         case, observable.unit, found.value, finite(found.low), finite(found.high), holds, True, found.note, flags, observable.meaning
     )

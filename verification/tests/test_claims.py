@@ -57,6 +57,15 @@ def test_a_reading_that_fails_flags_what_is_reproduced(tmp_path: Path) -> None:
     assert result.verdict == REPRODUCED and "does not hold under: another reading" in result.flags
 
 
+def test_a_claim_that_rests_on_a_suspect_run_says_so(tmp_path: Path) -> None:
+    write(tmp_path, "weak", 0.2)
+    path = tmp_path / "exp" / "weak" / "summary.json"
+    mark = {"monitor": "momentum", "value": 1.0, "threshold": 1e-8, "why": "it drifted"}
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"suspect": [mark]}))
+    result = evaluate(CLAIM, "exp", Runs(tmp_path))
+    assert result.verdict == REPRODUCED and result.flags == ("J at interface", "suspect run exp/weak: it drifted")
+
+
 def test_missing_and_failed_runs_are_not_judged(tmp_path: Path) -> None:
     assert evaluate(CLAIM, "exp", Runs(tmp_path)).verdict == NOT_EVALUATED
     write(tmp_path, "weak", 0.2, status="failed")

@@ -1,0 +1,198 @@
+#include "advance_monitors.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "advance_quasistatic.hpp"
+#include "fracture/growth.hpp"
+#include "mechanics/interface_laws.hpp"
+#include "output/suspect.hpp"
+#include "statics.hpp"
+
+using namespace strata;
+using namespace strata::test;
+
+namespace {
+
+std::vector<std::string> marks(const Run& run) {
+  std::vector<std::string> names;
+  for (const Watched& mark : suspicions(run.scene, run.state)) names.push_back(mark.monitor);
+  return names;
+}
+using Names = std::vector<std::string>;
+
+// A block free along both axes, whose points move at random.
+Scene adrift(Numerics::Kinematics kinematics, double damping) {
+  Scene scene = block(10, 8);
+  scene.numerics.kinematics = kinematics;
+  scene.numerics.damping_1_s = damping;
+  add_fracture(scene, {{5.0, 2.0}, {5.0, 6.0}}, 1e6);
+  return scene;
+}
+
+void look(Run& run) {
+  bring_up_to_date(run.scene, run.state);
+  run.state.ledger.strain = strain_energy(run.rocks, run.state.particles);
+  watch_row(run.scene, run.state);
+}
+
+// A crack from the symmetric bottom under pressure, in equilibrium.
+Scene pressed() {
+  Scene scene = block(16, 14);
+  hold_edges(scene);
+  scene.in_situ = {3e6, 2e6, InSitu::Initialise::uniform};
+  scene.numerics.mechanics = Numerics::Mechanics::quasistatic;
+  add_fracture(scene, {{8.0, 0.0}, {8.0, 5.0}}, 2.5e6);
+  return scene;
+}
+
+struct AtRest {
+  Run run;
+  Quasistatic statics;
+  explicit AtRest(const Scene& scene) : run(without_lanes(scene)) {
+    start_quasistatic(run.scene, run.rocks, run.state, statics);
+    set_all_particles(run.scene, run.state, statics.model);
+  }
+};
+
+}  // namespace
+
+// Requires momentum kept to round-off along free axes, by both kinematics, with damping, body force and a fracture
+// under pressure; and one push by hand of 1e-6 of it to mark the run. Mutations that fail: damping left out of the
+// expected momentum, the body force left out or twice.
+TEST_CASE("momentum is what the start and the body force give") {
+  const auto kinematics = GENERATE(Numerics::Kinematics::updated, Numerics::Kinematics::total);
+  const double damping = GENERATE(0.0, 30.0);
+  Scene scene = adrift(kinematics, damping);
+  scene.initial.velocity_m_s = Formulas{"2 + 0.1*X", "-1"};
+  scene.body.acceleration_m_s2 = Formulas{"30", "-9.81"};
+  Run run(scene);
+  look(run);
+  run.advance(60);
+  look(run);
+  CAPTURE(damping, run.state.monitors.largest_drift, run.state.monitors.largest_momentum);
+  CHECK(run.state.monitors.largest_momentum > 1.0);
+  CHECK(run.state.monitors.largest_drift < 1e-11 * run.state.monitors.largest_momentum);
+  CHECK(marks(run).empty());
+  for (double& v : run.state.particles.v_x) v *= 1.0 + 1e-6;
+  watch_row(run.scene, run.state);
+  CHECK(marks(run) == Names{"momentum"});
+}
+
+// Requires a step of 1.3 h/c_P, beyond the B-spline's limit, to be marked by itself and, once it has blown up but is
+// still finite, by the energy that it makes; and the same block at half of it to be sound.
+TEST_CASE("a time step beyond its limit is marked") {
+  const auto kinematics = GENERATE(Numerics::Kinematics::updated, Numerics::Kinematics::total);
+  Scene scene = block(12, 10);
+  scene.numerics.kinematics = kinematics;
+  add_fracture(scene, {{6.0, 3.0}, {6.0, 7.0}});
+  scene.fluid.rate_Pa_s = 2e7;  // 1 MPa in eight crossings of the block by a P wave
+  Run sound(scene);
+  look(sound);
+  for (int k = 0; k < 40; ++k) {
+    sound.advance(5);
+    look(sound);
+  }
+  CAPTURE(sound.state.monitors.largest_made_J, sound.state.ledger.largest);
+  CHECK(marks(sound) == Names{});
+  scene.numerics.courant = 1.3;
+  Run wild(scene);
+  look(wild);
+  CHECK(marks(wild) == Names{"largest_courant"});
+  for (int k = 0; k < 400 && wild.state.ledger.kinetic < 1e6; ++k) wild.advance(1);
+  look(wild);
+  CAPTURE(wild.state.ledger.kinetic, wild.state.monitors.largest_made_J);
+  const Names found = marks(wild);
+  CHECK(std::count(found.begin(), found.end(), "largest_courant") == 1);
+  CHECK(std::count(found.begin(), found.end(), "energy_made") == 1);
+}
+
+// Requires sweeps that run out to be counted with what they leave, those that do not to be counted alone, and a change
+// that is no number to stay.
+TEST_CASE("contact that runs out of sweeps is marked by what it leaves") {
+  Scene scene = block(4, 4);
+  Run run(scene);
+  Monitors& m = run.state.monitors;
+  note_sweeps(most_sweeps - 1, 5e5, 1e6, m);
+  CHECK(m.contact_unconverged == 0);
+  CHECK(marks(run).empty());
+  note_sweeps(most_sweeps, 9e3, 1e6, m);
+  CHECK(m.contact_unconverged == 1);
+  CHECK(m.contact_left == Approx(9e-3));
+  CHECK(marks(run).empty());
+  note_sweeps(most_sweeps, 2e4, 1e6, m);
+  CHECK(m.contact_sweeps == 3 * most_sweeps - 1);
+  CHECK(marks(run) == Names{"contact_left"});
+  note_sweeps(most_sweeps, std::numeric_limits<double>::quiet_NaN(), 1e6, m);
+  note_sweeps(most_sweeps, 1e3, 1e6, m);
+  CHECK(std::isnan(m.contact_left));
+  CHECK(marks(run) == Names{"contact_left"});
+}
+
+// Requires forces at the nodes of an equilibrium in balance to round-off, and a thousandth more of pressure, contact
+// pulled off or one particle's strain to mark the run.
+TEST_CASE("an equilibrium balances forces at every node") {
+  AtRest rest(pressed());
+  State& state = rest.run.state;
+  watch_forces(rest.run.scene, rest.run.rocks, state);
+  CAPTURE(state.monitors.force_balance);
+  CHECK(state.monitors.force_balance < 1e-9);
+  CHECK(state.monitors.force_balance > 0.0);
+  CHECK(marks(rest.run).empty());
+  const State before = state;
+  for (SurfacePoint& s : state.fracture().points) s.P *= 1.001;
+  watch_forces(rest.run.scene, rest.run.rocks, state);
+  CHECK(state.monitors.force_balance > 1e-3);
+  CHECK(marks(rest.run) == Names{"force_balance"});
+  state = before;
+  state.particles.g_yy[state.particles.size() / 2] += 1e-4;
+  watch_forces(rest.run.scene, rest.run.rocks, state);
+  CHECK(marks(rest.run) == Names{"force_balance"});
+}
+
+// Requires the overlap and the tension of places to be found where the law does not allow them, and only there.
+TEST_CASE("overlap and tension are found without inertia, too") {
+  AtRest rest(pressed());
+  State& state = rest.run.state;
+  for (SurfacePoint& s : state.fracture().points) s.P = 1e6;  // below the closing stress: closed
+  rest.statics.equilibrium = find_equilibrium(rest.run.scene, 0.0, state, rest.statics.model);
+  set_fields(rest.run.scene, state, rest.statics.model, rest.statics.equilibrium);
+  watch_row(rest.run.scene, state);
+  CHECK(state.monitors.largest_contact_Pa == Approx(1e6).epsilon(0.2));
+  CHECK(state.monitors.largest_penetration < 1e-12);  // what the in-situ contact carried is no overlap
+  CHECK(state.monitors.largest_tension_Pa == 0.0);
+  state.ledger = Ledger{};  // that no step closed
+  state.monitors.largest_open_J = 0.0;
+  CHECK(marks(rest.run).empty());
+  state.fracture().points[2].reaction = -1e3 * state.fracture().points[2].n;
+  watch_row(rest.run.scene, state);
+  CHECK(marks(rest.run) == Names{"tension_share"});
+  state.monitors.largest_tension_Pa = 0.0;
+  state.fracture().points[2].reaction = Vec2::Zero();
+  state.fracture().points[1].w = -1e-5 * state.fracture().points[1].n;
+  watch_row(rest.run.scene, state);
+  CHECK(marks(rest.run) == Names{"penetration_share"});
+}
+
+// Requires J's spread to be taken at each growth, apart where an interface is near.
+TEST_CASE("the spread of J is that at growth") {
+  AtRest rest(pressed());
+  State& state = rest.run.state;
+  Tip& tip = state.tips.front();
+  const auto grow_with = [&](double spread, bool at_interface) {
+    tip.J_spread = spread, tip.at_interface = at_interface;
+    note_growth(state, tip, "J", true);
+  };
+  grow_with(0.05, false);
+  grow_with(0.11, false);
+  grow_with(3.0, true);
+  CHECK(state.monitors.growths == 2);
+  CHECK(state.monitors.growths_apart == 1);
+  CHECK(state.monitors.J_spread_sum == Approx(0.16));
+  CHECK(state.monitors.largest_J_spread == 0.11);
+  CHECK(marks(rest.run).empty());
+  grow_with(0.2, false);
+  CHECK(marks(rest.run) == Names{"J_spread_mean"});
+}
