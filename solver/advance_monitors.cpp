@@ -87,17 +87,19 @@ void watch_forces(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
   for (std::size_t r = 0; r < rock.size(); ++r) state.sums[r].f_x = state.sums[r].f_y = 0.0;
   add_body_force(scene, state);
   add_net_tractions(state);
+  NodalSums given = state.sums;  // the scale: with reactions nothing is left of the load on faces that stay closed
   add_reactions(state);
   fold_to_masters(state, rock);
+  fold_to_masters(state, given);
   fold_to_masters(state, state.sums);
   double left = 0.0, load = 0.0;
   for (std::size_t r = 0; r < rock.size(); ++r) {
     const Master& master = state.masters[r];
     if (master.record != static_cast<int>(r) || !(rock[r].m > 0.0)) continue;
     const Vec2 free{std::abs(master.x), std::abs(master.y)};  // what an edge holds takes any force
-    const Vec2 of_rock{rock[r].f_x, rock[r].f_y}, of_load{state.sums[r].f_x, state.sums[r].f_y};
-    note_largest(left, free.cwiseProduct(of_rock + of_load).norm());
-    note_largest(load, free.cwiseProduct(of_load).norm());
+    const Vec2 of_rock{rock[r].f_x, rock[r].f_y}, on_it{state.sums[r].f_x, state.sums[r].f_y};
+    note_largest(left, free.cwiseProduct(of_rock + on_it).norm());
+    note_largest(load, free.cwiseProduct(Vec2{given[r].f_x, given[r].f_y}).norm());
   }
   state.sums = kept;
   if (load != 0.0) note_largest(state.monitors.force_balance, left / load);

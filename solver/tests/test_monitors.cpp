@@ -159,6 +159,9 @@ TEST_CASE("overlap and tension are found without inertia, too") {
   for (SurfacePoint& s : state.fracture().points) s.P = 1e6;  // below the closing stress: closed
   rest.statics.equilibrium = find_equilibrium(rest.run.scene, 0.0, state, rest.statics.model);
   set_fields(rest.run.scene, state, rest.statics.model, rest.statics.equilibrium);
+  set_all_particles(rest.run.scene, state, rest.statics.model);
+  watch_forces(rest.run.scene, rest.run.rocks, state);
+  CHECK(state.monitors.force_balance < 1e-9);  // of what the fluid and the in-situ stress load, not of the nothing left
   watch_row(rest.run.scene, state);
   CHECK(state.monitors.largest_contact_Pa == Approx(1e6).epsilon(0.2));
   CHECK(state.monitors.largest_penetration < 1e-12);  // what the in-situ contact carried is no overlap
