@@ -141,8 +141,8 @@ State initialise(const Scene& scene, const std::vector<Elasticity>& rocks) {
   return state;
 }
 
-void restore(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
-  rebuild(scene, rocks, state);
+void restore(const Scene& scene, State& state) {
+  rebuild_copies(scene, state);  // springs of tips were saved with what they carry
 }
 
 }  // namespace strata

@@ -11,7 +11,8 @@ namespace strata {
 /// found.
 State initialise(const Scene& scene, const std::vector<Elasticity>& rocks);
 
-/// Builds the derived members of a state that was read back. Throws NumericalFailure as rebuild_copies() does.
-void restore(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
+/// Builds the derived members of a state that was read back; what was saved stays as it is. Throws NumericalFailure as
+/// rebuild_copies() does.
+void restore(const Scene& scene, State& state);
 
 }  // namespace strata

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,7 @@ int parse_and_do(int argc, char** argv) {
   run_command->add_option("--variant", arguments.variant, "one of the scene's variants");
   run_command->add_option("--set", arguments.set, "key.path=value; acts after the variant")->allow_extra_args(false);
   run_command->add_option("--out", arguments.options.out, "folder of the run; by default runs/SCENE/VARIANT");
+  run_command->add_flag("--replace", arguments.options.replace, "in place of a run that the folder holds");
   CLI::App* check_command = app.add_subcommand("check", "all errors of scenes and their variants, nothing run");
   check_command->add_option("scenes", arguments.files, "scene files")->required();
   CLI::App* variants_command = app.add_subcommand("variants", "names of a scene's variants, one a line");
@@ -70,6 +72,10 @@ int parse_and_do(int argc, char** argv) {
   resume_command->add_option("dir", arguments.file, "folder of the run")->required();
   for (CLI::App* command : {run_command, resume_command}) {
     command->add_option("--threads", arguments.options.threads, "threads; 0, the default, for all cores")
+        ->check(CLI::NonNegativeNumber);
+    command
+        ->add_option("--checkpoint-every", arguments.options.checkpoint_every_s,
+                     "seconds from one checkpoint to the next; 60 by default")
         ->check(CLI::NonNegativeNumber);
     command->add_flag("--quiet", arguments.options.quiet, "no progress on the terminal");
   }
@@ -92,6 +98,11 @@ int parse_and_do(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     return parse_and_do(argc, argv);
+  } catch (const std::bad_alloc&) {
+    fmt::print(
+        stderr,
+        "strata: out of memory: the machine, or a limit set for this process, gives no more. Use larger cells.\n");
+    return bad_input;
   } catch (const std::exception& error) {
     fmt::print(stderr, "strata: a bug: {}\n", error.what());
     return bug;

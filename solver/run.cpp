@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <omp.h>
 #include <sched.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -30,11 +31,19 @@ constexpr int done = 0, bad_input = 2, numerics_failed = 3, interrupted = 130;
 
 constexpr std::int64_t steps_between_copies = 50;  // of a run without inertia, whose steps are long
 
-constexpr double seconds_between_checkpoints = 60.0;  // what a crash costs at most, and rare enough to cost nothing
-
 // A signal handler has nothing else to write to.
+volatile std::sig_atomic_t looks_at_signals = 0;
 volatile std::sig_atomic_t asked_to_stop = 0;
+
+// The first signal of a run that goes on lets it end its step; before that there is nothing to save, and a second
+// signal means at once. Files are whole at any time.
 extern "C" void ask_to_stop(int /*signal*/) {
+  if (looks_at_signals == 0 || asked_to_stop != 0) {
+    constexpr char text[] =
+        "interrupted at once; `strata resume` goes on from the last checkpoint, or from the start\n";
+    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text, sizeof text - 1);
+    ::_exit(interrupted);
+  }
   asked_to_stop = 1;
 }
 
@@ -90,7 +99,9 @@ struct Run {
   const std::vector<Elasticity>& rocks;
   Recorder& recorder;
   State state;
-  State good;  // the last state that was known to be sound
+  State good;               // the last state that was known to be sound,
+  OutputMark good_mark;     // how far the output had come then,
+  std::int64_t saved_step;  // and the step of the one that a resumed run would find
   double particle_steps = 0.0;
   double last_output = -1.0;           // time of the last output (s)
   std::optional<Quasistatic> statics;  // of a run without inertia
@@ -173,8 +184,22 @@ void step_and_record(Run& run, double interval) {
   }
 }
 
+void save_good_state(Run& run) {
+  if (run.good.step <= run.saved_step) return;
+  run.recorder.checkpoint(run.scene, run.good, run.good_mark);
+  run.saved_step = run.good.step;
+}
+
+// Keeps the state where it is as a resumed run finds it.
+void keep_if_sound(Run& run) {
+  if (run.state.step % steps_between_sound_states(run) != 0 || run.state.step <= run.good.step) return;
+  if (run.statics) start_quasistatic(run.scene, run.rocks, run.state, *run.statics);  // as a resumed run does
+  run.good = run.state;
+  run.good_mark = run.recorder.mark();
+}
+
 // Steps from run.state to the end of the run.
-Outcome march(Run& run, Progress& progress) {
+Outcome march(Run& run, double checkpoint_every_s, Progress& progress) {
   const double interval = output_interval(run.scene);
   Clock::time_point last_checkpoint = Clock::now();
   if (run.recorder.outputs() == 0) output(run);
@@ -184,47 +209,95 @@ Outcome march(Run& run, Progress& progress) {
       output(run);
       return {done, *reason};
     }
-    if (run.state.step % steps_between_sound_states(run) == 0 && run.state.step > run.good.step) {
-      if (run.statics) start_quasistatic(run.scene, run.rocks, run.state, *run.statics);  // as a resumed run does
-      run.good = run.state;
-      const bool stop = asked_to_stop != 0;
-      if (stop || seconds_since(last_checkpoint) > seconds_between_checkpoints) {
-        run.recorder.checkpoint(run.scene, run.state);
-        last_checkpoint = Clock::now();
-      }
-      if (stop) return {interrupted, "interrupted; `strata resume` goes on from here"};
+    keep_if_sound(run);
+    const bool stop = asked_to_stop != 0;
+    if (stop || seconds_since(last_checkpoint) > checkpoint_every_s) {
+      save_good_state(run);
+      last_checkpoint = Clock::now();
     }
+    if (stop) return {interrupted, "interrupted; `strata resume` goes on from here"};
     step_and_record(run, interval);
     progress.show(run.scene, run.state);
   }
 }
 
-int run_from(Run run, const RunFolder& folder, const RunOptions& options, Clock::time_point start) {
-  RunRecord record;
-  record.scene_name = run.scene.title.empty() ? run.scene.name : run.scene.title;
-  record.threads = omp_get_max_threads();
-  record.status = "completed";
+// The run to its end or its failure, with the summary.
+Outcome run_to_end(Run& run, const RunFolder& folder, const RunOptions& options, RunRecord& record,
+                   Clock::time_point start) {
   Outcome outcome;
   Progress progress(run.scene, run.state, options.quiet);
   try {
     if (is_quasistatic(run.scene)) start_quasistatic(run.scene, run.rocks, run.state, run.statics.emplace());
     run.good = run.state;
-    outcome = march(run, progress);
+    looks_at_signals = 1;
+    outcome = march(run, options.checkpoint_every_s, progress);
   } catch (const NumericalFailure& failure) {
     outcome = {numerics_failed,
                fmt::format("{} The last good state, of step {}, is in checkpoint.bin.", failure.what(), run.good.step)};
     record.status = "failed";
     run.state = run.good;
-    run.recorder.checkpoint(run.scene, run.state);
+    run.recorder.checkpoint(run.scene, run.good, run.good_mark);
   }
-  progress.clear();
+  if (outcome.exit == interrupted) return outcome;
   run.recorder.finish();
   record.reason = outcome.reason;
   record.wall_s = seconds_since(start);
   record.particle_steps = run.particle_steps;
-  if (outcome.exit != interrupted) write_summary(folder.summary(), run.scene, run.state, record);
+  write_summary(folder.summary(), run.scene, run.state, record);
+  return outcome;
+}
+
+RunRecord make_record(const Scene& scene) {
+  RunRecord record;
+  record.scene_name = scene.title.empty() ? scene.name : scene.title;
+  record.threads = omp_get_max_threads();
+  record.status = "completed";
+  return record;
+}
+
+// What to do where the disc or the folder fails in the middle of a run.
+std::string after_output_failure(const OutputFailure& failure, const Run& run, const RunFolder& folder) {
+  const std::string where =
+      fmt::format("{}.\nThe run ends at step {}, t = {:.6g} s.", failure.what(), run.state.step, run.state.time);
+  std::error_code error;
+  if (!std::filesystem::exists(folder.scene(), error)) {
+    return fmt::format("{} Its folder {} is gone. Put it back and `strata resume` it, or run the scene again.", where,
+                       folder.path.string());
+  }
+  const std::string from = run.saved_step > 0 ? fmt::format("step {}", run.saved_step) : "the start";
+  return fmt::format(
+      "{} What was written before is whole: once the folder can be written, `strata resume {}` goes on "
+      "from {}.",
+      where, folder.path.string(), from);
+}
+
+int run_from(Run run, const RunFolder& folder, const RunOptions& options, Clock::time_point start) {
+  RunRecord record = make_record(run.scene);
+  Outcome outcome;
+  try {
+    outcome = run_to_end(run, folder, options, record, start);
+  } catch (const OutputFailure& failure) {
+    outcome = {bad_input, after_output_failure(failure, run, folder)};
+  }
   if (outcome.exit != done) fmt::print(stderr, "{}\n", outcome.reason);
   return outcome.exit;
+}
+
+// The summary of a run that fails before it has a first state.
+int fail_at_start(const Scene& scene, const RunFolder& folder, const NumericalFailure& failure,
+                  Clock::time_point start) {
+  RunRecord record = make_record(scene);
+  record.status = "failed";
+  record.reason = fmt::format("{} The run has no state yet.", failure.what());
+  record.wall_s = seconds_since(start);
+  fmt::print(stderr, "{}\n", record.reason);
+  try {
+    const State none;
+    write_summary(folder.summary(), scene, none, record);
+  } catch (const OutputFailure& also) {
+    fmt::print(stderr, "{}\n", also.what());
+  }
+  return numerics_failed;
 }
 
 // Threads that the system moves between processors wait for each other's caches at every step. Each is kept on its own
@@ -253,37 +326,26 @@ void set_up(const Scene& scene, const RunOptions& options) {
   if (options.threads > 0) omp_set_num_threads(options.threads);
   if (is_quasistatic(scene)) omp_set_num_threads(1);  // its loops over particles are short; threads would only wait
   pin_threads();
-  std::signal(SIGINT, ask_to_stop);
-  std::signal(SIGTERM, ask_to_stop);
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, ask_to_stop);
+  // Errors of writing are told by what is written: a file that may not grow, a terminal that is gone.
+  for (const int signal : {SIGXFSZ, SIGPIPE}) std::signal(signal, SIG_IGN);
 }
 
-}  // namespace
-
-int run_scene(const Scene& scene, const RunOptions& options) {
-  const Clock::time_point start = Clock::now();
-  set_up(scene, options);
+int run_in(const Scene& scene, const RunOptions& options, bool replace, Clock::time_point start) {
   const std::vector<Elasticity> rocks = make_elasticities(scene);
-  std::optional<RunFolder> folder;
-  try {
-    folder = create_run_folder(options.out);
-    atomic_write(folder->scene(), scene.resolved_toml);
-  } catch (const std::runtime_error& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return bad_input;
-  }
-  Recorder recorder(*folder);
+  const RunFolder folder = clear_run_folder(options.out, replace);
+  atomic_write(folder.scene(), scene.resolved_toml);
+  Recorder recorder(folder);
   try {
     const State state = initialise(scene, rocks);
-    return run_from({scene, rocks, recorder, state, state, 0.0, -1.0, std::nullopt}, *folder, options, start);
+    return run_from({scene, rocks, recorder, state, state, recorder.mark(), 0, 0.0, -1.0, std::nullopt}, folder,
+                    options, start);
   } catch (const NumericalFailure& failure) {
-    fmt::print(stderr, "{}\n", failure.what());
-    return numerics_failed;
+    return fail_at_start(scene, folder, failure, start);
   }
 }
 
-int resume_run(const std::filesystem::path& dir, const RunOptions& options) {
-  const Clock::time_point start = Clock::now();
-  const RunFolder folder{dir};
+int resume_in(const RunFolder& folder, const RunOptions& options, Clock::time_point start) {
   const ReadResult read = read_scene(folder.scene(), "", {});
   if (!read.scene) {
     for (const std::string& error : read.errors) fmt::print(stderr, "{}\n", error);
@@ -292,22 +354,50 @@ int resume_run(const std::filesystem::path& dir, const RunOptions& options) {
   const Scene& scene = *read.scene;
   if (std::filesystem::exists(folder.summary())) return done;
   set_up(scene, options);
-  const std::vector<Elasticity> rocks = make_elasticities(scene);
   std::optional<Checkpoint> checkpoint;
   std::optional<Recorder> recorder;
   try {
     checkpoint = load_checkpoint(folder.checkpoint(), scene);
     recorder.emplace(folder, checkpoint->mark);
+  } catch (const OutputFailure&) {
+    throw;
   } catch (const std::runtime_error& error) {  // nothing to go on from, or files that hold less than it says
     fmt::print(stderr, "{} The run starts anew.\n", error.what());
     RunOptions same = options;
-    same.out = dir;
-    return run_scene(scene, same);
+    same.out = folder.path;
+    return run_in(scene, same, true, start);
   }
+  const std::vector<Elasticity> rocks = make_elasticities(scene);
   State& state = checkpoint->state;
-  restore(scene, rocks, state);
+  restore(scene, state);
   const double last_output = recorder->last_output_s();
-  return run_from({scene, rocks, *recorder, state, state, 0.0, last_output, std::nullopt}, folder, options, start);
+  return run_from({scene, rocks, *recorder, state, state, checkpoint->mark, state.step, 0.0, last_output, std::nullopt},
+                  folder, options, start);
+}
+
+}  // namespace
+
+int run_scene(const Scene& scene, const RunOptions& options) {
+  const Clock::time_point start = Clock::now();
+  set_up(scene, options);
+  try {
+    const FolderLock lock = make_run_folder(options.out);
+    return run_in(scene, options, options.replace, start);
+  } catch (const OutputFailure& failure) {
+    fmt::print(stderr, "{}\n", failure.what());
+    return bad_input;
+  }
+}
+
+int resume_run(const std::filesystem::path& dir, const RunOptions& options) {
+  const Clock::time_point start = Clock::now();
+  try {
+    const FolderLock lock(dir);
+    return resume_in(RunFolder{dir}, options, start);
+  } catch (const OutputFailure& failure) {
+    fmt::print(stderr, "{}\n", failure.what());
+    return bad_input;
+  }
 }
 
 }  // namespace strata

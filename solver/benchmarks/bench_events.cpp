@@ -147,12 +147,12 @@ void add_writing(Shop& shop, const std::string& what) {
   add("write/" + what, 5, [&shop, what](benchmark::State& bench) {
     const Workpiece& work = shop.get({"", {}});
     const ScratchFolder scratch;
-    Recorder recorder(create_run_folder(scratch.path()));
+    Recorder recorder(clear_run_folder(scratch.path(), true));
     recorder.output(work.scene, work.state);
     const About about{"what=" + what, 1, 1.0, 0.0, 0.0};
     time_work(bench, shop, about, [&] {
       if (what == "checkpoint") {
-        recorder.checkpoint(work.scene, work.state);
+        recorder.checkpoint(work.scene, work.state, recorder.mark());
       } else {
         recorder.output(work.scene, work.state);
       }

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -19,12 +17,6 @@ namespace {
 constexpr std::string_view magic = "strata-checkpoint\n";
 constexpr std::uint32_t format_version = 6;  // to be raised with every change of what is saved
 constexpr std::uint32_t byte_order = 0x01020304;
-
-std::uint64_t fnv1a(std::string_view bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
-  return hash;
-}
 
 // Values that are saved as the bytes they are.
 template <class T>
@@ -217,12 +209,6 @@ class Loader {
   }
 };
 
-std::string read_file(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error(fmt::format("{}: cannot be opened", file.string()));
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
 [[noreturn]] void refuse(const std::filesystem::path& file, std::string_view reason) {
   throw std::runtime_error(fmt::format("{}: {}", file.string(), reason));
 }
@@ -230,7 +216,7 @@ std::string read_file(const std::filesystem::path& file) {
 }  // namespace
 
 std::uint64_t scene_hash(const Scene& scene) {
-  return fnv1a(scene.resolved_toml);
+  return checksum(scene.resolved_toml);
 }
 
 void save_checkpoint(const std::filesystem::path& file, const Scene& scene, const State& state,
@@ -239,12 +225,12 @@ void save_checkpoint(const std::filesystem::path& file, const Scene& scene, cons
   content(mark, state);
   Saver out;
   out.bytes = magic;
-  out(byte_order, format_version, scene_hash(scene), std::uint64_t{content.bytes.size()}, fnv1a(content.bytes));
+  out(byte_order, format_version, scene_hash(scene), std::uint64_t{content.bytes.size()}, checksum(content.bytes));
   atomic_write(file, out.bytes + content.bytes);
 }
 
 Checkpoint load_checkpoint(const std::filesystem::path& file, const Scene& scene) {
-  const std::string bytes = read_file(file);
+  const std::string bytes = read_whole(file);
   if (!bytes.starts_with(magic)) refuse(file, "is no checkpoint of strata");
   Checkpoint checkpoint;
   try {
@@ -258,7 +244,8 @@ Checkpoint load_checkpoint(const std::filesystem::path& file, const Scene& scene
     }
     header(hash, size, sum);
     if (hash != scene_hash(scene)) refuse(file, "belongs to another scene");
-    if (header.rest.size() != size || fnv1a(header.rest) != sum) refuse(file, "is torn: its content is not complete");
+    if (header.rest.size() != size || checksum(header.rest) != sum)
+      refuse(file, "is torn: its content is not complete");
     header(checkpoint.mark, checkpoint.state);
     if (!header.rest.empty()) refuse(file, "is torn: it holds more than a state");
   } catch (const std::runtime_error& error) {

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "output/run_folder.hpp"
+
 namespace strata::hdf5 {
 
 static_assert(std::is_same_v<hid_t, Id> && std::is_same_v<herr_t, int>);
@@ -130,11 +132,20 @@ Handle open_attribute(Id parent, const std::string& name, const std::string& att
 
 }  // namespace
 
-Handle create_file(const std::filesystem::path& file) {
+void make_file(const std::filesystem::path& file) {
+  // An image in memory, so that what the disc refuses is said by the system and not by the library.
   const Silence silence;
   const Handle access = file_access();
-  return {checked(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), file.string(), "be made"),
-          H5Fclose};
+  checked(H5Pset_fapl_core(access.id(), std::size_t{1} << 16, false), file.string(), "be made in memory");
+  std::string image;
+  {
+    const Handle made(
+        checked(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), file.string(), "be made"), H5Fclose);
+    checked(H5Fflush(made.id(), H5F_SCOPE_GLOBAL), file.string(), "be made");
+    image.resize(static_cast<std::size_t>(checked(H5Fget_file_image(made.id(), nullptr, 0), file.string(), "be made")));
+    checked(H5Fget_file_image(made.id(), image.data(), image.size()), file.string(), "be made");
+  }
+  atomic_write(file, image);
 }
 
 Handle open_file(const std::filesystem::path& file, bool writable) {
@@ -143,11 +154,6 @@ Handle open_file(const std::filesystem::path& file, bool writable) {
   return {
       checked(H5Fopen(file.c_str(), writable ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access.id()), file.string(), "be opened"),
       H5Fclose};
-}
-
-void flush(const Handle& file) {
-  const Silence silence;
-  checked(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "result file", "be flushed");
 }
 
 Handle group(Id parent, const std::string& name) {

@@ -31,12 +31,12 @@ class Handle {
   Close close_;
 };
 
-/// Opens `file`: anew, to be changed, or to be read. No lock is taken, so that a reader cannot stop a run.
-Handle create_file(const std::filesystem::path& file);
-Handle open_file(const std::filesystem::path& file, bool writable);
+/// Makes an empty `file` in place of what was there, in one piece. Throws OutputFailure where it cannot be written.
+void make_file(const std::filesystem::path& file);
 
-/// Hands everything written so far to the system.
-void flush(const Handle& file);
+/// Opens `file` to be read, or to be changed by tests; what a run writes goes through FileChange. No lock is taken, so
+/// that a reader cannot stop a run.
+Handle open_file(const std::filesystem::path& file, bool writable);
 
 /// The group `name` below `parent`, made with the groups above it where it is missing.
 Handle group(Id parent, const std::string& name);

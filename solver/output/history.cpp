@@ -5,9 +5,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <system_error>
+
+#include "output/run_folder.hpp"
 
 namespace strata {
 
@@ -179,10 +183,8 @@ HistoryRow history_row(const Scene&, const State& state) {
   return row;
 }
 
-HistoryWriter::HistoryWriter(const std::filesystem::path& file) : file_(file) {
-  stream_.open(file, std::ios::binary | std::ios::trunc);
-  put(header());
-  flush();
+HistoryWriter::HistoryWriter(const std::filesystem::path& file) : file_(file), bytes_(header().size()) {
+  atomic_write(file, header());
 }
 
 HistoryWriter::HistoryWriter(const std::filesystem::path& file, const HistoryMark& mark)
@@ -191,26 +193,16 @@ HistoryWriter::HistoryWriter(const std::filesystem::path& file, const HistoryMar
     throw std::runtime_error(
         fmt::format("{}: holds {} rows where {} were expected", file.string(), rows_.size(), mark.rows));
   }
-  std::filesystem::resize_file(file, mark.bytes);
-  stream_.open(file, std::ios::binary | std::ios::app);
-  if (!stream_) throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
-}
-
-void HistoryWriter::put(const std::string& line) {
-  stream_ << line;
-  if (!stream_) throw std::runtime_error(fmt::format("{}: cannot be written", file_.string()));
-  bytes_ += line.size();
+  std::error_code error;
+  std::filesystem::resize_file(file, mark.bytes, error);
+  if (error) throw OutputFailure(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
 }
 
 void HistoryWriter::append(const HistoryRow& row) {
-  put(text_of(row));
+  const std::string line = text_of(row);
+  append_at(file_, bytes_, line);
+  bytes_ += line.size();
   rows_.push_back(row);
-}
-
-HistoryMark HistoryWriter::flush() {
-  stream_.flush();
-  if (!stream_) throw std::runtime_error(fmt::format("{}: cannot be written", file_.string()));
-  return {rows_.size(), bytes_};
 }
 
 std::vector<HistoryRow> read_history(const std::filesystem::path& file) {

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <span>
 #include <string>
 #include <vector>
@@ -69,29 +68,29 @@ struct HistoryMark {
   std::uint64_t bytes = 0;
 };
 
-// Writes history.csv and keeps its rows for result.h5. Numbers are the shortest that read back to the same double.
+// Writes history.csv and keeps its rows for result.h5. Numbers are the shortest that read back to the same double. Each
+// row reaches the system whole, by one call, in the file that has the name then: if the process ends, no row is torn,
+// and a file that is gone or that another has changed is noticed.
 class HistoryWriter {
  public:
-  /// Starts `file` with its header, in place of what was there. Throws std::runtime_error if it cannot be written.
+  /// Starts `file` with its header, in place of what was there. Throws OutputFailure if it cannot be written.
   explicit HistoryWriter(const std::filesystem::path& file);
 
   /// Goes on behind the rows of `mark`: what follows them is cut off. Throws std::runtime_error where the file does not
-  /// hold these rows.
+  /// hold these rows, OutputFailure if it cannot be written.
   HistoryWriter(const std::filesystem::path& file, const HistoryMark& mark);
 
-  /// Adds a row to the buffer; throws std::runtime_error where the disc refuses it.
+  /// Adds a row; throws OutputFailure, with the file as it was, where the disc refuses it.
   void append(const HistoryRow& row);
 
-  /// Hands all rows so far to the system and says where the file stands; throws std::runtime_error where it fails.
-  HistoryMark flush();
+  /// Where the file stands; throws nothing.
+  HistoryMark mark() const { return {rows_.size(), bytes_}; }
 
   /// All rows from the start of the run.
   const std::vector<HistoryRow>& rows() const { return rows_; }
 
  private:
-  void put(const std::string& line);
   std::filesystem::path file_;
-  std::ofstream stream_;
   std::uint64_t bytes_ = 0;
   std::vector<HistoryRow> rows_;
 };

@@ -13,16 +13,20 @@ void Recorder::row(const Scene& scene, const State& state) {
 
 void Recorder::output(const Scene& scene, const State& state) {
   row(scene, state);
-  history_.flush();
   result_.write_output(scene, state);
 }
 
-void Recorder::checkpoint(const Scene& scene, const State& state) {
-  save_checkpoint(folder_.checkpoint(), scene, state, {history_.flush(), result_.outputs()});
+OutputMark Recorder::mark() const {
+  return {history_.mark(), result_.outputs()};
+}
+
+void Recorder::checkpoint(const Scene& scene, const State& state, const OutputMark& mark) {
+  sync_file(folder_.history());
+  sync_file(folder_.result());
+  save_checkpoint(folder_.checkpoint(), scene, state, mark);
 }
 
 void Recorder::finish() {
-  history_.flush();
   result_.write_history(history_.rows());
 }
 

@@ -10,23 +10,28 @@ namespace strata {
 
 class Recorder {
  public:
-  /// Starts the files of a new run. Throws std::runtime_error where they cannot be written.
+  /// Starts the files of a new run. Throws OutputFailure where they cannot be written.
   explicit Recorder(const RunFolder& folder);
 
   /// Goes on from a checkpoint: what the files hold beyond it is cut off, so that they end as those of an uninterrupted
-  /// run. Throws std::runtime_error where they hold less (then the run has to start anew).
+  /// run. Throws std::runtime_error where they hold less (then the run has to start anew), OutputFailure where they
+  /// cannot be written.
   Recorder(const RunFolder& folder, const OutputMark& mark);
 
-  /// Adds a row to the history, after a growth event; throws std::runtime_error where it cannot be written.
+  /// Adds a row to the history, after a growth event; throws OutputFailure where it cannot be written.
   void row(const Scene& scene, const State& state);
 
-  /// Adds a row and the fields, at an output time; throws std::runtime_error where they cannot be written.
+  /// Adds a row and the fields, at an output time; throws OutputFailure where they cannot be written.
   void output(const Scene& scene, const State& state);
 
-  /// Makes what was written so far safe, then writes the checkpoint; throws std::runtime_error where that fails.
-  void checkpoint(const Scene& scene, const State& state);
+  /// How far the output has come: what belongs to the present state in a checkpoint; throws nothing.
+  OutputMark mark() const;
 
-  /// Completes history.csv and result.h5, at the end of the run; throws std::runtime_error where that fails.
+  /// Makes what was written so far safe, then writes the checkpoint: a state, and the mark of its time. Throws
+  /// OutputFailure where that fails; the checkpoint before then stays.
+  void checkpoint(const Scene& scene, const State& state, const OutputMark& mark);
+
+  /// Completes result.h5 by the history, at the end of the run; throws OutputFailure where that fails.
   void finish();
 
   /// Number of output times written since the start of the run.

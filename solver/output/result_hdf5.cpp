@@ -9,15 +9,13 @@
 #include <string>
 #include <utility>
 
+#include "output/file_change.hpp"
 #include "output/hdf5_io.hpp"
 #include "output/run_folder.hpp"
 
 namespace strata {
 
 namespace {
-
-// Stands on the root while the file is changed: an interrupted writing leaves it set.
-constexpr const char* writing = "writing";
 
 std::string number_of(std::size_t output) {
   return fmt::format("{:05}", output);
@@ -129,16 +127,12 @@ std::vector<double> times_of(const Outputs& outputs) {
   return times;
 }
 
-// Opens the file, lets `change` write to it and closes it, with the mark set meanwhile.
+// Opens the file, lets `change` write to it and closes it; it changes as a whole or not at all.
 template <class Change>
 void change_file(const std::filesystem::path& path, Change change) {
-  const hdf5::Handle file = hdf5::open_file(path, true);
-  hdf5::set_attribute(file.id(), ".", writing, 1.0);
-  hdf5::flush(file);
+  hdf5::FileChange file(path);
   change(file.id());
-  hdf5::flush(file);
-  hdf5::set_attribute(file.id(), ".", writing, 0.0);
-  hdf5::flush(file);
+  file.commit();
 }
 
 std::string grid_of(const std::string& name, const std::string& topology, std::size_t n, const std::string& group,
@@ -181,7 +175,7 @@ Stress total_stress(const std::vector<Elasticity>& rocks, const Particles& parti
 }
 
 ResultFile::ResultFile(const std::filesystem::path& file) : file_(file) {
-  hdf5::create_file(file);
+  hdf5::make_file(file);
   change_file(file, [&](hdf5::Id root) {
     hdf5::rewrite(root, "times", {}, "s");
     for (const char* name : {"history", "particles", "fracture", "interfaces"}) hdf5::group(root, name);
@@ -190,11 +184,9 @@ ResultFile::ResultFile(const std::filesystem::path& file) : file_(file) {
 }
 
 ResultFile::ResultFile(const std::filesystem::path& file, std::size_t outputs) : file_(file) {
+  hdf5::finish_change(file);
   {
     const hdf5::Handle result = hdf5::open_file(file, false);
-    if (hdf5::number_attribute(result.id(), ".", writing) != 0.0) {
-      throw std::runtime_error(fmt::format("{}: its writing was interrupted", file.string()));
-    }
     const std::vector<double> times = hdf5::read(result.id(), "times");
     if (times.size() < outputs) {
       throw std::runtime_error(
@@ -263,7 +255,7 @@ void ResultFile::write_xdmf() const {
     text += "      </Grid>\n";
   }
   auto file = file_;
-  atomic_write(file.replace_extension(".xdmf"), text + "    </Grid>\n  </Domain>\n</Xdmf>\n");
+  atomic_write(file.replace_extension(".xdmf"), text + "    </Grid>\n  </Domain>\n</Xdmf>\n", Sync::no);
 }
 
 }  // namespace strata

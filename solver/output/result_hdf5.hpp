@@ -29,22 +29,22 @@ namespace strata {
 /// gradient; rocks: in the order of the scene. Throws nothing.
 Stress total_stress(const std::vector<Elasticity>& rocks, const Particles& particles, std::size_t p);
 
-// The file is open only while something is written, so that others may read it during the run; an interrupted writing
-// is noticed when the file is opened again.
+// The file is open only while something is written, so that others may read it during the run; each writing changes it
+// as a whole or not at all, also where the process is killed meanwhile (file_change.hpp).
 class ResultFile {
  public:
-  /// Starts `file` in place of what was there. Throws std::runtime_error if it cannot be written.
+  /// Starts `file` in place of what was there. Throws OutputFailure if it cannot be written.
   explicit ResultFile(const std::filesystem::path& file);
 
   /// Goes on behind the first `outputs` output times: later ones are dropped. Throws std::runtime_error where the file
-  /// is missing, torn or holds fewer.
+  /// is missing, is none or holds fewer, OutputFailure where it cannot be written.
   ResultFile(const std::filesystem::path& file, std::size_t outputs);
 
-  /// Adds an output time: the fields of `state`, and the .xdmf beside the file. Throws std::runtime_error where it
+  /// Adds an output time: the fields of `state`, and the .xdmf beside the file. Throws OutputFailure where it
   /// cannot be written.
   void write_output(const Scene& scene, const State& state);
 
-  /// Puts the rows (all of them, from the start) under /history. Throws std::runtime_error where it cannot be written.
+  /// Puts the rows (all of them, from the start) under /history. Throws OutputFailure where it cannot be written.
   void write_history(const std::vector<HistoryRow>& rows);
 
   /// Number of output times in the file.

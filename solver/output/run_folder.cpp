@@ -2,12 +2,15 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
-#include <stdexcept>
-#include <string>
+#include <fstream>
+#include <iterator>
 #include <system_error>
 
 namespace strata {
@@ -15,8 +18,7 @@ namespace strata {
 namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& file, const char* doing, int error) {
-  throw std::runtime_error(
-      fmt::format("{}: cannot {}: {}", file.string(), doing, std::generic_category().message(error)));
+  throw OutputFailure(fmt::format("{}: cannot {}: {}", file.string(), doing, std::generic_category().message(error)));
 }
 
 class Descriptor {
@@ -33,7 +35,7 @@ class Descriptor {
   int descriptor_;
 };
 
-void write_synced(const std::filesystem::path& file, std::string_view text) {
+void write_new(const std::filesystem::path& file, std::string_view text, Sync sync) {
   const Descriptor out(file, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC);
   if (out.get() < 0) fail(file, "be written", errno);
   while (!text.empty()) {
@@ -42,41 +44,117 @@ void write_synced(const std::filesystem::path& file, std::string_view text) {
     if (written < 0) fail(file, "be written", errno);
     text.remove_prefix(static_cast<std::size_t>(written));
   }
-  if (::fsync(out.get()) != 0) fail(file, "be synced", errno);
+  if (sync == Sync::yes && ::fsync(out.get()) != 0) fail(file, "be synced", errno);
+}
+
+std::filesystem::path with_ending(std::filesystem::path file, const char* ending) {
+  return file += ending;
+}
+
+// The summary first: without it nothing is taken for a run that has ended.
+std::array<std::filesystem::path, 6> files_of(const RunFolder& folder) {
+  return {folder.summary(), folder.checkpoint(), folder.history(), folder.result(), folder.xdmf(), folder.scene()};
+}
+
+void remove_file(const std::filesystem::path& file) {
+  std::error_code error;
+  std::filesystem::remove(file, error);
+  if (error) throw OutputFailure(fmt::format("{}: cannot be replaced: {}", file.string(), error.message()));
 }
 
 }  // namespace
 
-RunFolder create_run_folder(const std::filesystem::path& path) {
+FolderLock::FolderLock(const std::filesystem::path& folder)
+    : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  if (descriptor_ < 0) fail(folder, "be opened", errno);
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  ::close(descriptor_);
+  throw OutputFailure(fmt::format(
+      "{}: in use by a run that is going on. Wait for its end, stop it, or name another folder.", folder.string()));
+}
+
+FolderLock::~FolderLock() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+FolderLock make_run_folder(const std::filesystem::path& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);
-  if (error) throw std::runtime_error(fmt::format("{}: cannot be made: {}", path.string(), error.message()));
-  if (!std::filesystem::is_directory(path)) {
-    throw std::runtime_error(fmt::format("{}: is not a folder", path.string()));
-  }
+  if (error) throw OutputFailure(fmt::format("{}: cannot be made: {}", path.string(), error.message()));
+  if (!std::filesystem::is_directory(path)) throw OutputFailure(fmt::format("{}: is not a folder", path.string()));
+  return FolderLock(path);
+}
+
+RunFolder clear_run_folder(const std::filesystem::path& path, bool replace) {
   const RunFolder folder{path};
-  for (const auto& file :
-       {folder.summary(), folder.scene(), folder.history(), folder.result(), folder.xdmf(), folder.checkpoint()}) {
-    std::filesystem::remove(file, error);
-    if (error) throw std::runtime_error(fmt::format("{}: cannot be replaced: {}", file.string(), error.message()));
+  for (const auto& file : files_of(folder)) {
+    std::error_code error;
+    if (!replace && std::filesystem::exists(file, error)) {
+      throw OutputFailure(fmt::format(
+          "{0}: holds a run already. `strata resume {0}` goes on with it or leaves it as it is where it has "
+          "ended; --replace runs the scene anew in its place; --out names another folder.",
+          path.string()));
+    }
+  }
+  for (const auto& file : files_of(folder)) {
+    for (const char* ending : {".tmp", ".change", ".change.tmp"}) remove_file(with_ending(file, ending));
+    if (file != folder.scene()) remove_file(file);
   }
   return folder;
 }
 
-void atomic_write(const std::filesystem::path& file, std::string_view text) {
+void atomic_write(const std::filesystem::path& file, std::string_view text, Sync sync) {
   std::filesystem::path beside = file;
   beside += ".tmp";
   try {
-    write_synced(beside, text);
+    write_new(beside, text, sync);
     if (std::rename(beside.c_str(), file.c_str()) != 0) fail(file, "be replaced", errno);
   } catch (...) {
     std::remove(beside.c_str());
     throw;
   }
+  if (sync == Sync::no) return;
   // The new name is safe once its folder is; a file system that cannot sync a folder does so on its own.
   const auto parent = file.parent_path();
   const Descriptor folder(parent.empty() ? std::filesystem::path(".") : parent, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder.get() >= 0) ::fsync(folder.get());
+}
+
+void append_at(const std::filesystem::path& file, std::uint64_t bytes, std::string_view text) {
+  const Descriptor out(file, O_WRONLY | O_APPEND | O_CLOEXEC);
+  struct stat status {};
+  if (out.get() < 0 || ::fstat(out.get(), &status) != 0) fail(file, "be written", errno);
+  if (static_cast<std::uint64_t>(status.st_size) != bytes) {
+    throw OutputFailure(
+        fmt::format("{}: cannot be written: it has {} bytes and not the {} that were written; another "
+                    "program has changed it",
+                    file.string(), status.st_size, bytes));
+  }
+  ssize_t written = 0;
+  do {
+    written = ::write(out.get(), text.data(), text.size());
+  } while (written < 0 && errno == EINTR);
+  if (written == static_cast<ssize_t>(text.size())) return;
+  const int error = written < 0 ? errno : ENOSPC;
+  if (::ftruncate(out.get(), static_cast<off_t>(bytes)) != 0) fail(file, "be cut to whole rows", errno);
+  fail(file, "be written", error);
+}
+
+void sync_file(const std::filesystem::path& file) {
+  const Descriptor out(file, O_WRONLY | O_CLOEXEC);
+  if (out.get() < 0 || ::fsync(out.get()) != 0) fail(file, "be synced", errno);
+}
+
+std::string read_whole(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw std::runtime_error(fmt::format("{}: cannot be opened", file.string()));
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+std::uint64_t checksum(std::string_view bytes) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  return hash;
 }
 
 }  // namespace strata

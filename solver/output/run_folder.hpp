@@ -1,10 +1,18 @@
 // The folder of a run: the names of its files, and how they are written.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 
 namespace strata {
+
+// Thrown where the disc or the folder does not take what is to be written; the text names the file and the reason.
+struct OutputFailure : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 struct RunFolder {
   std::filesystem::path path;
@@ -17,12 +25,51 @@ struct RunFolder {
   std::filesystem::path checkpoint() const { return path / "checkpoint.bin"; }
 };
 
-/// Makes the folder, with its parents, and takes the files of an earlier run out of it; other files stay. Throws
-/// std::runtime_error where it cannot be made or is not a folder.
-RunFolder create_run_folder(const std::filesystem::path& path);
+// Held by the process that writes to a folder, and gone with it however it ends: a lock of the system on the folder
+// itself.
+class FolderLock {
+ public:
+  /// Throws OutputFailure where another process writes to the folder, or where it cannot be opened. On a file system
+  /// without locks nothing is locked.
+  explicit FolderLock(const std::filesystem::path& folder);
+  FolderLock(FolderLock&& other) noexcept : descriptor_(other.descriptor_) { other.descriptor_ = -1; }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+  FolderLock& operator=(FolderLock&&) = delete;
+  ~FolderLock();
 
-/// Writes `text` to `file` so that at any time either the old or the new content is there: to a file beside it, synced,
-/// then renamed. Throws std::runtime_error, naming the file and the system's reason.
-void atomic_write(const std::filesystem::path& file, std::string_view text);
+ private:
+  int descriptor_;
+};
+
+/// Makes the folder, with its parents, and locks it. Throws OutputFailure where it cannot be made, is not a folder or
+/// is in use.
+FolderLock make_run_folder(const std::filesystem::path& path);
+
+/// Makes way for a run in a folder that is locked: throws OutputFailure, saying what may be done, where it holds one,
+/// unless `replace`, which takes that one's files out of it. Other files stay, and scene.toml, which the new run's
+/// replaces in one piece, so that the folder can be resumed at any time.
+RunFolder clear_run_folder(const std::filesystem::path& path, bool replace);
+
+// Whether what is written is to survive a loss of power, for which one waits for the disc; it survives the end of the
+// process in any case.
+enum class Sync { no, yes };
+
+/// Writes `text` to `file` so that at any time either the old or the new content is there: to a file beside it, then
+/// renamed. Throws OutputFailure, naming the file and the system's reason.
+void atomic_write(const std::filesystem::path& file, std::string_view text, Sync sync = Sync::yes);
+
+/// Adds `text` by one call of the system to the end of `file`, which must be its `bytes` long. Throws OutputFailure,
+/// with the file as it was, where the disc refuses it, or where the file is gone or has another length.
+void append_at(const std::filesystem::path& file, std::uint64_t bytes, std::string_view text);
+
+/// Waits until what `file` holds is on the disc; throws OutputFailure where it cannot be.
+void sync_file(const std::filesystem::path& file);
+
+/// All bytes of `file`; throws std::runtime_error where it cannot be read.
+std::string read_whole(const std::filesystem::path& file);
+
+/// FNV-1a, 64 bit (Fowler, Noll, Vo; RFC 9923); throws nothing.
+std::uint64_t checksum(std::string_view bytes);
 
 }  // namespace strata

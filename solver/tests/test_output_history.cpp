@@ -34,7 +34,7 @@ HistoryRow made_row(int k) {
 
 TEST_CASE("history.csv starts with the columns of the contract, in its order") {
   const TemporaryFolder folder;
-  HistoryWriter(folder.path / "history.csv").flush();
+  HistoryWriter(folder.path / "history.csv");
   REQUIRE(content_of(folder.path / "history.csv") ==
           "time_s,inlet_Pa,tip_x_m,tip_y_m,height_m,J_N_m,K_I_Pa_sqrt_m,K_II_Pa_sqrt_m,mouth_opening_m,"
           "fracture_volume_m2,kinetic_J,strain_J,interface_strain_J,fluid_work_J,in_situ_work_J,edge_work_J,damping_J,"
@@ -142,7 +142,7 @@ TEST_CASE("rows are read back to the same digits, what is not finite too") {
   odd.strain_J = -0.0;
   const std::vector<HistoryRow> rows = {made_row(1), made_row(2), odd};
   for (const HistoryRow& row : rows) writer.append(row);
-  const HistoryMark mark = writer.flush();
+  const HistoryMark mark = writer.mark();
   CHECK(mark.rows == 3);
   CHECK(mark.bytes == std::filesystem::file_size(file));
   const auto read = read_history(file);
@@ -159,10 +159,9 @@ TEST_CASE("a history goes on from a mark as if it had never been written beyond"
   {
     HistoryWriter writer(file);
     writer.append(made_row(1));
-    mark = writer.flush();
+    mark = writer.mark();
     writer.append(made_row(2));
     writer.append(made_row(3));
-    writer.flush();
     uninterrupted = content_of(file);
   }
   std::ofstream(file, std::ios::app) << "0.1,0.2";  // a row cut short by the interruption
@@ -172,7 +171,7 @@ TEST_CASE("a history goes on from a mark as if it had never been written beyond"
     require_same(writer.rows()[0], made_row(1));
     writer.append(made_row(2));
     writer.append(made_row(3));
-    CHECK(writer.flush().bytes == uninterrupted.size());
+    CHECK(writer.mark().bytes == uninterrupted.size());
   }
   CHECK(content_of(file) == uninterrupted);
   SECTION("but not where rows are missing or the file is another") {
@@ -187,5 +186,6 @@ TEST_CASE("a history goes on from a mark as if it had never been written beyond"
 }
 
 TEST_CASE("a history that cannot be written says so") {
-  CHECK_THROWS_WITH(HistoryWriter("/nowhere/history.csv"), Catch::Contains("/nowhere/history.csv: cannot be written"));
+  CHECK_THROWS_WITH(HistoryWriter("/nowhere/history.csv"),
+                    Catch::Contains("/nowhere/history.csv.tmp: cannot be written"));
 }

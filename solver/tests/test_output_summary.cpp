@@ -139,22 +139,6 @@ TEST_CASE("a file is written in one piece or not at all") {
                     Catch::Contains("a.json.tmp: cannot be written"));
 }
 
-TEST_CASE("a run's folder is freed of an earlier run's files and of nothing else") {
-  const TemporaryFolder temporary;
-  const auto path = temporary.path / "runs" / "exp1";
-  const RunFolder folder = create_run_folder(path);
-  for (const auto& file : {folder.scene(), folder.summary(), folder.history(), folder.result(), folder.xdmf(),
-                           folder.checkpoint(), path / "notes.txt"}) {
-    atomic_write(file, "text");
-  }
-  create_run_folder(path);
-  const auto listing = std::filesystem::directory_iterator(path);
-  CHECK(std::distance(begin(listing), end(listing)) == 1);
-  CHECK(content_of(path / "notes.txt") == "text");
-  CHECK_THROWS_WITH(create_run_folder(path / "notes.txt" / "a"), Catch::Contains("cannot be made"));
-  CHECK_THROWS_WITH(create_run_folder(path / "notes.txt"), Catch::Contains("notes.txt"));
-}
-
 TEST_CASE("the fraction done is that of the stop nearest by") {
   Scene scene = made_scene();
   State state = made_state();

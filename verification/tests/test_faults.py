@@ -1,0 +1,228 @@
+"""A run whose disc, folder or process fails: it says so, what it had written is whole, and `resume` ends as if nothing had been."""
+from __future__ import annotations
+
+import json
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from verification.faults.kill import command, run_until
+from verification.faults.kill import campaign as kill_campaign
+from verification.faults.same import differences, stored, torn
+from verification.faults.scenes import KILLED, Killed
+from verification.harness.paths import solver
+
+BY_NAME = {killed.name: killed for killed in KILLED}
+LONG = BY_NAME["explicit updated"]
+
+
+def strata(*arguments: str, **how: object) -> subprocess.CompletedProcess[str]:
+    """A command of the solver."""
+    return subprocess.run([str(solver()), *arguments], capture_output=True, text=True, check=False, timeout=120, **how)  # type: ignore[call-overload]
+
+
+def started(killed: Killed, folder: Path, until: str = "result.xdmf") -> subprocess.Popen[str]:
+    """A run that has begun to write: `until` is in its folder."""
+    process = subprocess.Popen(command(killed, folder, 0.0), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    while not (folder / until).exists() and process.poll() is None:
+        time.sleep(0.002)
+    return process
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run of LONG that nothing happens to."""
+    folder = tmp_path_factory.mktemp("alone") / "run"
+    assert run_until(command(LONG, folder, 60.0), None) == (0, "")
+    return folder
+
+
+def test_a_second_run_is_refused_unless_it_is_to_replace_the_first(tmp_path: Path) -> None:
+    (tmp_path / "block.toml").write_text(
+        '[domain]\nwidth_m = 8\nheight_m = 8\n[rock.r]\nyoungs_modulus_Pa = 10e9\n[strata]\nlayers = [{rock = "r"}]\n'
+        "[numerics]\ncell_m = 1\n[stop]\ntime_s = 0.01\n[variants.longer]\nstop.time_s = 0.02\n"
+    )
+    first = strata("run", "block.toml", "--out", "X", cwd=tmp_path)
+    assert (first.returncode, first.stderr) == (0, "")
+    before = {file.name: file.read_bytes() for file in (tmp_path / "X").iterdir()}
+    second = strata("run", "block.toml", "--variant", "longer", "--out", "X", cwd=tmp_path)
+    assert second.returncode == 2
+    for word in ("X: holds a run already", "strata resume X", "--replace", "--out"):
+        assert word in second.stderr
+    assert {file.name: file.read_bytes() for file in (tmp_path / "X").iterdir()} == before
+    assert strata("resume", "X", cwd=tmp_path).returncode == 0
+    assert {file.name: file.read_bytes() for file in (tmp_path / "X").iterdir()} == before
+    assert strata("run", "block.toml", "--variant", "longer", "--out", "X", "--replace", cwd=tmp_path).returncode == 0
+    assert json.loads((tmp_path / "X" / "summary.json").read_text())["variant"] == "longer"
+
+
+def test_a_folder_in_use_is_refused(tmp_path: Path, alone: Path) -> None:
+    process = started(LONG, tmp_path / "X")
+    process.send_signal(signal.SIGSTOP)  # it is in the middle of its run, and stays there
+    try:
+        for arguments in (["resume", str(tmp_path / "X")], command(LONG, tmp_path / "Y", 60.0)[1:] + ["--out", str(tmp_path / "X"), "--replace"]):
+            if "--replace" in arguments:
+                del arguments[arguments.index("--out"):arguments.index("--out") + 2]
+            done = strata(*arguments)
+            assert done.returncode == 2
+            assert "X: in use by a run that is going on" in done.stderr
+    finally:
+        process.send_signal(signal.SIGCONT)
+    assert process.wait() == 0, process.communicate()
+    assert differences(alone, tmp_path / "X") == []
+
+
+def limited(folder: Path, bytes_: int) -> subprocess.CompletedProcess[str]:
+    """Run or resume LONG where no file may grow beyond so many bytes."""
+    return strata(*command(LONG, folder, 0.0)[1:], preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (bytes_, bytes_)))
+
+
+def test_a_file_that_may_not_grow_ends_the_run_and_loses_nothing(tmp_path: Path, alone: Path) -> None:
+    """The limit rises little by little: each time the run goes on from its checkpoint, which must not be lost either."""
+    folder = tmp_path / "X"
+    refusals, limits = [], [400, *range(20_000, (alone / "result.h5").stat().st_size + 900_000, 400_000), 1 << 30]
+    for limit in limits:
+        done = limited(folder, limit)
+        assert torn(folder) == []
+        if done.returncode == 0:
+            break
+        assert done.returncode == 2, done.stderr
+        assert "cannot be written: File too large" in done.stderr
+        assert "a bug" not in done.stderr
+        refusals.append(done.stderr)
+    assert len(refusals) > 3
+    assert any("strata resume" in text and "goes on from step" in text for text in refusals)
+    assert differences(alone, folder) == []
+
+
+@pytest.fixture
+def small_disc(tmp_path: Path) -> Iterator[Path]:
+    """A disc of 4 MB of its own: room for a checkpoint and a few output times."""
+    place = tmp_path / "disc"
+    place.mkdir()
+    if os.geteuid() != 0 or subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4m", "none", str(place)], check=False, capture_output=True).returncode != 0:
+        pytest.skip("only root, where it may, can mount a small disc")
+    yield place
+    subprocess.run(["umount", "-l", str(place)], check=True)
+
+
+def test_a_disc_that_is_full_ends_the_run_and_loses_nothing(small_disc: Path, alone: Path) -> None:
+    folder = small_disc / "X"
+    done = strata(*command(LONG, folder, 0.0)[1:])
+    assert done.returncode == 2, done.stderr
+    assert "cannot be written: No space left on device" in done.stderr
+    assert f"`strata resume {folder}` goes on" in done.stderr
+    assert torn(folder) == []
+    written = stored(folder / "result.h5")["times"][1][0]
+    subprocess.run(["mount", "-o", "remount,size=64m", str(small_disc)], check=True)
+    done = strata("resume", str(folder), "--quiet")
+    assert (done.returncode, done.stderr) == (0, "")  # from the checkpoint, not from the start
+    assert written > 0
+    assert differences(alone, folder) == []
+
+
+def test_a_disc_that_becomes_read_only_ends_the_run_and_loses_nothing(small_disc: Path, alone: Path) -> None:
+    subprocess.run(["mount", "-o", "remount,size=64m", str(small_disc)], check=True)
+    folder = small_disc / "X"
+    process = started(LONG, folder, "checkpoint.bin")
+    process.send_signal(signal.SIGSTOP)
+    subprocess.run(["mount", "-o", "remount,ro", str(small_disc)], check=True)
+    process.send_signal(signal.SIGCONT)
+    said = process.communicate(timeout=60)[1]
+    assert process.returncode == 2
+    assert "Read-only file system" in said
+    assert torn(folder) == []
+    refused = strata("resume", str(folder))
+    assert refused.returncode == 2 and "Read-only file system" in refused.stderr
+    assert strata(*command(LONG, small_disc / "new", 60.0)[1:]).returncode == 2
+    subprocess.run(["mount", "-o", "remount,rw", str(small_disc)], check=True)
+    assert strata("resume", str(folder)).returncode == 0
+    assert differences(alone, folder) == []
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can run the solver as another user")
+def test_a_folder_that_may_not_be_written_is_refused_before_the_run() -> None:
+    with tempfile.TemporaryDirectory() as name:
+        Path(name).chmod(0o755)
+        scene = shutil.copy(LONG.scene, name)
+        program = shutil.copy(solver(), name)
+        done = subprocess.run(
+            [program, "run", scene, "--out", f"{name}/X"], user=65534, group=65534, extra_groups=[],
+            capture_output=True, text=True, check=False,
+        )
+        assert done.returncode == 2
+        assert "X: cannot be made: Permission denied" in done.stderr
+        assert not Path(name, "X").exists()
+
+
+@pytest.mark.parametrize("way", ["moved", "removed"])
+def test_a_folder_that_vanishes_ends_the_run(tmp_path: Path, alone: Path, way: str) -> None:
+    folder = tmp_path / "X"
+    process = started(LONG, folder, "checkpoint.bin")
+    process.send_signal(signal.SIGSTOP)
+    if way == "moved":
+        folder.rename(tmp_path / "Y")
+    else:
+        shutil.rmtree(folder)
+    process.send_signal(signal.SIGCONT)
+    said = process.communicate(timeout=60)[1]
+    assert process.returncode == 2, said
+    assert "No such file or directory" in said and "X is gone" in said
+    assert not folder.exists()
+    if way == "moved":
+        assert torn(tmp_path / "Y") == []
+        assert strata("resume", str(tmp_path / "Y")).returncode == 0
+        assert differences(alone, tmp_path / "Y") == []
+
+
+@pytest.mark.parametrize("name, which", [*((name, signal.SIGINT) for name in BY_NAME), ("quasi-static turning", signal.SIGTERM)])
+def test_a_run_that_is_interrupted_ends_at_once_and_goes_on_to_the_same_digits(tmp_path: Path, name: str, which: signal.Signals) -> None:
+    killed, folder, whole = BY_NAME[name], tmp_path / "X", tmp_path / "whole"
+    begin = time.monotonic()
+    assert run_until(command(killed, whole, 60.0), None) == (0, "")
+    wall_s = time.monotonic() - begin
+    process = started(killed, folder, "result.h5")
+    time.sleep(wall_s / 3)
+    begin = time.monotonic()
+    process.send_signal(which)
+    said = process.communicate(timeout=60)[1]
+    took_s = time.monotonic() - begin
+    assert process.returncode == 130, said
+    assert "strata resume" in said
+    assert took_s < max(2.0, wall_s / 2)  # 2 s; more where others keep the machine busy
+    assert not (folder / "summary.json").exists()
+    assert torn(folder) == []
+    assert strata("resume", str(folder), "--quiet").returncode == 0
+    assert differences(whole, folder) == []
+
+
+def test_a_signal_before_the_first_step_ends_the_process(tmp_path: Path) -> None:
+    """There is nothing to save yet, and a large block takes its time to be set up."""
+    folder = tmp_path / "X"
+    arguments = command(BY_NAME["quasi-static paper"], folder, 60.0) + ["--set", "numerics.cell_m=0.25"]
+    process = subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    while not (folder / "scene.toml").exists():
+        time.sleep(0.002)
+    begin = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    said = process.communicate(timeout=60)[1]
+    assert process.returncode == 130, said
+    assert time.monotonic() - begin < 1.0
+    assert "interrupted" in said
+
+
+def test_runs_that_are_killed_end_as_those_that_are_not() -> None:
+    """Ten kills at random moments; `python3 -m verification.faults` kills as often as one likes."""
+    for name in ("explicit total", "explicit updated", "quasi-static turning", "quasi-static reynolds"):
+        tally = kill_campaign(BY_NAME[name], 2 if name != "explicit total" else 4, 0.02, seed=7)
+        assert tally.kills >= 2
+        assert tally.identical == tally.trials > 0
+        assert tally.problems == []
