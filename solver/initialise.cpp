@@ -132,7 +132,7 @@ State initialise(const Scene& scene, const std::vector<Elasticity>& rocks) {
   make_fracture(scene, state);
   make_interfaces(scene, state);
   Particles& p = state.particles;
-  if (state.has_fracture) refine_particles(state, 0, state.fracture().points.size());
+  if (state.has_fracture) refine_particles(scene, state, 0, state.fracture().points.size());
   for (std::size_t q = 0; q < p.size(); ++q) p.sides[q] = sides_at(state, {p.x[q], p.y[q]}, -1);
   for (Surface& surface : state.surfaces) place_points(scene, state, surface);
   set_start_reactions(state);

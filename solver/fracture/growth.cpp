@@ -184,8 +184,9 @@ void displace_new(State& state, bool at_back, std::size_t pieces) {
 
 }  // namespace
 
-void refine_particles(State& state, std::size_t first, std::size_t last) {
+void refine_particles(const Scene& scene, State& state, std::size_t first, std::size_t last) {
   const double h = state.grid.h, sixteenth = h * h / 16.0;
+  const bool whole = scene.numerics.mechanics == Numerics::Mechanics::quasistatic;  // the intact block's points stay
   Particles& p = state.particles;
   const std::size_t before = p.size();
   std::vector<std::size_t> split;
@@ -195,8 +196,8 @@ void refine_particles(State& state, std::size_t first, std::size_t last) {
       const Vec2 off = Vec2{p.x[q], p.y[q]} - s.x;
       const Vec2 along{s.n.y(), -s.n.x()};
       const double across = std::abs(off.dot(s.n)), beside = std::abs(off.dot(along)) - 0.5 * s.A;
-      const bool coarse = p.V[q] > 1.01 * sixteenth && off_grid(s, h);
-      const bool hit = across < 1e-3 * h && beside <= 1.5 * h;
+      const bool fine = p.V[q] <= 1.01 * sixteenth, inclined = off_grid(s, h), coarse = !fine && inclined;
+      const bool hit = across < 1e-3 * h && beside <= 1.5 * h && !(whole && fine && inclined);
       if (!hit && !(coarse && across < 1.5 * h && beside < 1.5 * h)) continue;
       split_particle(p, q);
       split.insert(split.end(), {q, p.size() - 3, p.size() - 2, p.size() - 1});
@@ -240,7 +241,7 @@ double extend_tip(const Scene& scene, State& state, Tip& tip, double increment) 
   if (scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics && scene.numerics.keeps_places())
     displace_new(state, tip.at_back, pieces);
   update_particle_sides(state, tip, old_length);
-  refine_particles(state, tip.at_back ? old_points : 0, tip.at_back ? fracture.points.size() : pieces);
+  refine_particles(scene, state, tip.at_back ? old_points : 0, tip.at_back ? fracture.points.size() : pieces);
   for (Surface& surface : state.surfaces) place_points(scene, state, surface);
   return length;
 }

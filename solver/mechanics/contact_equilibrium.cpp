@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <string>
 
 namespace strata {
@@ -215,13 +216,17 @@ bool iterate(const State& state, const Condensed& condensed, const std::vector<C
              TangentFactor& factor, bool bounds_held, Equilibrium& at) {
   constexpr int most_iterations = 200;
   constexpr int plain_iterations = 15;  // without line search it ends within some 5 where it does
+  constexpr int checked = 5;            // from this iteration on what is in balance has been found to be so
   bool singular = false, stays = false;
+  std::set<Pieces> been;
   evaluate(state, condensed, places, at);
   if (bounds_held && at.residual < balanced) return true;
   for (at.iterations = 1; at.iterations <= most_iterations; ++at.iterations) {
     const Pieces pieces = at.pieces;
     const bool sliding = slips(at.answers);
     if (sliding && at.iterations > 2 * plain_iterations) return false;
+    // The whole step follows from the pieces alone: where they come back it goes round for ever.
+    if (sliding && !bounds_held && at.iterations >= checked && !been.insert(pieces).second) return false;
     singular = !factor_tangent(condensed, places, at, state, factor);
     // A tangent that was stiffened does not solve its pieces at once: from there on by what is out of balance.
     const Eigen::VectorXd next = stays ? Eigen::VectorXd(at.j + factor.solve(at.unbalanced))

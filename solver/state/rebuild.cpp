@@ -203,7 +203,28 @@ std::vector<SortKey> sort_keys(const State& state, const std::vector<SideWord>& 
   return keys;
 }
 
+// Keys in their order. Particles stay in or near their cells, so that most often nothing is to be done, and a count of
+// each cell's tells where those of another begin.
+std::vector<SortKey> sorted(const Grid& g, std::vector<SortKey> keys) {
+  const auto before = [](const SortKey& a, const SortKey& b) { return a.order() < b.order(); };
+  if (std::is_sorted(keys.begin(), keys.end(), before)) return keys;
+  const auto cell = [&](const SortKey& key) { return static_cast<std::size_t>(key.j * (g.nx + 1) + key.i); };
+  std::vector<std::size_t> first(static_cast<std::size_t>((g.nx + 1) * (g.ny + 1)) + 1, 0);
+  for (const SortKey& key : keys) ++first[cell(key) + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<SortKey> out(keys.size());
+  std::vector<std::size_t> next(first.begin(), first.end() - 1);
+  for (const SortKey& key : keys) out[next[cell(key)]++] = key;
+  for (std::size_t c = 0; c < next.size(); ++c) {
+    const auto from = out.begin() + static_cast<std::ptrdiff_t>(first[c]),
+               to = out.begin() + static_cast<std::ptrdiff_t>(first[c + 1]);
+    if (!std::is_sorted(from, to, before)) std::sort(from, to, before);
+  }
+  return out;
+}
+
 void sort_particles(Particles& particles, const std::vector<std::size_t>& order) {
+  if (std::is_sorted(order.begin(), order.end())) return;
   for_each_array(particles, [&](auto& array) {
     auto sorted = array;
     for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = array[order[k]];
@@ -379,8 +400,7 @@ SideWord sides_at(const State& state, const Vec2& x, int except) {
 void rebuild_copies(const Scene& scene, State& state) {
   const std::vector<SideWord> mask = node_masks(scene, state);
   make_cut_nodes(state, mask, state.copies);
-  std::vector<SortKey> keys = sort_keys(state, mask);
-  std::sort(keys.begin(), keys.end(), [](const SortKey& a, const SortKey& b) { return a.order() < b.order(); });
+  const std::vector<SortKey> keys = sorted(state.grid, sort_keys(state, mask));
   make_bins(state, keys);
   std::vector<std::size_t> order(keys.size());
   std::transform(keys.begin(), keys.end(), order.begin(), [](const SortKey& key) { return key.from; });
