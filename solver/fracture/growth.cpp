@@ -182,23 +182,45 @@ void displace_new(State& state, bool at_back, std::size_t pieces) {
   }
 }
 
+// Fine particles that a piece of the fracture and what is straight ahead of it pass through (4 h) and that stay whole:
+// a line of 4 x 4 points a cell has 5 at a slope of 1:2 and more along the grid and its diagonals.
+constexpr int now_and_then = 2;
+
+// Whether a particle stands within `reach` (m) of a point of the fracture, across it and beside its piece.
+bool near_point(const Particles& p, std::size_t q, const SurfacePoint& s, double reach) {
+  const Vec2 off = Vec2{p.x[q], p.y[q]} - s.x;
+  return std::abs(off.dot(s.n)) < reach && std::abs(off.dot(Vec2{s.n.y(), -s.n.x()})) - 0.5 * s.A < reach;
+}
+
+bool passes_through(const Particles& p, std::size_t q, const SurfacePoint& s, double h) {
+  const Vec2 off = Vec2{p.x[q], p.y[q]} - s.x;
+  return std::abs(off.dot(s.n)) < 1e-3 * h && std::abs(off.dot(Vec2{s.n.y(), -s.n.x()})) - 0.5 * s.A <= 1.5 * h;
+}
+
+int fine_ones_hit(const Particles& p, const SurfacePoint& s, double h) {
+  int hit = 0;
+  for (std::size_t q = 0; q < p.size(); ++q) hit += p.V[q] <= 1.01 * h * h / 16.0 && passes_through(p, q, s, h) ? 1 : 0;
+  return hit;
+}
+
 }  // namespace
 
 void refine_particles(const Scene& scene, State& state, std::size_t first, std::size_t last) {
-  const double h = state.grid.h, sixteenth = h * h / 16.0;
-  const bool whole = scene.numerics.mechanics == Numerics::Mechanics::quasistatic;  // the intact block's points stay
+  const double h = state.grid.h, sixteenth = 1.01 * h * h / 16.0;
   Particles& p = state.particles;
   const std::size_t before = p.size();
   std::vector<std::size_t> split;
+  std::vector<char> whole(last - first, 0);  // of points: whether they leave fine particles as they are
+  if (scene.numerics.mechanics == Numerics::Mechanics::quasistatic) {
+    for (std::size_t k = first; k < last; ++k)
+      whole[k - first] = fine_ones_hit(p, state.fracture().points[k], h) <= now_and_then ? 1 : 0;
+  }
   for (std::size_t q = 0; q < before; ++q) {
+    const bool fine = p.V[q] <= sixteenth;
     for (std::size_t k = first; k < last; ++k) {
       const SurfacePoint& s = state.fracture().points[k];
-      const Vec2 off = Vec2{p.x[q], p.y[q]} - s.x;
-      const Vec2 along{s.n.y(), -s.n.x()};
-      const double across = std::abs(off.dot(s.n)), beside = std::abs(off.dot(along)) - 0.5 * s.A;
-      const bool fine = p.V[q] <= 1.01 * sixteenth, inclined = off_grid(s, h), coarse = !fine && inclined;
-      const bool hit = across < 1e-3 * h && beside <= 1.5 * h && !(whole && fine && inclined);
-      if (!hit && !(coarse && across < 1.5 * h && beside < 1.5 * h)) continue;
+      const bool hit = passes_through(p, q, s, h) && !(fine && whole[k - first] != 0);
+      if (!hit && (fine || !near_point(p, q, s, 1.5 * h) || !off_grid(s, h))) continue;
       split_particle(p, q);
       split.insert(split.end(), {q, p.size() - 3, p.size() - 2, p.size() - 1});
       break;

@@ -52,9 +52,10 @@ void watch_tips(const Scene& scene, State& state);
 
 /// Splits particles within 1.5 cells of the fracture's points [first, last) into four where a cell has fewer than 16
 /// and the fracture lies neither on a grid line nor at mid-cell, or where it passes through a particle: 2 x 2 points a
-/// cell do not resolve the sides of such a fracture. Without inertia a particle of a sixteenth of a cell that an
-/// inclined fracture happens to pass through stays whole, on the + side: along a line of particles all would go astray,
-/// but an inclined fracture meets one of them now and then, and the stiffness of the intact block stays as factored.
+/// cell do not resolve the sides of such a fracture. Without inertia a particle of a sixteenth of a cell that a
+/// fracture passes through stays whole, on the + side, unless there are more than two along a piece: a line of
+/// particles would go astray, but an inclined fracture meets one now and then, and the stiffness of the intact block
+/// stays as it was factored.
 void refine_particles(const Scene& scene, State& state, std::size_t first, std::size_t last);
 
 /// Spacing of the points of surfaces (m): two a cell.

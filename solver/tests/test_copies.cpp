@@ -309,3 +309,35 @@ TEST_CASE("strips of a colour share no record") {
     }
   }
 }
+
+// Requires that particles in any order come out in that of row, column, sides and id, each with what belonged to it.
+// Mutations that fail: cells left as they are, a cell's particles in the order in which they came, arrays not
+// reordered.
+TEST_CASE("particles of any order are sorted by cell, sides and id") {
+  Scene scene = block(8, 8);
+  add_fracture(scene, {{2.6, 2.3}, {5.2, 5.7}}, 1e6);
+  scene.numerics.kernels = Numerics::Kernels::plain;
+  Run run(scene);
+  State& state = run.state;
+  const Particles sorted = state.particles;
+  Particles& p = state.particles;
+  const std::size_t n = p.size();
+  for_each_array(p, [n](auto& array) {
+    const auto old = array;
+    for (std::size_t k = 0; k < n; ++k) array[k] = old[(k * 7919 + 13) % n];  // a prime: every one once
+  });
+  REQUIRE(p.id != sorted.id);
+  rebuild_copies(scene, state);
+  CHECK(p.id == sorted.id);
+  CHECK(p.x == sorted.x);
+  CHECK(p.y == sorted.y);
+  CHECK(p.sides == sorted.sides);
+  CHECK(p.V == sorted.V);
+  int row = 0, column = 0;
+  for (const Bin& bin : state.bins) {
+    CHECK((bin.j > row || (bin.j == row && bin.i >= column)));
+    row = bin.j, column = bin.i;
+    for (int q = bin.first + 1; q < bin.last; ++q)
+      CHECK(p.id[static_cast<std::size_t>(q - 1)] < p.id[static_cast<std::size_t>(q)]);
+  }
+}
