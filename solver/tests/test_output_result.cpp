@@ -93,7 +93,7 @@ TEST_CASE("the fracture's fields are those of its vertices") {
 TEST_CASE("large fields are packed without loss") {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder.path / "fields.h5";
-  hdf5::create_file(path);
+  hdf5::make_file(path);
   const hdf5::Handle file = hdf5::open_file(path, true);
   std::mt19937 random(7);
   for (const std::size_t n : {std::size_t{1}, std::size_t{5000}, std::size_t{600001}}) {
