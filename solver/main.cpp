@@ -64,6 +64,7 @@ int parse_and_do(int argc, char** argv) {
   run_command->add_option("--set", arguments.set, "key.path=value; acts after the variant")->allow_extra_args(false);
   run_command->add_option("--out", arguments.options.out, "folder of the run; by default runs/SCENE/VARIANT");
   run_command->add_flag("--replace", arguments.options.replace, "in place of a run that the folder holds");
+  run_command->add_flag("--any-time", arguments.options.any_time, "also where it would take more than 30 days");
   CLI::App* check_command = app.add_subcommand("check", "all errors of scenes and their variants, nothing run");
   check_command->add_option("scenes", arguments.files, "scene files")->required();
   CLI::App* variants_command = app.add_subcommand("variants", "names of a scene's variants, one a line");

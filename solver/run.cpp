@@ -21,6 +21,8 @@
 #include "output/progress.hpp"
 #include "output/recorder.hpp"
 #include "output/summary.hpp"
+#include "scene/memory_need.hpp"
+#include "scene/time_need.hpp"
 #include "scene/toml_reader.hpp"
 
 namespace strata {
@@ -53,28 +55,18 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// Length of the run (s) as far as the scene tells it: to the stop time or to the inlet's last pressure; 1 s without
-// either.
-double expected_duration(const Scene& scene) {
-  double duration = scene.stop.time_s.value_or(HUGE_VAL);
-  if (scene.stop.inlet_Pa && scene.fluid.rate_Pa_s > 0.0) {
-    duration = std::min(duration, (*scene.stop.inlet_Pa - scene.fluid.start_Pa) / scene.fluid.rate_Pa_s);
-  }
-  return std::isfinite(duration) ? duration : 1.0;
-}
-
 bool is_quasistatic(const Scene& scene) {
   return scene.numerics.mechanics == Numerics::Mechanics::quasistatic;
 }
 
 double output_interval(const Scene& scene) {
-  return scene.output.fields_every_s.value_or(expected_duration(scene) / 50.0);
+  return scene.output.fields_every_s.value_or(expected_duration(scene).value_or(1.0) / 50.0);
 }
 
 // Why the run is over, or nothing.
 std::optional<std::string> reason_to_stop(const Scene& scene, const State& state) {
   const Stop& stop = scene.stop;
-  const double slack = is_quasistatic(scene) ? 1e-9 * expected_duration(scene) : 0.5 * state.dt;
+  const double slack = is_quasistatic(scene) ? 1e-9 * expected_duration(scene).value_or(1.0) : 0.5 * state.dt;
   if (stop.time_s && state.time >= *stop.time_s - slack) return fmt::format("time reached {} s", *stop.time_s);
   if (stop.inlet_Pa && state.has_fracture && state.fluid.inlet_Pa >= *stop.inlet_Pa * (1.0 - 1e-12))
     return fmt::format("inlet pressure reached {} Pa", *stop.inlet_Pa);
@@ -331,6 +323,13 @@ void set_up(const Scene& scene, const RunOptions& options) {
   for (const int signal : {SIGXFSZ, SIGPIPE}) std::signal(signal, SIG_IGN);
 }
 
+// What is to be expected of a run, before it starts.
+void tell_size(const Scene& scene) {
+  const std::optional<double> seconds = time_need(scene);
+  fmt::print(stderr, "{:.2g} points, {:.2g} GB, {} on one thread, by estimate\n", points_of(scene),
+             1e-9 * memory_need(scene), seconds ? "about " + duration_text(std::max(1.0, *seconds)) : "some time");
+}
+
 int run_in(const Scene& scene, const RunOptions& options, bool replace, Clock::time_point start) {
   const std::vector<Elasticity> rocks = make_elasticities(scene);
   const RunFolder folder = clear_run_folder(options.out, replace);
@@ -369,7 +368,11 @@ int resume_in(const RunFolder& folder, const RunOptions& options, Clock::time_po
   }
   const std::vector<Elasticity> rocks = make_elasticities(scene);
   State& state = checkpoint->state;
-  restore(scene, state);
+  try {
+    restore(scene, state);
+  } catch (const NumericalFailure& failure) {
+    return fail_at_start(scene, folder, failure, start);
+  }
   const double last_output = recorder->last_output_s();
   return run_from({scene, rocks, *recorder, state, state, checkpoint->mark, state.step, 0.0, last_output, std::nullopt},
                   folder, options, start);
@@ -379,9 +382,15 @@ int resume_in(const RunFolder& folder, const RunOptions& options, Clock::time_po
 
 int run_scene(const Scene& scene, const RunOptions& options) {
   const Clock::time_point start = Clock::now();
+  const std::optional<std::string> reason = too_long(scene);
+  if (reason && !options.any_time) {
+    fmt::print(stderr, "{}\n", *reason);
+    return bad_input;
+  }
   set_up(scene, options);
   try {
     const FolderLock lock = make_run_folder(options.out);
+    if (!options.quiet) tell_size(scene);
     return run_in(scene, options, options.replace, start);
   } catch (const OutputFailure& failure) {
     fmt::print(stderr, "{}\n", failure.what());

@@ -5,6 +5,7 @@
 
 #include <Eigen/CholmodSupport>
 #include <algorithm>
+#include <new>
 #include <numeric>
 
 #include "state/types.hpp"
@@ -41,6 +42,7 @@ TreeFactor::TreeFactor(const Eigen::SparseMatrix<double>& K, const char* singula
   cholmod_factor* L = cholmod_analyze(&view, &common);
   cholmod_factorize(&view, L, &common);
   const bool sound = common.status == CHOLMOD_OK;
+  const bool out_of_memory = common.status == CHOLMOD_OUT_OF_MEMORY || common.status == CHOLMOD_TOO_LARGE;
   if (sound) {
     const auto *super = static_cast<const int*>(L->super), *rows_at = static_cast<const int*>(L->pi),
                *values_at = static_cast<const int*>(L->px), *rows = static_cast<const int*>(L->s),
@@ -66,6 +68,7 @@ TreeFactor::TreeFactor(const Eigen::SparseMatrix<double>& K, const char* singula
   }
   cholmod_free_factor(&L, &common);
   cholmod_finish(&common);
+  if (out_of_memory) throw std::bad_alloc();
   if (!sound) throw NumericalFailure(singular);
 }
 

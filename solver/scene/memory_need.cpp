@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -57,15 +58,37 @@ Cells cells_of(const Scene& scene) {
           ends * beyond + (graded ? graded_cells(scene, 1, domain.height_m, far) : domain.height_m / h)};
 }
 
+bool may_turn(const Scene& scene) {
+  return scene.fracture && scene.fracture->growth != Fracture::Growth::none &&
+         scene.fracture->direction == Fracture::Direction::max_hoop;
+}
+
+// As far as the scene alone tells it: solved on one half of the block.
+bool is_halved(const Scene& scene) {
+  if (!scene.fracture || scene.strata.along != Strata::Along::y || scene.body.acceleration_m_s2) return false;
+  if (scene.domain.sides != Edge::fixed || scene.fracture->direction != Fracture::Direction::straight) return false;
+  const double middle = 0.5 * scene.domain.width_m;
+  return std::ranges::all_of(scene.fracture->path_m,
+                             [&](const auto& x) { return std::abs(x[0] - middle) < 1e-9 * scene.numerics.cell_m; });
+}
+
 }  // namespace
 
-double memory_need(const Scene& scene) {
-  constexpr double bytes_per_particle = 260.0;
+double points_of(const Scene& scene) {
   const Cells cells = cells_of(scene);
-  const double state = bytes_per_particle * scene.numerics.particles_per_cell * cells.x * cells.y;
-  if (scene.numerics.mechanics != Numerics::Mechanics::quasistatic) return state;
-  const double n = 2.0 * (cells.x + 1.0) * (cells.y + 1.0);
-  return state + 31.0 * n * std::log2(n) / 2.0 * 8.0;
+  const Numerics& numerics = scene.numerics;
+  // Everywhere from the start where the path may turn.
+  const bool refined = numerics.mechanics == Numerics::Mechanics::quasistatic && may_turn(scene);
+  return cells.x * cells.y * (refined ? std::max(16, numerics.particles_per_cell) : numerics.particles_per_cell);
+}
+
+double memory_need(const Scene& scene) {
+  constexpr double process = 24e6;
+  const double points = points_of(scene);
+  if (scene.numerics.mechanics != Numerics::Mechanics::quasistatic) return process + 1250.0 * points;
+  const Cells cells = cells_of(scene);
+  const double n = 2.0 * (0.5 * cells.x * (is_halved(scene) ? 1.0 : 2.0) + 1.0) * (cells.y + 1.0);
+  return process + points * (may_turn(scene) ? 950.0 : 330.0) + 9300.0 * n;
 }
 
 std::optional<std::string> too_large(const Scene& scene, double available) {

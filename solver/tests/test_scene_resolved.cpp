@@ -2,6 +2,7 @@
 #include "scene/keys.hpp"
 #include "scene/memory_need.hpp"
 #include "scene/path_geometry.hpp"
+#include "scene/time_need.hpp"
 #include "scene_text.hpp"
 
 using namespace strata;
@@ -114,30 +115,56 @@ TEST_CASE("A scene without inertia, fed at a rate and on a graded grid reads as 
   check_round_trip(good(with(text, "[fracture]\n", "[fracture]\ncrossing_increment_m = 0.5\n")));
 }
 
-TEST_CASE("Memory needed grows with the particles, more so with a factor, and less where cells are graded") {
+TEST_CASE("Memory needed grows with the particles, more so with a factor, and less where cells are graded or halved") {
+  constexpr double process = 24e6;
   Scene scene = good(layered);
-  const double state = memory_need(scene);
-  CHECK(state == Approx(260.0 * 4.0 * 80.0 * 80.0));
+  const double points = 4.0 * 80.0 * 80.0;
+  CHECK(points_of(scene) == Approx(points));
+  CHECK(memory_need(scene) == Approx(process + 1250.0 * points));
   scene.numerics.mechanics = Numerics::Mechanics::quasistatic;
-  // n = 2 81^2 = 13122 unknowns, log2 n = 13.680: 31 n log2(n)/2 = 2.782e6 numbers.
-  CHECK(memory_need(scene) - state == Approx(8.0 * 2.782e6).epsilon(1e-3));
-  const double uniform = memory_need(scene);
+  const double whole = process + 330.0 * points + 9300.0 * 2.0 * 81.0 * 81.0;
+  const double half = process + 330.0 * points + 9300.0 * 2.0 * 41.0 * 81.0;
+  CHECK(memory_need(scene) == Approx(half));
+  scene.fracture->path_m = {{30.0, 0.0}, {30.0, 5.0}};
+  CHECK(memory_need(scene) == Approx(whole));
+  scene.fracture->direction = Fracture::Direction::max_hoop;  // 16 points a cell from the start
+  CHECK(memory_need(scene) == Approx(whole + (950.0 * 4.0 - 330.0) * points));
+  CHECK_FALSE(too_large(scene, memory_need(scene)).has_value());
+  CHECK_THAT(too_large(scene, 0.5 * memory_need(scene)).value(),
+             Catch::Contains("need about 0.243 GB, and 0.122 GB are available"));
+  CHECK(available_memory() > 1e6);
+}
+
+TEST_CASE("Points are counted as cells are graded, and as the rock goes on beyond the block") {
+  Scene scene = good(layered);
+  const auto cells = [&](int axis) { return static_cast<double>(scene_knots(scene, axis).size()) - 4.0; };
   scene.numerics.far_cell_m = 5.0;
   scene.stop.tip_y_m = 20.0;
-  CHECK(memory_need(scene) < 0.5 * uniform);
-  scene.numerics.mechanics =
-      Numerics::Mechanics::explicit_dynamics;  // for the cells alone: knots beyond both ends less
-  const auto cells = [&](int axis) { return static_cast<double>(scene_knots(scene, axis).size()) - 4.0; };
-  CHECK(memory_need(scene) == Approx(260.0 * 4.0 * cells(0) * cells(1)).epsilon(0.1));
-  scene.numerics.mechanics = Numerics::Mechanics::quasistatic;
+  CHECK(points_of(scene) < 0.5 * 4.0 * 80.0 * 80.0);
+  CHECK(points_of(scene) == Approx(4.0 * cells(0) * cells(1)).epsilon(0.1));
   scene.numerics.far_cell_m = 1.0;
-  CHECK(memory_need(scene) == uniform);
   scene.domain.beyond_m = 300.0;
-  scene.numerics.mechanics = Numerics::Mechanics::explicit_dynamics;
-  CHECK(memory_need(scene) == Approx(260.0 * 4.0 * cells(0) * cells(1)).epsilon(0.05));
-  scene.domain.beyond_m = 0.0;
+  CHECK(points_of(scene) == Approx(4.0 * cells(0) * cells(1)).epsilon(0.05));
+}
+
+TEST_CASE("The time of a run is that of its steps, and months are refused") {
+  Scene scene = good(layered);  // to 4 MPa from 2 at 0.35 MPa/s, c_P = 2108 m/s, half a cell a step
+  const double steps = (2.0 / 0.35) * 2108.2 / 0.5;
+  CHECK(time_need(scene).value() == Approx(steps * 25600.0 / 2.0e7).epsilon(1e-3));
+  CHECK_FALSE(too_long(scene));
+  scene.stop.time_s = 1.0;
+  CHECK(expected_duration(scene).value() == 1.0);
+  CHECK(time_need(scene).value() == Approx(2108.2 / 0.5 * 25600.0 / 2.0e7).epsilon(1e-3));
+  scene.numerics.kinematics = Numerics::Kinematics::total;
+  CHECK(time_need(scene).value() == Approx(2108.2 / 0.5 * 25600.0 / 1.0e8).epsilon(1e-3));
+  scene.numerics.kinematics = Numerics::Kinematics::updated;
+  scene.numerics.cell_m = 0.01;  // 100 times the steps, 10000 times the points
+  CHECK_THAT(too_long(scene).value(),
+             Catch::Contains("4.2e+05 steps of 2.6e+08 points") && Catch::Contains("--any-time"));
+  scene.stop = {.tip_y_m = 40.0, .inlet_Pa = {}, .time_s = {}};
+  CHECK_FALSE(time_need(scene));  // nobody knows when the tip gets there
+  CHECK_FALSE(too_long(scene));
   scene.numerics.mechanics = Numerics::Mechanics::quasistatic;
-  CHECK_FALSE(too_large(scene, uniform).has_value());
-  CHECK_THAT(too_large(scene, 0.5 * uniform).value(), Catch::Contains("0.0289 GB, and 0.0145 GB are available"));
-  CHECK(available_memory() > 1e6);
+  scene.numerics.cell_m = 1.0;
+  CHECK(time_need(scene).value() == Approx((8.0 * 35.0 + 150.0) * 25600.0 / 1.0e7));
 }

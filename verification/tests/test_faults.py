@@ -1,8 +1,11 @@
 """A run whose disc, folder or process fails: it says so, what it had written is whole, and `resume` ends as if nothing had been."""
 from __future__ import annotations
 
+import csv
 import json
+import math
 import os
+import re
 import resource
 import shutil
 import signal
@@ -50,7 +53,7 @@ def test_a_second_run_is_refused_unless_it_is_to_replace_the_first(tmp_path: Pat
         '[domain]\nwidth_m = 8\nheight_m = 8\n[rock.r]\nyoungs_modulus_Pa = 10e9\n[strata]\nlayers = [{rock = "r"}]\n'
         "[numerics]\ncell_m = 1\n[stop]\ntime_s = 0.01\n[variants.longer]\nstop.time_s = 0.02\n"
     )
-    first = strata("run", "block.toml", "--out", "X", cwd=tmp_path)
+    first = strata("run", "block.toml", "--out", "X", "--quiet", cwd=tmp_path)
     assert (first.returncode, first.stderr) == (0, "")
     before = {file.name: file.read_bytes() for file in (tmp_path / "X").iterdir()}
     second = strata("run", "block.toml", "--variant", "longer", "--out", "X", cwd=tmp_path)
@@ -226,3 +229,107 @@ def test_runs_that_are_killed_end_as_those_that_are_not() -> None:
         assert tally.kills >= 2
         assert tally.identical == tally.trials > 0
         assert tally.problems == []
+
+
+BLOCK = """\
+[domain]
+width_m = 8
+height_m = 8
+[in_situ]
+vertical_Pa = 1e6
+horizontal_Pa = 1e6
+[rock.r]
+youngs_modulus_Pa = 10e9
+[interface.cut]
+law = "friction"
+coefficient = 0
+[strata]
+layers = [{rock = "r", thickness_m = 4}, {rock = "r"}]
+interfaces = ["perfect"]
+[body]
+acceleration_m_s2 = ["sin(pi*X/8)*cos(pi*Y/8)*sqrt(0.02 - t)", "0"]
+[numerics]
+cell_m = 1
+[output]
+fields_every_s = 0.002
+[stop]
+time_s = 0.05
+[variants.updated]
+[variants.total]
+numerics.kinematics = "total"
+[variants.quasistatic]
+numerics.mechanics = "quasistatic"
+[variants.mechanism]
+body.acceleration_m_s2 = ["0", "0"]
+numerics.mechanics = "quasistatic"
+domain.sides = "traction"
+strata.interfaces = ["cut"]
+fracture.path_m = [[4, 0], [4, 2]]
+fluid.inlet = {start_Pa = 1.2e6, rate_Pa_s = 1e6}
+"""
+
+
+@pytest.mark.parametrize("variant", ["updated", "total", "quasistatic"])
+def test_what_is_no_longer_finite_ends_the_run_with_its_last_good_state(tmp_path: Path, variant: str) -> None:
+    """The push is no number from 0.02 s on: exit 3, the reason, finite results up to there, and a checkpoint that loads."""
+    (tmp_path / "block.toml").write_text(BLOCK)
+    done = strata("run", "block.toml", "--variant", variant, "--out", "X", "--quiet", cwd=tmp_path)
+    assert done.returncode == 3, done.stderr
+    summary = json.loads((tmp_path / "X" / "summary.json").read_text())
+    assert summary["status"] == "failed"
+    assert "-nan at X = " in summary["reason"] and "The last good state, of step " in summary["reason"]
+    assert 0.0 <= summary["time_s"] < 0.0201
+    assert math.isfinite(summary["energy"]["strain_J"])
+    assert torn(tmp_path / "X") == []
+    rows = list(csv.DictReader((tmp_path / "X" / "history.csv").open()))
+    assert len(rows) > 5 and float(rows[-1]["time_s"]) < 0.0201
+    assert all(math.isfinite(float(row["strain_J"])) and float(row["strain_J"]) > 0.0 for row in rows[2:-1])  # the push ends at 0
+    # The state that was kept is sound: without its summary the run goes on from it, into the same wall.
+    (tmp_path / "X" / "summary.json").unlink()
+    again = strata("resume", "X", "--quiet", cwd=tmp_path)
+    assert again.returncode == 3 and "starts anew" not in again.stderr
+    assert json.loads((tmp_path / "X" / "summary.json").read_text())["reason"] == summary["reason"]
+
+
+def test_a_mechanism_ends_the_run_with_the_reason_in_its_summary(tmp_path: Path) -> None:
+    (tmp_path / "block.toml").write_text(BLOCK)
+    done = strata("run", "block.toml", "--variant", "mechanism", "--out", "X", "--quiet", cwd=tmp_path)
+    assert done.returncode == 3, done.stderr
+    summary = json.loads((tmp_path / "X" / "summary.json").read_text())
+    assert summary["status"] == "failed" and summary["reason"] in done.stderr
+    assert torn(tmp_path / "X") == []
+
+
+def test_a_limit_of_memory_is_bad_input_and_no_bug(tmp_path: Path) -> None:
+    (tmp_path / "block.toml").write_text(BLOCK)
+    limit = 600_000_000  # of addresses; programs and threads take most of it
+    done = strata(
+        "run", "block.toml", "--set", "numerics.cell_m=0.01", "--out", "X", "--threads", "1", cwd=tmp_path,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)),
+    )
+    assert done.returncode == 2, done.stderr
+    assert ("out of memory" in done.stderr or "too large for this machine" in done.stderr) and "a bug" not in done.stderr
+
+
+@pytest.mark.parametrize("name, changed", [("explicit total", ()), ("explicit updated", ()), ("quasi-static paper", ("stop.tip_y_m=12",))])
+def test_memory_is_estimated_a_little_above_what_a_run_takes(tmp_path: Path, name: str, changed: tuple[str, ...]) -> None:
+    """At 1 m cells, checkpoints written: within 30 % above the peak, never below."""
+    killed = BY_NAME[name]
+    short = Killed(name, killed.scene, killed.variant, (*killed.settings, "numerics.cell_m=1", "fracture.increment_m=1", *changed))
+    if name.startswith("explicit"):
+        short = Killed(name, short.scene, short.variant, (*short.settings, "stop.time_s=0.12"))
+    arguments = [word for word in command(short, tmp_path / "X", 0.0)[1:] if word != "--quiet"]
+    done = strata(*arguments)
+    assert done.returncode == 0, done.stderr
+    estimate_MB = 1e3 * float(re.search(r"([\d.e+-]+) GB", done.stderr).group(1))  # type: ignore[union-attr]
+    peak_MB = json.loads((tmp_path / "X" / "summary.json").read_text())["peak_memory_MB"]
+    assert 1.0 < estimate_MB / peak_MB < 1.3
+
+
+def test_a_run_of_months_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "block.toml").write_text(BLOCK)
+    done = strata("run", "block.toml", "--set", "stop.time_s=1e9", "--out", "X", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "would take too long" in done.stderr and "days" in done.stderr and "--any-time" in done.stderr
+    assert not (tmp_path / "X").exists()
+    assert strata("check", "block.toml", cwd=tmp_path).returncode == 0
