@@ -8,8 +8,12 @@ SideWord CutNode::key(SideWord sides) const {
   const SideWord all = sides & mask;
   const SideWord interfaces = all & ~fracture;
   const bool everywhere = (mask & ~fracture) == 0;
-  if (everywhere || std::find(entered.begin(), entered.end(), interfaces) != entered.end()) return all;
-  return interfaces;
+  const bool is_entered = everywhere || std::find(entered.begin(), entered.end(), interfaces) != entered.end();
+  const SideWord own = is_entered ? all : interfaces;
+  for (const auto& [corner, other] : joined) {
+    if (corner == own) return other;
+  }
+  return own;
 }
 
 int record_of(const Copies& copies, int node, SideWord sides) {

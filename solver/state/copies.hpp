@@ -18,8 +18,10 @@ struct CutNode {
   std::vector<SideWord> entered;  // with interfaces too: the sides of them that the fracture has entered; elsewhere
                                   // it does not split the node, although its extension passes there
   SideWord fracture = 0;          // the fracture's bit, where it splits this node
-  std::vector<SideWord> keys;     // the side combinations that occur
-  std::vector<int> records;       // and the record of each
+  std::vector<std::array<SideWord, 2>>
+      joined;                  // a corner with hardly any rock, and the one that its particles belong to
+  std::vector<SideWord> keys;  // the side combinations that occur
+  std::vector<int> records;    // and the record of each
 
   SideWord key(SideWord sides) const;
 };

@@ -1,6 +1,7 @@
 #include "state/light_copies.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "state/shape_functions.hpp"
@@ -49,7 +50,80 @@ std::vector<double> worth_of_particles(const Scene& scene, const State& state, c
   return worth;
 }
 
+// Cut nodes that a fracture and an interface part: the only ones with corners.
+bool has_corners(const CutNode& cut) {
+  return cut.fracture != 0 && cut.mask != cut.fracture;
+}
+
+// Whether the fracture is not along the grid where it is nearest to a node.
+bool leans_at(const State& state, int node) {
+  const Grid& g = state.grid;
+  const Projection on = project(state.fracture(), {g.x(g.column(node)), g.y(g.row(node))}, 0.0);
+  const auto& points = state.fracture().points;
+  const auto after = std::find_if(points.begin(), points.end() - 1,
+                                  [&](const SurfacePoint& s) { return s.arc + 0.5 * s.A >= on.arc; });
+  constexpr double along_grid = 1.0 - 1e-6;
+  return std::abs(after->n.x()) < along_grid && std::abs(after->n.y()) < along_grid;
+}
+
+struct Corner {
+  SideWord key = 0;
+  double worth = 0.0;
+};
+
+struct Corners {
+  int node = 0;
+  std::vector<Corner> all;
+};
+
+// sum_p V_p |grad N_i| of each corner of each cut node that has some.
+std::vector<Corners> corners_of(const Scene& scene, const State& state) {
+  std::vector<Corners> corners(state.copies.cut.size());
+  const Particles& p = state.particles;
+  const Grid& grid = state.grid;
+  for (std::size_t q = 0; q < p.size(); ++q) {
+    const int i = grid.column_at(p.x[q]), j = grid.row_at(p.y[q]);
+    if (i < 0 || i > grid.nx || j < 0 || j > grid.ny) continue;
+    for (std::size_t n = 0; n < 9; ++n) {
+      const int node = grid.node(i + static_cast<int>(n % 3) - 1, j + static_cast<int>(n / 3) - 1);
+      const int c = state.copies.cut_of_node[static_cast<std::size_t>(node)];
+      if (c < 0 || !has_corners(state.copies.cut[static_cast<std::size_t>(c)])) continue;
+      const SideWord key = state.copies.cut[static_cast<std::size_t>(c)].key(p.sides[q]);
+      const Gradients g = gradients_at(scene, grid, i, j, {p.x[q], p.y[q]}, p.half[q]);
+      corners[static_cast<std::size_t>(c)].node = node;
+      auto& of_node = corners[static_cast<std::size_t>(c)].all;
+      auto at = std::find_if(of_node.begin(), of_node.end(), [key](const Corner& corner) { return corner.key == key; });
+      if (at == of_node.end()) at = of_node.insert(of_node.end(), Corner{key});
+      at->worth += p.V[q] * std::hypot(g.N_x[n], g.N_y[n]);
+    }
+  }
+  return corners;
+}
+
 }  // namespace
+
+void join_corners(const Scene& scene, State& state) {
+  auto& cuts = state.copies.cut;
+  if (std::none_of(cuts.begin(), cuts.end(), has_corners)) return;
+  const auto corners = corners_of(scene, state);
+  for (std::size_t c = 0; c < cuts.size(); ++c) {
+    const auto& own = corners[c].all;
+    if (own.size() < 3 || !leans_at(state, corners[c].node)) continue;
+    double all = 0.0;
+    for (const Corner& corner : own) all += corner.worth;
+    for (const Corner& small : own) {
+      if (small.worth >= least_corner * all) continue;
+      const Corner* into = nullptr;
+      for (const Corner& other : own) {
+        const SideWord parted = small.key ^ other.key;
+        const bool beside =
+            std::popcount(parted) == 1 && parted != cuts[c].fracture && other.worth >= least_corner * all;
+        if (beside && (into == nullptr || other.worth > into->worth)) into = &other;
+      }
+      if (into != nullptr) cuts[c].joined.push_back({small.key, into->key});
+    }
+  }
+}
 
 void join_light_copies(const Scene& scene, State& state) {
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {

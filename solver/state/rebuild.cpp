@@ -400,6 +400,7 @@ SideWord sides_at(const State& state, const Vec2& x, int except) {
 void rebuild_copies(const Scene& scene, State& state) {
   const std::vector<SideWord> mask = node_masks(scene, state);
   make_cut_nodes(state, mask, state.copies);
+  join_corners(scene, state);
   const std::vector<SortKey> keys = sorted(state.grid, sort_keys(state, mask));
   make_bins(state, keys);
   std::vector<std::size_t> order(keys.size());

@@ -115,3 +115,61 @@ TEST_CASE("copies that bear more than they are worth are joined at all places, w
     }
   }
 }
+
+namespace {
+
+// A crack of 12 m whose middle is on an interface with springs (Pa/m), at an angle to it (degrees), in a block of 40 m.
+Scene through_springs(double degrees, double D) {
+  Scene scene = block(40, 40);
+  scene.numerics.mechanics = Numerics::Mechanics::quasistatic;
+  add_interface(scene, soft_law(D, D, InterfaceLaw::Compression::spring), 20.0);
+  const double angle = degrees * std::numbers::pi / 180.0, dx = 6.0 * std::cos(angle), dy = 6.0 * std::sin(angle);
+  add_fracture(scene, {{20.0 - dx, 20.0 - dy}, {20.0 + dx, 20.0 + dy}}, p_net);
+  return scene;
+}
+
+// Mean of K_I of both tips.
+double K_I(const Scene& scene) {
+  Statics statics(scene);
+  press(statics.state(), Surface::Kind::fracture, p_net);
+  statics.solve();
+  return 0.5 * (statics.state().tips[0].K_I + statics.state().tips[1].K_I);
+}
+
+std::size_t joined_corners(const State& state) {
+  std::size_t sum = 0;
+  for (const CutNode& cut : state.copies.cut) sum += cut.joined.size();
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("a crack through stiff springs at an angle is no mechanism, and K_I is that without them") {
+  const double degrees = GENERATE(45.0, 30.0, 135.0);
+  CAPTURE(degrees);
+  Scene bonded = through_springs(degrees, 1e13);
+  bonded.strata.interfaces[0].law = 0;  // perfect
+  const double K = K_I(bonded);
+  CHECK(K == Approx(p_net * std::sqrt(6.0 * std::numbers::pi)).epsilon(0.15));
+  CHECK(K_I(through_springs(degrees, 1e13)) == Approx(K).epsilon(0.01));
+  CHECK(joined_corners(Run(through_springs(degrees, 1e13)).state) > 0);
+}
+
+TEST_CASE("where a fracture along the grid crosses an interface all corners stay") {
+  const Run run(through_springs(90.0, 1e9));
+  CHECK(joined_corners(run.state) == 0);
+}
+
+TEST_CASE("a layer of one or half a cell between two interfaces is held by its springs") {
+  const double thickness = GENERATE(0.5, 1.0);
+  Scene scene = block(4, 8);
+  scene.numerics.mechanics = Numerics::Mechanics::quasistatic;
+  hold_edges(scene);
+  add_interface(scene, soft_law(1e9, 1e9, InterfaceLaw::Compression::spring), 4.0);
+  add_interface(scene, soft_law(1e9, 1e9, InterfaceLaw::Compression::spring), 4.0 + thickness);
+  Statics statics(scene);
+  press(statics.state(), Surface::Kind::interface, 0.0);
+  REQUIRE_NOTHROW(statics.solve());
+  CHECK(statics.state().particles.size() == 4 * 8 * 16);
+  CHECK(Run(block(4, 8)).state.particles.size() == 4 * 8 * 4);
+}
