@@ -103,6 +103,18 @@ void watch_contact(const Scene& scene, const State& state, std::vector<Watched>&
                  "a step's contact ran out of sweeps while a reaction still changed by more than 1 % of the largest"});
 }
 
+// Functions of low order lock where rock hardly changes its volume: a crack opens too little, by 2.9 % with hat
+// functions at nu = 0.45 (20 cells along it) and by 1.8 % with quadratic B-splines at 0.495 (10 cells). Told as the
+// ratio (lambda + mu)/mu = 1/(1 - 2 nu).
+void watch_locking(const Scene& scene, std::vector<Watched>& out) {
+  double most = 0.0;
+  for (const Rock& rock : scene.rocks) most = std::max(most, 1.0 / (1.0 - 2.0 * rock.poisson_ratio));
+  constexpr double spline_limit = 101.0, hat_limit = 10.1;  // nu = 0.495, 0.45
+  out.push_back({"incompressibility", most,
+                 scene.numerics.shape == Numerics::Shape::bspline2 ? spline_limit : hat_limit,
+                 "rock is so nearly incompressible that functions of this order lock: it is too stiff"});
+}
+
 }  // namespace
 
 double courant_limit(Numerics::Shape shape) {
@@ -123,6 +135,7 @@ std::vector<Watched> watched(const Scene& scene, const State& state) {
   watch_fluid(scene, state, out);
   watch_growth(state, out);
   watch_contact(scene, state, out);
+  watch_locking(scene, out);
   return out;
 }
 

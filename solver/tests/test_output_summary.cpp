@@ -204,6 +204,19 @@ constexpr auto inertia = Numerics::Mechanics::explicit_dynamics, rest = Numerics
 
 }  // namespace
 
+TEST_CASE("rock so nearly incompressible that the shape's functions lock marks the run") {
+  const auto [shape, below, above] =
+      GENERATE(table<Numerics::Shape, double, double>({{Numerics::Shape::bspline2, 0.495, 0.496},
+                                                       {Numerics::Shape::linear, 0.45, 0.451},
+                                                       {Numerics::Shape::gimp, 0.45, 0.451}}));
+  Scene scene = scene_of(inertia, Fluid::Law::uniform);
+  scene.numerics.shape = shape;
+  scene.rocks.front().poisson_ratio = below;
+  CHECK(marks(scene, sound_state()).empty());
+  scene.rocks.front().poisson_ratio = above;
+  CHECK(marks(scene, sound_state()) == Names{"incompressibility"});
+}
+
 TEST_CASE("each monitor marks the run beyond its threshold and not below") {
   struct Case {
     const char* monitor;
