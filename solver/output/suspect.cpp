@@ -115,6 +115,24 @@ void watch_locking(const Scene& scene, std::vector<Watched>& out) {
                  "rock is so nearly incompressible that functions of this order lock: it is too stiff"});
 }
 
+// Quadratic B-splines carry the kink of strain at a bonded border of two rocks over three cells. What they miss there,
+// times the stiff rock's modulus, is stress: 2 % of a layer's mean at a contrast of 10 (4 cells a layer), of the size
+// of the stress itself beside the border at 100, where K_I of a crack 8 cells away is 1.3 % off. Hat functions kink on
+// grid lines.
+void watch_contrast(const Scene& scene, std::vector<Watched>& out) {
+  if (scene.numerics.shape != Numerics::Shape::bspline2) return;
+  double most = 1.0;
+  for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
+    if (scene.laws[scene.strata.interfaces[k].law].kind != InterfaceLaw::Kind::perfect) continue;
+    const double a = scene.rocks[scene.strata.layers[k].rock].youngs_modulus_Pa;
+    const double b = scene.rocks[scene.strata.layers[k + 1].rock].youngs_modulus_Pa;
+    most = std::max({most, a / b, b / a});
+  }
+  out.push_back({"stiffness_contrast", most, 30.0,
+                 "rocks bonded to each other differ so much in stiffness that stresses within three cells of their "
+                 "border are of no worth"});
+}
+
 }  // namespace
 
 double courant_limit(Numerics::Shape shape) {
@@ -136,6 +154,7 @@ std::vector<Watched> watched(const Scene& scene, const State& state) {
   watch_growth(state, out);
   watch_contact(scene, state, out);
   watch_locking(scene, out);
+  watch_contrast(scene, out);
   return out;
 }
 

@@ -217,6 +217,21 @@ TEST_CASE("rock so nearly incompressible that the shape's functions lock marks t
   CHECK(marks(scene, sound_state()) == Names{"incompressibility"});
 }
 
+TEST_CASE("bonded rocks of stiffnesses too far apart mark the run") {
+  Scene scene = scene_of(inertia, Fluid::Law::uniform);
+  const double factor = GENERATE(30.5, 1.0 / 30.5);
+  scene.laws.resize(1);
+  scene.laws[0].kind = InterfaceLaw::Kind::perfect;
+  scene.rocks = {scene.rocks.front(), scene.rocks.front()};
+  scene.strata.layers = {{0, 0.0, 1.0}, {1, 1.0, 2.0}};
+  scene.strata.interfaces = {{0, 1.0}};
+  CHECK(marks(scene, sound_state()).empty());
+  scene.rocks[1].youngs_modulus_Pa *= factor;
+  CHECK(marks(scene, sound_state()) == Names{"stiffness_contrast"});
+  scene.numerics.shape = Numerics::Shape::linear;
+  CHECK(marks(scene, sound_state()).empty());
+}
+
 TEST_CASE("each monitor marks the run beyond its threshold and not below") {
   struct Case {
     const char* monitor;

@@ -27,11 +27,10 @@ def point(label: str, friction: float, sides: str, beyond: bool) -> Point:
 FAMILIES = (
     Family(
         name="mechanism", title="Loaded edges and an interface without friction, without inertia",
-        says="Parts that nothing holds end the run with exit status 3 and its reason; held sides or a bond keep it whole.",
-        parameter=Parameter("strength: none, bonded"),
+        says="Parts that nothing holds end the run with exit status 3 and its reason; held sides keep it whole.",
+        parameter=Parameter("residual friction"),
         points=(
             point("loaded, none", 0.0, "traction", True), point("held, none", 0.0, "fixed", False),
-            Point("loaded, bonded", 1.0, SCENE, ("domain.sides=traction", "strata.interfaces=[\"perfect\"]", "output.fields_every_s=4"), "free", beyond=False),
         ),
         check=held, beyond=(FAILED,), section="Mechanisms",
         about="Where the sides are loaded and an interface has failed without friction, its two sides can move against each other freely: the"

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from verification.harness.load import Run
 from verification.stability.cracks import AT_REST, CRACK
 from verification.stability.families.tip_places import LAYERS, bonded_K, near_setting, spring_K
-from verification.stability.family import Checked, Family, Parameter, Point, close
+from verification.stability.family import REFUSED, Checked, Family, Parameter, Point, close
 
 RINGS = (3.0, 4.0, 5.0, 6.0, 8.0, 12.0)
 GAP_CELLS = 6.0
@@ -36,13 +36,14 @@ def within(check: Callable[[Run], Checked]) -> Callable[[Run], Checked]:
 def family(kind: str, how: str, check: Callable[[Run], Checked]) -> Family:
     """Rings of growing radius near an interface."""
     points = tuple(
-        Point(f"{ring:g} cells", ring, CRACK, (*AT_REST, *LAYERS[kind], *near_setting(GAP_CELLS), f"numerics.ring_cells={ring}"), smoke=ring == 8.0)
+        Point(f"{ring:g} cells", ring, CRACK, (*AT_REST, *LAYERS[kind], *near_setting(GAP_CELLS), f"numerics.ring_cells={ring}"), smoke=ring == 8.0,
+              beyond=ring > 8.0)
         for ring in RINGS
     )
     return Family(
         name=f"rings_{kind}", title=f"Rings for J towards an interface 6 cells ahead: {how}",
-        says="K and J stay those of the integral equation: a ring never reaches over the interface.",
-        parameter=Parameter("radius asked for", "cells"), points=points, check=within(check),
+        says="K and J stay those of the integral equation: a ring never reaches over the interface; rings of more than 8 cells are refused.",
+        parameter=Parameter("radius asked for", "cells"), points=points, check=within(check), beyond=(REFUSED,),
         section="Rings for J across interfaces", about=ABOUT,
     )  # fmt: skip
 

@@ -19,7 +19,7 @@ from verification.stability.cracks import (
     sneddon_opening,
     upper_tip,
 )
-from verification.stability.family import MARKED, STABLE, Checked, Family, Parameter, Point, close
+from verification.stability.family import MARKED, Checked, Family, Parameter, Point, close
 
 SECTION = "Rock: Poisson's ratio to 0.4999, stiffness contrast to 1e4"
 ABOUT = (
@@ -67,7 +67,7 @@ def bonded_K(run: Run) -> Checked:
         settings |= {f"{prefix}{key}": float(rock[key]) for key in ("youngs_modulus_Pa", "poisson_ratio")}
     near, far = (value("bonded_normal", name, **settings) for name in ("K_I_near", "K_I_far"))
     lower = min(run.summary.tips, key=lambda tip: tip.y_m)
-    return worse(close(upper_tip(run).K_I_Pa_sqrt_m, near, 0.02, "K_I, near tip"), close(lower.K_I_Pa_sqrt_m, far, 0.02, "K_I, far tip"))
+    return worse(close(upper_tip(run).K_I_Pa_sqrt_m, near, 0.01, "K_I, near tip"), close(lower.K_I_Pa_sqrt_m, far, 0.01, "K_I, far tip"))
 
 
 def contrast(held_by: str, cells: float = 8.0) -> Family:
@@ -76,13 +76,14 @@ def contrast(held_by: str, cells: float = 8.0) -> Family:
     top = MIDDLE_M - 0.25 * cells
     place = (path_setting((MIDDLE_M, top - 10.0), (MIDDLE_M, top)), "numerics.cell_m=0.25", "numerics.far_cell_m=1")
     points = tuple(
-        Point(f"{ratio:g}", ratio, CRACK, (*AT_REST, *layers, *place, f"rock.soft.youngs_modulus_Pa={10.0e9 / ratio!r}"), smoke=ratio in (10.0, 1e4), beyond=False)
+        Point(f"{ratio:g}", ratio, CRACK, (*AT_REST, *layers, *place, f"rock.soft.youngs_modulus_Pa={10.0e9 / ratio!r}"), smoke=ratio in (10.0, 1e4),
+              beyond=ratio > 30.0)
         for ratio in CONTRASTS
     )
     return Family(
         name=f"contrast_in_{held_by}", title=f"Stiffness contrast to 1e4: a crack in the {held_by} rock, {cells:g} cells from the other",
         says="K_I of both tips is that of the integral equation.", parameter=Parameter("stiff over soft modulus", log=True), points=points,
-        check=bonded_K, section=SECTION, beyond=(STABLE,),
+        check=bonded_K, section=SECTION, beyond=(MARKED,),
         remark="Beside a rock that is 100 times as stiff and more the near K_I of a crack in the soft one is 1.3 to 1.8 % too small at 0.25 m cells:"
                " quadratic splines round the kink of strain off at the interface. It halves with the cell.",
     )  # fmt: skip
@@ -107,21 +108,17 @@ def shared_load(run: Run) -> Checked:
     return worse(*checks)
 
 
-def width(ratio: float) -> float:
-    """So wide a stack that its middle knows nothing of its sides: the layers share their load over a length that goes with sqrt(ratio), m."""
-    return 8.0 * round(20.0 + 12.0 * ratio**0.5)
-
-
 def stack() -> Family:
     """Bonded layers under edge tractions."""
     scene = CRACK.parents[2] / "analytic" / "loaded_layers.toml"
     points = tuple(
-        Point(f"{ratio:g}", ratio, scene, (f"rock.soft.youngs_modulus_Pa={10.0e9 / ratio!r}", f"domain.width_m={width(ratio)}"), smoke=ratio == 10.0)
+        Point(f"{ratio:g}", ratio, scene, (f"rock.soft.youngs_modulus_Pa={10.0e9 / ratio!r}", "numerics.cell_m=0.5"), smoke=ratio in (10.0, 1e4),
+              beyond=ratio > 30.0)
         for ratio in CONTRASTS
     )
     return Family(
-        name="contrast_layers", title="Stiffness contrast to 1e4: two layers under one load", says="Each layer bears its share by stiffness.",
-        parameter=Parameter("stiff over soft modulus", log=True), points=points, check=shared_load, section=SECTION,
+        name="contrast_layers", title="Stiffness contrast to 1e4: two layers under one load", says="Each layer bears its share by stiffness, or the run says that its rocks differ too much.",
+        parameter=Parameter("stiff over soft modulus", log=True), points=points, check=shared_load, beyond=(MARKED,), section=SECTION,
     )  # fmt: skip
 
 
