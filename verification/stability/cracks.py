@@ -12,11 +12,12 @@ CRACK = SCENES / "crack.toml"
 NET_PA = 0.3e6  # the scenes' pressure above their closing stress
 HALF_LENGTH_M = 5.0
 MIDDLE_M = 16.0  # of the scenes' block
-UNUSED_ROCK = "needs every rock of the scene in a layer"
 
 AT_REST = ("numerics.mechanics=quasistatic", "stop.time_s=0")
 # The same crack settled by damping, near twice the slowest mode that matters.
-SETTLING = ("numerics.mechanics=explicit", "numerics.kinematics=total", "numerics.damping_1_s=40", "stop.time_s=0.8", "output.fields_every_s=0.8")
+SETTLING = (
+    "numerics.mechanics=explicit", "numerics.kinematics=total", "numerics.damping_1_s=40", "stop.time_s=0.8", "output.fields_every_s=0.8",
+)  # fmt: skip
 
 
 def path_setting(*points: tuple[float, float]) -> str:

@@ -47,7 +47,8 @@ def together(point: Point) -> Checked:
 
 STAGGERED = Family(
     name="staggered", title="Flow and rock one after the other: a model of its own",
-    says="A lagged step lets an error grow by the eigenvalue of its map, thousands of times at 0.1 ms; solved together no error grows.",
+    says="A lagged step lets an error grow by the eigenvalue of its map, thousands of times at 0.1 ms; solved together no"
+         " error grows.",
     parameter=Parameter("time step", "s", log=True),
     points=(
         *(Point(f"lagged {dt:g} s", dt, CRACK, program="lagged", smoke=dt == 1e-4) for dt in STEPS_S),
@@ -55,8 +56,10 @@ STAGGERED = Family(
     ),
     check=lambda run: close(1.0, 1.0, 0.1), check_name="relative difference", ways={"lagged": lagged, "together": together},
     section="Flow that conserves mass, with the rock",
-    about="A fracture's fluid is stored in its opening, and the opening answers the pressure at once: a step that takes the opening of the pressure"
-          " before and looks for a pressure that stores the fluid there overshoots by as much as the rock is softer than the fluid. The lagged"
+    about="A fracture's fluid is stored in its opening, and the opening answers the pressure at once: a step that takes"
+          " the opening of the pressure"
+          " before and looks for a pressure that stores the fluid there overshoots by as much as the rock is softer than"
+          " the fluid. The lagged"
           " model is Sneddon's crack under 0.3 MPa with 20 cells; the solver finds both in one system.",
 )  # fmt: skip
 
@@ -94,7 +97,8 @@ def with_total(point: Point) -> Checked:
 
 BACKGROUND = Family(
     name="background", title="J where both in-situ stresses act, P = s_h: nothing may happen",
-    says="J is 0 to round-off. In a model of its own with total stresses K by J is off by 8 to 22 %, by another amount in each ring.",
+    says="J is 0 to round-off. In a model of its own with total stresses K by J is off by 8 to 22 %, by another amount in"
+         " each ring.",
     parameter=Parameter("radius of the ring in the models; of the solver 4", "cells"),
     points=(
         Point("line", 4.0, CRACK, (*AT_REST, *CLOSED), smoke=True),
@@ -107,7 +111,8 @@ BACKGROUND = Family(
     ),
     check=J_nothing, check_name="J over 1e-12 J_c; of the models the error of K", ways={"changes": with_prestress, "total": with_total},
     section="J with background stress",
-    about="The fluid carries the in-situ stress and a little more. Codes that let both act in full subtract two large numbers in J: what they are"
+    about="The fluid carries the in-situ stress and a little more. Codes that let both act in full subtract two large"
+          " numbers in J: what they are"
           " off by has no relation to J. Here points hold the change of stress, and faces the net pressure.",
 )  # fmt: skip
 

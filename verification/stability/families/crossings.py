@@ -20,7 +20,8 @@ from verification.stability.family import MARKED, REFUSED, STABLE, Checked, Fami
 
 SECTION = "Fractures that cross interfaces, corners, edges"
 ABOUT = (
-    "Where a fracture crosses an interface nodes have up to four copies, and the smaller the angle the less rock some of them have. Other codes"
+    "Where a fracture crosses an interface nodes have up to four copies, and the smaller the angle the less rock some of"
+    " them have. Other codes"
     " give a fracture a segment of no length there, turn it back, or let the energy grow without bound."
 )
 CROSSING_M = 13.0  # half length of these cracks: at 20 degrees their tips are 4.4 cells from the interface
@@ -58,7 +59,8 @@ def crossing(name: str, title: str, keys: tuple[str, ...]) -> Family:
         for angle in (*ANGLES, *(180.0 - angle for angle in ANGLES[1:]))
     )
     return Family(
-        name=f"crossing_{name}", title=title, says="An interface that nothing moves has no effect: K_I is that of the crack in one rock, whatever the angle.",
+        name=f"crossing_{name}", title=title,
+        says="An interface that nothing moves has no effect: K_I is that of the crack in one rock, whatever the angle.",
         parameter=Parameter("angle between fracture and interface", "degrees"), points=points, check=no_effect, beyond=(STABLE, MARKED),
         section=SECTION, about=ABOUT, flag=tips_are_near,
     )  # fmt: skip
@@ -102,7 +104,8 @@ def gap_point(gap: float) -> Point:
 
 CLOSE = Family(
     name="interfaces_close", title="Two interfaces closer than a cell",
-    says="Springs in series, D1 D2/(D1 + D2), however near; where the upper one is neither on a grid line nor at mid-cell the scene is refused.",
+    says="Springs in series, D1 D2/(D1 + D2), however near; where the upper one is neither on a grid line nor at mid-cell"
+         " the scene is refused.",
     parameter=Parameter("distance of the interfaces", "cells"), points=tuple(gap_point(gap) for gap in GAPS), check=hanging, beyond=(REFUSED,),
     section=SECTION,
 )  # fmt: skip

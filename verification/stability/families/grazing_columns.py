@@ -16,14 +16,18 @@ from verification.stability.cracks import (
 )
 from verification.stability.family import Checked, Family, Parameter, Point, close
 
-# Of the crack's middle from a grid line: columns of particles, 4 x 4 in cells of 1 m, are at 0.125 and 0.375. As many of these places as
+# Of the crack's middle from a grid line: columns of particles, 4 x 4 in cells of 1 m, are at 0.125 and 0.375. As many of these
+# places as
 # not made a crack open 1.2 to 30 times too far before light copies took no load.
 OFFSETS_M = (0.2, 0.3, 0.375, 0.385, 0.405, 0.475, 0.5, 0.51, 0.53)
 
 ABOUT = (
-    "Beside a fracture nodes have a copy for each side. Where the fracture leans against the grid by little, it leaves some copies with a"
-    " particle or two in the corner of their reach, while its faces there are a metre long: they bore a hundred times the fluid's pressure, and K by J and"
-    " the opening were worthless without a sign of it. Such copies take no load now (solver/state/light_copies.hpp): jump and traction leave"
+    "Beside a fracture nodes have a copy for each side. Where the fracture leans against the grid by little, it leaves"
+    " some copies with a"
+    " particle or two in the corner of their reach, while its faces there are a metre long: they bore a hundred times the"
+    " fluid's pressure, and K by J and"
+    " the opening were worthless without a sign of it. Such copies take no load now (solver/state/light_copies.hpp): jump"
+    " and traction leave"
     " them out alike, their particles follow the rock beside."
 )
 

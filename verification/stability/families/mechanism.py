@@ -33,7 +33,8 @@ FAMILIES = (
             point("loaded, none", 0.0, "traction", True), point("held, none", 0.0, "fixed", False),
         ),
         check=held, beyond=(FAILED,), section="Mechanisms",
-        about="Where the sides are loaded and an interface has failed without friction, its two sides can move against each other freely: the"
+        about="Where the sides are loaded and an interface has failed without friction, its two sides can move against"
+              " each other freely: the"
               " equations are singular. Nothing is regularised silently.",
     ),
 )  # fmt: skip

@@ -11,8 +11,10 @@ from verification.stability.family import REFUSED, Checked, Family, Parameter, P
 RINGS = (3.0, 4.0, 5.0, 6.0, 8.0, 12.0)
 GAP_CELLS = 6.0
 ABOUT = (
-    "J does not depend on its path only where nothing but one rock and the crack is inside. A ring that reaches over another rock, a face that"
-    " slides or a spring gives another J for each radius, without a sign of it but the spread. Here the widest ring that is asked for grows past"
+    "J does not depend on its path only where nothing but one rock and the crack is inside. A ring that reaches over"
+    " another rock, a face that"
+    " slides or a spring gives another J for each radius, without a sign of it but the spread. Here the widest ring that"
+    " is asked for grows past"
     " an interface 6 cells ahead of the tip: rings end a cell before it, whatever is asked for."
 )
 
@@ -42,7 +44,8 @@ def family(kind: str, how: str, check: Callable[[Run], Checked]) -> Family:
     )
     return Family(
         name=f"rings_{kind}", title=f"Rings for J towards an interface 6 cells ahead: {how}",
-        says="K and J stay those of the integral equation: a ring never reaches over the interface; rings of more than 8 cells are refused.",
+        says="K and J stay those of the integral equation: a ring never reaches over the interface; rings of more than 8"
+             " cells are refused.",
         parameter=Parameter("radius asked for", "cells"), points=points, check=within(check), beyond=(REFUSED,),
         section="Rings for J across interfaces", about=ABOUT,
     )  # fmt: skip

@@ -23,7 +23,8 @@ from verification.stability.family import MARKED, Checked, Family, Parameter, Po
 
 SECTION = "Rock: Poisson's ratio to 0.4999, stiffness contrast to 1e4"
 ABOUT = (
-    "Elements of low order lock as Poisson's ratio comes near 0.5: the rock seems too stiff. Rocks whose stiffnesses are a factor of 1e4 apart ask"
+    "Elements of low order lock as Poisson's ratio comes near 0.5: the rock seems too stiff. Rocks whose stiffnesses are"
+    " a factor of 1e4 apart ask"
     " for equations with as much more range."
 )
 
@@ -49,7 +50,8 @@ def poisson(name: str, keys: tuple[str, ...], how: str, ratios: tuple[float, ...
         for ratio in ratios
     )
     return Family(
-        name=f"poisson{name}", title=f"Poisson's ratio to {ratios[-1]:g}, {how}", says="K_I and the opening are those of the closed form, or the run says that its functions lock.",
+        name=f"poisson{name}", title=f"Poisson's ratio to {ratios[-1]:g}, {how}",
+        says="K_I and the opening are those of the closed form, or the run says that its functions lock.",
         parameter=Parameter("0.5 less Poisson's ratio", log=True), points=points, check=K_and_opening, beyond=(MARKED,), section=SECTION, about=ABOUT,
     )  # fmt: skip
 
@@ -84,7 +86,8 @@ def contrast(held_by: str, cells: float = 8.0) -> Family:
         name=f"contrast_in_{held_by}", title=f"Stiffness contrast to 1e4: a crack in the {held_by} rock, {cells:g} cells from the other",
         says="K_I of both tips is that of the integral equation.", parameter=Parameter("stiff over soft modulus", log=True), points=points,
         check=bonded_K, section=SECTION, beyond=(MARKED,),
-        remark="Beside a rock that is 100 times as stiff and more the near K_I of a crack in the soft one is 1.3 to 1.8 % too small at 0.25 m cells:"
+        remark="Beside a rock that is 100 times as stiff and more the near K_I of a crack in the soft one is 1.3 to 1.8 %"
+               " too small at 0.25 m cells:"
                " quadratic splines round the kink of strain off at the interface. It halves with the cell.",
     )  # fmt: skip
 
@@ -104,7 +107,8 @@ def shared_load(run: Run) -> Checked:
     checks = []
     for k, stress in enumerate(exact):
         inside = middle & (np.abs(particles["y_m"] - (sum(thickness[:k]) + 0.5 * thickness[k])) < 1.0)
-        checks.append(close(float(np.mean(particles["s_xx_Pa"][inside])), float(stress), 0.02, f"stress in layer {k}", scale=float(np.max(np.abs(exact)))))
+        checks.append(close(float(np.mean(particles["s_xx_Pa"][inside])), float(stress), 0.02, f"stress in layer {k}",
+                            scale=float(np.max(np.abs(exact)))))
     return worse(*checks)
 
 
@@ -117,7 +121,8 @@ def stack() -> Family:
         for ratio in CONTRASTS
     )
     return Family(
-        name="contrast_layers", title="Stiffness contrast to 1e4: two layers under one load", says="Each layer bears its share by stiffness, or the run says that its rocks differ too much.",
+        name="contrast_layers", title="Stiffness contrast to 1e4: two layers under one load",
+        says="Each layer bears its share by stiffness, or the run says that its rocks differ too much.",
         parameter=Parameter("stiff over soft modulus", log=True), points=points, check=shared_load, beyond=(MARKED,), section=SECTION,
     )  # fmt: skip
 

@@ -27,8 +27,10 @@ SECTION = "Tips: within a cell, near an interface, near an edge"
 # --- within a cell
 SHARES = (0.0, 0.001, 0.01, 0.03, 0.1, 0.25, 0.5, 0.75, 0.9, 0.97, 0.99, 0.999, 1.0)
 ABOUT = (
-    "A tip within a cell: nodes split behind it only, so that K would jump by 6 % from one row of nodes to the next; a spring at the last row"
-    " (tip tie) carries what is left of the cell. Near an interface no ring for J fits between the tip's own error and the other rock: from 4 cells"
+    "A tip within a cell: nodes split behind it only, so that K would jump by 6 % from one row of nodes to the next; a"
+    " spring at the last row"
+    " (tip tie) carries what is left of the cell. Near an interface no ring for J fits between the tip's own error and the"
+    " other rock: from 4 cells"
     " on down K is flagged. Near an edge of the block the same, from 3.5 cells on down."
 )
 
@@ -115,7 +117,8 @@ def near_interface(kind: str, how: str, check: Callable[[Run], Checked]) -> Fami
         says="K is that of the integral equation within 1 %, or it is flagged.",
         parameter=Parameter("distance of the tip from the interface", "cells", log=True), points=points, check=check, beyond=(MARKED,),
         edge=Edge(
-            "Rings for J have an outer radius of 2.5 cells at least, lest the tip's own error fill them, and end a cell before the interface,"
+            "Rings for J have an outer radius of 2.5 cells at least, lest the tip's own error fill them, and end a cell"
+            " before the interface,"
             " where functions reach over it; with half a cell to spare: 4.",
             predicted=lambda: 4.0, at=at, bracket=(6.0, 2.0), unsound_above=False,
         ),

@@ -1,9 +1,8 @@
-"""A crack whose faces carry as much as the in-situ stress in the rock, by a small particle model of its own, with the total stress in all balances.
+"""J of a crack under fluid pressure and in-situ stress, by a small particle model of its own: from changes of stress, and from total stress.
 
-Linear hat functions, 2 x 2 points a cell, a crack along x = middle that splits the nodes behind its tips, as codes of the study's family have it: the
-rock starts under the in-situ stress, the fluid presses on the faces with its whole pressure, J is summed from total stress. In the continuum nothing
-happens at P = s_h. Here the in-situ stress, summed over the points of a copy whose reach goes past the tip, is not what the faces behind the tip carry,
-and the difference moves the crack.
+Linear hat functions, 2 x 2 points a cell, a crack along x = middle that splits the nodes behind its tips, as codes of the study's family have
+it. From total stress, total strain and the whole pressure J is a small difference of large terms, of which a ring's points sum each to some per cent
+only; from changes of stress and the net pressure these terms are not there.
 """
 from __future__ import annotations
 
