@@ -13,6 +13,7 @@ and dt is the longest for which no eigenvalue of that map is larger than 1. For 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,6 +56,17 @@ def hat_integral(x: Array) -> Array:
     return np.where(y < 0.0, 0.5 * (1.0 + y) ** 2, 1.0 - 0.5 * (1.0 - y) ** 2)
 
 
+def weights_of(block: Block) -> tuple[Array, Array, Array, Array, Array]:
+    """N, N_x, N_y of all points (rows) and nodes, and the points' places, cells."""
+    n, across = block.cells, block.across
+    nodes = np.arange(-1, n + 2, dtype=float)
+    places = (np.arange(n * across) + 0.5) / across
+    N_x, D_x = line_weights(block.shape, places[:, None] + block.shift[0] - nodes[None, :], 0.5 / across)
+    N_y, D_y = line_weights(block.shape, places[:, None] + block.shift[1] - nodes[None, :], 0.5 / across)
+    x, y = np.tile(places, len(places)), np.repeat(places, len(places))
+    return np.kron(N_y, N_x), np.kron(N_y, D_x), np.kron(D_y, N_x), x, y
+
+
 @dataclass(frozen=True)
 class Matrices:
     """M^-1 K (in units of (c_P/h)^2) and S of a block, of the motions that its edges leave free."""
@@ -65,21 +77,15 @@ class Matrices:
 
 def matrices(block: Block, poisson: float) -> Matrices:
     """Both of a block of a rock with a Poisson's ratio, of density 1 and P wave speed 1."""
-    n, across = block.cells, block.across
-    nodes = np.arange(-1, n + 2, dtype=float)
-    places = (np.arange(n * across) + 0.5) / across
-    half = 0.5 / across
-    N_x, D_x = line_weights(block.shape, places[:, None] + block.shift[0] - nodes[None, :], half)
-    N_y, D_y = line_weights(block.shape, places[:, None] + block.shift[1] - nodes[None, :], half)
-    N, G_x, G_y = np.kron(N_y, N_x), np.kron(N_y, D_x), np.kron(D_y, N_x)
+    N, G_x, G_y, _, _ = weights_of(block)
     shear = (1.0 - 2.0 * poisson) / (2.0 * (1.0 - poisson))  # mu/(lambda + 2 mu), which is (c_S/c_P)^2
     direct, coupling = 1.0, 1.0 - 2.0 * shear
-    V = 1.0 / across**2
+    V = 1.0 / block.across**2
     zero = np.zeros_like(N)
     B = np.vstack([np.hstack([G_x, zero]), np.hstack([zero, G_y]), np.hstack([G_y, G_x])])
     C = np.kron(np.array([[direct, coupling, 0.0], [coupling, direct, 0.0], [0.0, 0.0, shear]]), np.eye(N.shape[0]))
     NN = np.vstack([np.hstack([N, zero]), np.hstack([zero, N])])
-    keep = free_motions(n, block.held)
+    keep = free_motions(block.cells, block.held)
     m = V * np.abs(keep).T @ NN.sum(axis=0)  # a mirror adds its mass to the node that it mirrors, in both directions
     B, NN = B @ keep, NN @ keep
     used = m > 1e-14
@@ -130,3 +136,28 @@ def courant_limit(block: Block, transfer: str, poisson: float) -> float:
         middle = 0.5 * (low + high)
         low, high = (middle, high) if growth(found, transfer, middle) < 1.0 + 1e-7 else (low, middle)
     return low
+
+
+def plane_mode(block: Block, poisson: float, mode: int) -> tuple[float, float]:
+    """(omega h/c_P)^2 and S of the motion sin(mode pi x/L) along x in a held block, which it is a mode of."""
+    found, n = matrices(block, poisson), block.cells
+    along = np.sin(mode * math.pi * np.arange(1, n) / n)
+    motion = np.concatenate([np.tile(along, n + 1), np.zeros((n + 1) * (n - 1))])
+    size = float(motion @ motion)
+    return float(motion @ found.stiffness @ motion) / size, float(motion @ found.smoothing @ motion) / size
+
+
+def amplitude_factor(transfer: str, z: float, S: float) -> float:
+    """What a step makes of a mode's amplitude, z = (omega dt)^2: the root of the determinant of its 2 x 2 map, whose eigenvalues are a pair."""
+    determinant = {"total": 1.0, "flip": 1.0 - (1.0 - S) * z, "pic": S, "xpic2": 2.0 * S - S**2 - z * (S - S**2)}[transfer]
+    return math.sqrt(determinant)
+
+
+def null_share(block: Block, start: Callable[[Array, Array], tuple[Array, Array]]) -> float:
+    """Share of the points' kinetic energy, of velocities start(x, y), that no velocity of the nodes makes: v less its projection on N."""
+    N, _, _, x, y = weights_of(block)
+    zero = np.zeros_like(N)
+    NN = np.vstack([np.hstack([N, zero]), np.hstack([zero, N])]) @ free_motions(block.cells, block.held)
+    v = np.concatenate(start(x, y))
+    rest = v - NN @ np.linalg.lstsq(NN, v, rcond=None)[0]
+    return float(rest @ rest) / float(v @ v)

@@ -1,0 +1,90 @@
+"""The time rules of the study's flow beyond their limits: explicit steps, trapezoid ringing, backward Euler; and closing channels."""
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from verification.harness.load import LoadError, Run, frames
+from verification.harness.paths import ROOT
+from verification.stability.family import FAILED, STABLE, Checked, Edge, Family, Parameter, Point, close
+from verification.stability.theory.channel import amplification, fastest
+
+SCENE = ROOT / "verification" / "stability" / "scenes" / "flow_step.toml"
+SEGMENTS = 10  # of half a cell each, along 5 m
+PER_NUMBER = 0.001  # viscosity (Pa s) times dt kappa/dx^2: kappa = 1.2e9 Pa (1e-4 m)^2/12/mu, dt = 0.25 ms, dx = 0.5 m
+RULES = {"explicit": 0.0, "trapezoid": 0.5, "backward-euler": 1.0}  # their share of the new state
+SECTION = "Steps of the flow"
+ABOUT = (
+    "Pressure diffuses along a closed channel of constant opening while the inlet's rises at a constant rate. The fastest mode of the channel is"
+    " taken out of the pressures of all time steps by its left eigenvector; the ratio of its second differences in time is what a step makes of it."
+    " Theory: eigenvalues of the same channel, put together in Python (verification/stability/theory/channel.py). Explicit steps grow beyond"
+    " dt kappa/dx^2 = 1/2: such a run ends before its first step, with the limit. The trapezoid is stable at any step, but beyond dt lambda = 2 its"
+    " fastest modes change sign at every step; backward Euler never does."
+)
+
+
+def measured_factor(run: Run) -> float:
+    """What a step makes of the fastest mode, from the pressures of the first steps; raises LoadError where they do not tell."""
+    _, weights = fastest(SEGMENTS)
+    pressures = np.array([fields["pressure_Pa"] for _, fields in frames(run, "fracture")])
+    if pressures.shape[1] != SEGMENTS + 1 or not np.all(np.isfinite(pressures)):
+        raise LoadError(f"{run.folder}: pressures of shape {pressures.shape}, or not finite")
+    change = np.diff(pressures[:, 1:] @ weights, n=2)[:3]  # free of what the ramp itself does
+    return float(np.dot(change[1:], change[:-1]) / np.dot(change[:-1], change[:-1]))
+
+
+def number_of(run: Run) -> float:
+    """dt kappa/dx^2 of a run, by its scene."""
+    return PER_NUMBER / float(run.scene["fluid"]["viscosity_Pa_s"])
+
+
+def check(run: Run) -> Checked:
+    """The factor of the fastest mode against theory."""
+    theta = RULES[str(run.scene["fluid"]["time_rule"])]
+    largest, _ = fastest(SEGMENTS)
+    expected = amplification(number_of(run) * largest, theta)
+    found = measured_factor(run)
+    sign = "changes sign" if found < 0.0 else "keeps its sign"
+    return close(found, expected, 0.03, f"the fastest mode {sign}: times {found:.3f} a step", scale=1.0)
+
+
+def first_sign_change(runs: Mapping[str, Run]) -> float:
+    """dt kappa/dx^2 at which the measured factor passes zero, between the two runs beside it, in z of which (1 - g)/(1 + g) is linear."""
+    found = sorted((number_of(run), measured_factor(run)) for run in runs.values())
+    for (low, before), (high, after) in zip(found, found[1:]):
+        if before > 0.0 >= after:
+            a, b = (1.0 - before) / (1.0 + before), (1.0 - after) / (1.0 + after)
+            return low + (high - low) * (1.0 - a) / (b - a)
+    raise LoadError("the factor does not pass zero")
+
+
+def point(rule: str, number: float, smoke: bool = False) -> Point:
+    """A run at dt kappa/dx^2 under a rule."""
+    return Point(f"{number:.5g}", number, SCENE, (f"fluid.time_rule={rule}", f"fluid.viscosity_Pa_s={PER_NUMBER / number:.8g}"), smoke=smoke)
+
+
+def walk(rule: str, numbers: tuple[float, ...], smoke: tuple[float, ...]) -> tuple[Point, ...]:
+    """Runs of a rule."""
+    return tuple(point(rule, number, number in smoke) for number in numbers)
+
+
+PARAMETER = Parameter("dt kappa/dx^2", log=True)
+NAME = "factor of the fastest mode less that of theory"
+
+FAMILIES = (
+    Family(
+        "flow_explicit", "Steps of the flow: explicit", "Explicit flow steps beyond their limit must not run.", PARAMETER,
+        walk("explicit", (0.1, 0.2, 0.3, 0.4, 0.48, 0.52, 0.6, 1.0, 4.0), (0.4, 0.6)), check, beyond=(FAILED,), section=SECTION, about=ABOUT, check_name=NAME,
+        edge=Edge("2/lambda_max of the channel's matrix, by Python.", lambda: 2.0 / fastest(SEGMENTS)[0], lambda number: point("explicit", number), (0.3, 0.8), 0.002),
+    ),
+    Family(
+        "flow_trapezoid", "Steps of the flow: trapezoid", "The trapezoid's fastest mode changes sign at every step beyond dt lambda = 2, and does not grow.", PARAMETER,
+        walk("trapezoid", (0.1, 0.25, 0.4, 0.6, 1.0, 4.0, 16.0), (0.25, 1.0)), check, beyond=(STABLE,), section=SECTION, check_name=NAME,
+        edge=Edge("Here an edge of ringing, not of stability: the factor (1 - z/2)/(1 + z/2) is zero at z = dt lambda_max = 2.", lambda: 2.0 / fastest(SEGMENTS)[0], read=first_sign_change),
+    ),
+    Family(
+        "flow_backward_euler", "Steps of the flow: backward Euler", "Backward Euler keeps every mode's sign at any step.", PARAMETER,
+        walk("backward-euler", (0.1, 0.4, 1.0, 4.0, 16.0, 64.0), (0.4, 16.0)), check, beyond=(STABLE,), section=SECTION, check_name=NAME,
+    ),
+)  # fmt: skip

@@ -1,0 +1,120 @@
+"""What a hundred thousand steps make of noise and of a wave: null space, damping of the transfers, drift of the energy."""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from verification.harness.load import LoadError, Run
+from verification.harness.paths import ROOT
+from verification.stability.family import MARKED, STABLE, Checked, Family, Parameter, Point, at_most, close
+from verification.stability.theory.step_limit import Block, amplitude_factor, null_share, plane_mode
+
+SCENE = ROOT / "verification" / "stability" / "scenes" / "time_step.toml"
+POISSON, CELLS, COURANT = 0.2, 6, 0.5
+STEP_S = COURANT * math.sqrt(2500.0 / 1.0e10 * 1.2 * 0.6 / 0.8)  # of the scene: h/c_P of 1 m cells
+WAYS = {"total": "nodes keep velocities", "flip": "FLIP", "pic": "PIC", "xpic2": "XPIC(2)"}
+MOST_DRIFT = 0.01  # of the energy in 1e5 steps: what the mean over half a thousand rows leaves of the swing
+STEPS = (100, 1000, 10000, 100000)
+
+ABOUT_NOISE = (
+    "Velocities without a pattern in a block whose edges are held. Where points carry them, most of that noise is in what the grid does not see (the null"
+    " space of the map to the nodes): FLIP keeps it for ever and damps the rest, PIC and XPIC(2) drop it in the first step. Predicted, by the same"
+    " block in Python: the energy of the noise less its projection on the grid. Where nodes keep the velocities there is no such space, and the"
+    " energy stays what it was but for its swing between steps."
+)
+ABOUT_WAVE = (
+    "A standing wave of half a period to three periods along the held block. A step multiplies its amplitude by the size of the eigenvalue of the step's"
+    " map: 1 where nodes keep velocities, S^(1/2) for PIC, (2 S - S^2 - z (S - S^2))^(1/2) for XPIC(2), (1 - (1 - S) z)^(1/2) for FLIP, with S what a"
+    " transfer to the points and back leaves of it and z = (omega dt)^2, both of the same block put together in Python. Kinetic energy is of the middle of a step and strain energy of its end, so their sum swings by a"
+    " share of omega dt with twice the wave's frequency; runs whose wave is short are marked for that swing (energy_made), though nothing is lost or made."
+)
+
+
+def settings(way: str, time_s: float, rows: int = 50) -> tuple[str, ...]:
+    """A transfer (or total) and how long the run is."""
+    kinematics, transfer = ("total", "flip") if way == "total" else ("updated", way)
+    return (f"numerics.kinematics={kinematics}", f"numerics.transfer={transfer}", f"stop.time_s={time_s:.8g}", f"output.fields_every_s={time_s / rows:.8g}")
+
+
+def way_of(run: Run) -> str:
+    """The transfer of a run, or total."""
+    numerics = run.scene["numerics"]
+    return "total" if numerics["kinematics"] == "total" else str(numerics["transfer"])
+
+
+def start(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The scene's noise, m/s."""
+    return 1e-6 * np.sin(1e4 * x + 3e4 * y * y + 1.0), 1e-6 * np.sin(2e4 * y + 5e4 * x * x + 2.0)
+
+
+def check_noise(run: Run) -> Checked:
+    """The energy left against what no grid sees of the noise, or of all that nodes have seen where they keep it."""
+    energy, way = run.summary.energy, way_of(run)
+    if way == "total":
+        kept = (energy["kinetic_J"] + energy["strain_J"]) / energy["initial_kinetic_J"]
+        return at_most(kept, 1.0, f"{kept:.2g} of the points' energy, within its swing")
+    left = (energy["kinetic_J"] + energy["strain_J"]) / energy["initial_kinetic_J"]
+    if way != "flip":
+        return at_most(left, 0.2 if run.summary.steps < 1000 else 0.02, f"{left:.2g} of the energy is left")
+    share = null_share(Block("bspline2", 2, CELLS, True), start)
+    return close(left, share, 0.05 if run.summary.steps < 1000 else 0.005, f"{left:.4f} of the energy is left, the null space has {share:.4f}")
+
+
+def loss_a_step(run: Run, unseen_J: float) -> float:
+    """Share of the energy lost in a step, from its fall along the history; unseen_J: what no grid sees of it and FLIP keeps."""
+    energy = run.history["kinetic_J"] + run.history["strain_J"] - unseen_J
+    if len(energy) < 10 or not np.all(energy > 0.0):
+        raise LoadError(f"{run.folder}: no energies to follow")
+    slope = np.polyfit(run.history["time_s"], np.log(energy), 1)[0]
+    return float(-slope) * run.summary.time_s / run.summary.steps
+
+
+def drift(run: Run) -> float:
+    """Change of the energy from the first to the second half of a run, as a share of it; the mean of many rows is free of its swing."""
+    energy = run.history["kinetic_J"] + run.history["strain_J"]
+    half = len(energy) // 2
+    return float(np.mean(energy[-half:]) / np.mean(energy[:half]) - 1.0)
+
+
+def check_wave(run: Run) -> Checked:
+    """The loss of energy a step against theory; where there is none, over the whole run."""
+    mode = round(float(str(run.scene["initial"]["velocity_m_s"][0]).split("sin(")[1].split("*")[0]))
+    stiffness, smoothing = plane_mode(Block("bspline2", 2, CELLS, True), POISSON, mode)
+    if way_of(run) == "total":
+        found = drift(run)
+        return at_most(abs(found), MOST_DRIFT, f"energy drifts by {found:.1e} of itself in {run.summary.steps} steps")
+    expected = -2.0 * math.log(amplitude_factor(way_of(run), COURANT**2 * stiffness, smoothing))
+    share = null_share(Block("bspline2", 2, CELLS, True), lambda x, y: (np.sin(mode * math.pi * x / CELLS), 0.0 * y)) if way_of(run) == "flip" else 0.0
+    found = loss_a_step(run, share * run.summary.energy["initial_kinetic_J"])
+    return close(found, expected, 0.03, f"{found:.4g} of the energy lost a step, theory says {expected:.4g}")
+
+
+def noise(way: str) -> Family:
+    """The walk over the number of steps."""
+    points = tuple(Point(f"{steps}", float(steps), SCENE, settings(way, steps * STEP_S), "held", smoke=steps == 1000) for steps in STEPS)
+    return Family(
+        f"noise_{way}", f"Noise over 1e5 steps: {WAYS[way]}", "Noise must not grow, and what is left of it is what theory says.", Parameter("steps", log=True),
+        points, check_noise, beyond=(STABLE, MARKED) if way == "total" else (STABLE,), section="Null-space noise over 1e5 steps", about=ABOUT_NOISE, check_name="energy left, less that of theory or over its bound",
+    )  # fmt: skip
+
+
+def wave(way: str) -> Family:
+    """The walk over the wave's length."""
+    points = []
+    for mode in (1, 2, 3):
+        stiffness, smoothing = plane_mode(Block("bspline2", 2, CELLS, True), POISSON, mode)
+        lost = -2.0 * math.log(amplitude_factor(way, COURANT**2 * stiffness, smoothing))
+        steps = 100000 if way == "total" else min(max(4.0 / lost, 60.0), 100000.0)
+        rows = 1000 if way == "total" else 50
+        wave_of = (f'initial.velocity_m_s=["1e-4*sin({mode}*pi*X/6)", "0"]',)
+        points.append(Point(f"mode {mode}", float(mode), SCENE, (*settings(way, steps * STEP_S, rows), *wave_of), "held", smoke=mode == 2 and way != "total" or mode == 1 and way == "flip"))
+    if way == "total":
+        points[0] = Point("mode 1, 1000 steps", 1.0, SCENE, (*settings(way, 1000 * STEP_S, 1000), 'initial.velocity_m_s=["1e-4*sin(1*pi*X/6)", "0"]'), "held", smoke=True)
+    return Family(
+        f"wave_{way}", f"Damping of a wave: {WAYS[way]}", "A standing wave loses by the transfer what theory says, and nothing else.", Parameter("half waves in the block"),
+        tuple(points), check_wave, beyond=(STABLE, MARKED), section="What transfers take from a wave", about=ABOUT_WAVE, check_name="loss of energy a step less that of theory, or drift over 2 %",
+    )  # fmt: skip
+
+
+FAMILIES = (*(noise(way) for way in WAYS), *(wave(way) for way in WAYS))

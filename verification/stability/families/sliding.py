@@ -1,0 +1,72 @@
+"""Stick-slip and chatter: two blocks that are pressed together and pushed past each other."""
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from verification.harness.load import LoadError, Run
+from verification.harness.paths import ROOT
+from verification.stability.family import STABLE, Checked, Edge, Family, Parameter, Point, close
+
+SCENE = ROOT / "verification" / "stability" / "scenes" / "sliding.toml"
+NORMAL_PA, HEIGHT_M, WIDTH_M, DENSITY = 1.0e6, 16.0, 2.0, 2500.0  # of the scene, a block's width
+PUSH_FROM_S, PUSH_M_S3, END_S = 0.05, 2000.0, 0.15
+MOST_PUSH_PA = DENSITY * WIDTH_M * PUSH_M_S3 * (END_S - PUSH_FROM_S)
+READ_FROM = "5"  # the run that slides longest tells best when it began
+
+ABOUT = (
+    "Two blocks are pressed together by 1 MPa and pushed past each other by a body force that rises to 1 MPa on their interface. As rigid blocks they stick"
+    " until the push is mu N; from then on each is pushed by what is left, and the work of friction is mu N times the slip: mu N H 2 (2000 m/s^3) (t -"
+    " t_0)^3/6. The walk is over the coefficient of friction. What waves in the blocks add is of the order of their crossing time, 1 ms, over that of the slide."
+)
+
+
+def slip_m(coefficient: float, time_s: float = END_S) -> float:
+    """Slip of two rigid blocks at a time."""
+    since = time_s - PUSH_FROM_S - coefficient * NORMAL_PA / (DENSITY * WIDTH_M * PUSH_M_S3)
+    return 2.0 * PUSH_M_S3 * max(since, 0.0) ** 3 / 6.0
+
+
+def coefficient_of(run: Run) -> float:
+    """The coefficient of friction of a run."""
+    return float(run.scene["interface"]["rough"]["coefficient"])
+
+
+def check(run: Run) -> Checked:
+    """The work of friction against that of rigid blocks, over what a slide without friction would have made of mu N."""
+    mu = coefficient_of(run)
+    strength = mu * NORMAL_PA * HEIGHT_M
+    found, expected = run.summary.energy["friction_J"], strength * slip_m(mu)
+    return close(found, expected, 0.02, f"work of friction {found:.4g} J/m, of rigid blocks {expected:.4g} J/m", scale=strength * slip_m(0.0))
+
+
+def onset(runs: Mapping[str, Run]) -> float:
+    """Push over mu N at which the slide began: the power of friction rises with the square of the time since then."""
+    run = runs.get(READ_FROM)
+    if run is None:
+        raise LoadError(f"the run {READ_FROM} did not complete")
+    time, energy = run.history["time_s"], run.history["friction_J"]
+    root = np.sqrt(np.maximum(np.diff(energy) / np.diff(time), 0.0))
+    middle = 0.5 * (time[1:] + time[:-1])
+    late = root > 0.2 * root.max()
+    slope, constant = np.polyfit(middle[late], root[late], 1)
+    push = DENSITY * WIDTH_M * PUSH_M_S3 * (-constant / slope - PUSH_FROM_S)
+    return float(push / (coefficient_of(run) * NORMAL_PA))
+
+
+def family(kinematics: str) -> Family:
+    """The walk over the push's largest value by mu N."""
+    points = tuple(
+        Point(f"{ratio:g}", ratio, SCENE, (f"numerics.kinematics={kinematics}", f"interface.rough.coefficient={MOST_PUSH_PA / NORMAL_PA / ratio:.6g}"), smoke=ratio in (0.5, 2.0) and kinematics == "total" or ratio == 2.0)
+        for ratio in (0.5, 0.9, 1.2, 2.0, 3.0, 5.0)
+    )  # fmt: skip
+    return Family(
+        f"sliding_{kinematics}", f"Stick and slip: {'points in their places' if kinematics == 'total' else 'points that move'}",
+        "Blocks stick until the push is mu N, then slide as rigid ones do, and the work of friction is mu N times the slip.",
+        Parameter("largest push over mu N"), points, check, beyond=(STABLE,), section="Contact: stick, slip and chatter", about=ABOUT,
+        check_name="work of friction less that of rigid blocks", edge=Edge("Coulomb: the slide begins at a push of mu N.", lambda: 1.0, read=onset),
+    )  # fmt: skip
+
+
+FAMILIES = (family("total"), family("updated"))
