@@ -138,6 +138,12 @@ def courant_limit(block: Block, transfer: str, poisson: float) -> float:
     return low
 
 
+def damped_limit(undamped: float, damping: float) -> float:
+    """The largest stable c_P dt/h of a leapfrog whose velocity keeps 1 - damping dt a step (damping in c_P/h): (omega dt)^2 <= 4 - 2 damping dt."""
+    half = 0.25 * damping * undamped**2
+    return math.sqrt(half**2 + undamped**2) - half
+
+
 def plane_mode(block: Block, poisson: float, mode: int) -> tuple[float, float]:
     """(omega h/c_P)^2 and S of the motion sin(mode pi x/L) along x in a held block, which it is a mode of."""
     found, n = matrices(block, poisson), block.cells

@@ -1,0 +1,70 @@
+"""Small cut masses: a crack anywhere in a cell leaves copies of nodes with next to no mass on one of its sides."""
+from __future__ import annotations
+
+import math
+
+from verification.harness.load import Run
+from verification.harness.paths import ROOT
+from verification.harness.reference import value
+from verification.stability.family import FAILED, MARKED, STABLE, Checked, Edge, Family, Parameter, Point, close
+from verification.stability.theory.step_limit import Block, courant_limit, damped_limit
+
+SCENE = ROOT / "verification" / "stability" / "scenes" / "cut_mass.toml"
+OFFSETS = (0.01, 0.03, 0.1, 0.2, 0.24, 0.26, 0.3, 0.4, 0.49, 0.5, 0.6, 0.7, 0.74, 0.76, 0.9, 0.97, 0.99)
+MOST = 0.02  # error of K_I at 4 cells a half length, uniform cells
+COURANT = {"total": 1.1, "updated": 0.65}  # a little below what a block without a crack stands
+DAMPING_1_S, SPEED_M_S = 200.0, math.sqrt(1.0e10 / 2500.0 * 0.8 / (1.2 * 0.6))  # of the scene, with cells of 1 m
+SECTION = "Small cut masses as a crack moves through a cell"
+ABOUT = (
+    "A crack of 4 m half length under constant pressure in a block of 1 m cells stands at 0.01 to 0.99 of a cell, and motion is damped until nothing moves. A node"
+    " beside it has a copy on each side, whose mass falls to a ten thousandth of a whole one's as the crack comes to a column of points. K_I is held against"
+    " collocation for the same block (strata-reference block_crack). Small masses come with as small stiffnesses, so the time step is that of a block without a"
+    " crack: its largest eigenvalue, by Python, is the prediction. A step of more than about 0.9 is marked for the swing of the energy between steps."
+)
+
+
+def check(run: Run) -> Checked:
+    """K_I against that of the same block."""
+    domain = run.scene["domain"]
+    settings = {"half_length_m": 4.0, "pressure_Pa": 1.0e6, "width_m": float(domain["width_m"]), "half_height_m": float(domain["height_m"])}
+    expected = value("block_crack", "K_I", **settings)
+    found = run.summary.tips[0].K_I_Pa_sqrt_m
+    return close(found, expected, MOST, f"K_I {1e-6 * found:.4f}, exact {1e-6 * expected:.4f} MPa m^0.5")
+
+
+def settings(kinematics: str, offset: float, courant: float) -> tuple[str, ...]:
+    """The keys of a run."""
+    x = f"{10.0 + offset:g}"
+    return (f"numerics.kinematics={kinematics}", f"fracture.path_m=[[{x}, 0], [{x}, 4]]", f"numerics.courant={courant:.5g}")
+
+
+def walk(kinematics: str) -> Family:
+    """The walk through a cell at a long time step."""
+    points = tuple(Point(f"{offset:g}", offset, SCENE, settings(kinematics, offset, COURANT[kinematics]), smoke=offset in (0.01, 0.49)) for offset in OFFSETS)
+    return Family(
+        f"cut_{kinematics}", f"Crack anywhere in a cell: {'points in their places' if kinematics == 'total' else 'points that move'}, c_P dt/h = {COURANT[kinematics]:g}",
+        "K_I must be right wherever the crack is in its cell, at a time step little below that of a block without a crack.", Parameter("place of the crack in a cell"), points,
+        check, beyond=(STABLE, MARKED), section=SECTION, about=ABOUT, check_name="error of K_I",
+    )  # fmt: skip
+
+
+def longest() -> float:
+    """The longest step of a block without a crack under the scene's damping."""
+    return damped_limit(courant_limit(Block("bspline2", 2), "total", 0.2), DAMPING_1_S / SPEED_M_S)
+
+
+def step(offset: float) -> Family:
+    """The walk over the time step with the crack at a place."""
+    def at(courant: float) -> Point:
+        return Point(f"courant {courant:.5g}", courant, SCENE, settings("total", offset, courant))
+
+    points = tuple(Point(f"{courant:g}", courant, SCENE, settings("total", offset, courant), smoke=courant in (0.9, 1.3) and offset == 0.01 or courant == 1.3)
+                   for courant in (0.5, 0.9, 1.1, 1.3, 1.6))  # fmt: skip
+    return Family(
+        f"cut_step_{100.0 * offset:.0f}", f"Time step with a crack at {offset:g} of a cell", "The longest step is that of the block without a crack.", Parameter("c_P dt/h"), points,
+        check, beyond=(FAILED,), before=(STABLE, MARKED), section=SECTION, check_name="error of K_I",
+        edge=Edge("2/omega_max of M^-1 K of a block without a crack, put together in Python, with the scene's damping: (omega dt)^2 <= 4 - 2 damping dt.", longest, at, (0.9, 1.4)),
+    )  # fmt: skip
+
+
+FAMILIES = (walk("total"), walk("updated"), *(step(offset) for offset in (0.01, 0.24, 0.26, 0.5)))

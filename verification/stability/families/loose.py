@@ -1,0 +1,61 @@
+"""A block cut in two that nothing holds along the cut: with inertia it flies as Newton says, without there is no equilibrium."""
+from __future__ import annotations
+
+import numpy as np
+
+from verification.harness.load import Run, frames
+from verification.harness.paths import ROOT
+from verification.stability.family import FAILED, STABLE, Checked, Family, Parameter, Point, close
+
+SCENE = ROOT / "verification" / "stability" / "scenes" / "loose.toml"
+HEIGHT_M, DENSITY = 4.0, 2500.0  # of the upper block
+PUSHED = 'body.acceleration_m_s2=["Y > 4 ? {0} : {1}", "0"]'
+
+ABOUT = (
+    "An interface without friction cuts a block in two whose sides carry tractions alone, and a body force pushes the parts along it. With inertia the upper"
+    " part moves by a t^2/2, and nothing else happens. Without inertia springs along the cut carry the push, with a mean slip of rho a H/D whatever their"
+    " stiffness D; with none left (drawn at 1 Pa/m) the block is a mechanism, which the solver says, and ends."
+)
+
+
+def slip_m(run: Run) -> float:
+    """Mean slip at the end."""
+    return float(np.mean(np.abs(frames(run, "interfaces")[-1][1]["0/slip_m"])))
+
+
+def check_flight(run: Run) -> Checked:
+    """The slip against a t^2/2."""
+    push = float(str(run.scene["body"]["acceleration_m_s2"][0]).split("?")[1].split(":")[0])
+    expected = 0.5 * push * run.summary.time_s**2
+    return close(slip_m(run), expected, 0.01, f"slip {slip_m(run):.5g} m")
+
+
+def check_springs(run: Run) -> Checked:
+    """The mean slip against rho a H/D."""
+    stiffness = float(run.scene["interface"]["slick"]["shear_stiffness_Pa_m"])
+    return close(slip_m(run), DENSITY * HEIGHT_M / stiffness, 1e-6, f"mean slip {slip_m(run):.5g} m")
+
+
+def flight(push: float, kinematics: str) -> Point:
+    """A run with inertia."""
+    return Point(f"{push:g} m/s2, {kinematics}", push, SCENE, (f"numerics.kinematics={kinematics}", PUSHED.format(push, 0)), smoke=push == 1.0)
+
+
+def spring(stiffness: str, value: float | None = None) -> Point:
+    """A run without inertia; a stiffness of nothing stands at 1 Pa/m on the axis."""
+    settings = ("numerics.mechanics=quasistatic", "stop.time_s=0", f"interface.slick.shear_stiffness_Pa_m={stiffness}", PUSHED.format(1, -1))
+    return Point(stiffness, float(stiffness) if value is None else value, SCENE, settings, smoke=stiffness in ("0", "1e6"), beyond=value is not None)
+
+
+FAMILIES = (
+    Family(
+        "loose_explicit", "Cut without friction, traction edges: with inertia", "The part that nothing holds moves as Newton says.", Parameter("push", "m/s^2", log=True),
+        tuple(flight(push, kinematics) for kinematics in ("total", "updated") for push in (0.01, 0.1, 1.0, 10.0)), check_flight, beyond=(STABLE,),
+        section="Traction edges with a frictionless cut", about=ABOUT, check_name="slip over that of Newton less 1",
+    ),
+    Family(
+        "loose_quasistatic", "Cut without friction, traction edges: without inertia", "Springs of any stiffness hold the push; without them the run ends and says that parts move freely.",
+        Parameter("D along the cut", "Pa/m", log=True), (*(spring(D) for D in ("1e10", "1e8", "1e6", "1e5", "1e4")), spring("0", 1.0)), check_springs, beyond=(FAILED,),
+        section="Traction edges with a frictionless cut", check_name="slip over rho a H/D less 1",
+    ),
+)  # fmt: skip
