@@ -92,6 +92,7 @@ class Edge:
     resolution: float = 0.005
     tolerance: float = 0.03
     unsound_above: bool = True
+    by_check: bool = False  # bisection goes by whether the check holds, marked or not, where marks begin elsewhere
     read: Callable[[Mapping[str, Run]], float] | None = None  # of completed runs by the labels of their points
 
 

@@ -135,7 +135,7 @@ def edge_of(family: Family, points: tuple[PointFound, ...], runs: Path = RUNS, b
         def sound(value: float) -> bool:
             one = found(family, at(value), runs, binary)
             tell(f"{family.name}: edge at {value:.5g}? {one.outcome}")
-            return one.outcome in family.before
+            return one.checked is not None and one.checked.holds if edge.by_check else one.outcome in family.before
 
         good, bad = bisected(sound, edge)
     measured = 0.5 * (good + bad) if good is not None and bad is not None else None
