@@ -51,7 +51,7 @@ def _draw_walk(axes: Axes, panel: WalkShown) -> None:
     for dot in panel.dots:
         look = {"color": _COLOURS[dot.outcome], "marker": _MARKS[dot.outcome], "markersize": 6.0, "linestyle": "none", "zorder": 4}
         if dot.y is None:
-            axes.plot([dot.x], [_STRIP], transform=axes.get_xaxis_transform(), clip_on=False, **look)
+            axes.plot([dot.x], [_STRIP], transform=axes.get_xaxis_transform(), clip_on=False, scaley=False, **look)
         else:
             axes.plot([dot.x], [dot.y], **look)
     if any(dot.y is None for dot in panel.dots):
