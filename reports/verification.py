@@ -26,7 +26,7 @@ from reports.sections import Picture, Section, put_figure
 from reports.words import number, plain, scientific, share
 
 # Modules of reports/ that fill parts of the page, in its order; one that is not there is left out.
-PARTS: tuple[str, ...] = ("path_check", "refinement", "budget", "benchmarks")
+PARTS: tuple[str, ...] = ("ablation", "path_check", "refinement", "budget", "benchmarks")
 NAME = "verification.html"
 LADDER = Path("ladder") / "ladder.json"
 _COST_CAPTION = (

@@ -1,0 +1,173 @@
+"""The part of the page of verification on what each ingredient of an experiment is worth: what ci/ablate kept, as a chart and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from reports.charts.ablation_chart import draw_ablation
+from reports.sections import Picture, Section, Table, put_figure
+from reports.words import experiment_name, listed, number, plain, share
+from verification.ablation.effects import CHANGES, NEEDED, NOTHING, SPARED, WANTED, Tried, free, missing, needs, not_needed
+from verification.ablation.ingredients import LEFT_OUT, MODELLED, RESOLVED
+from verification.ablation.reasons import REASONS, Reasons, reason_for, reasons
+from verification.ablation.store import RECORDS, Table as Kept, read_all
+
+METHOD = (
+    "Each scene is run as shipped (explicit, one thread), then again with one of its ingredients left out or made coarser; the last rows of the"
+    " perfect case add what it goes without. An effect is the largest among the followed numbers: pressures by their net part (above the"
+    " closing stress), heights of arrest by themselves, a path by its length. An ingredient without which an arrest or a height is not there at all"
+    " changes what happens. Times are CPU times of the whole process."
+)
+CAPTION = (
+    "Largest effect of leaving an ingredient out (colour and upper number, % of net pressure, height or length of path) and the CPU time then over that"
+    " of the scene's own run (lower number, ×). ≠: an arrest, a height or a growth of the scene is not there without it. Empty: the scene does not have it."
+)
+_GROUPS = {MODELLED: "modelled", RESOLVED: "resolved", LEFT_OUT: "gone without"}
+_NUMBERED = "interface_"  # ids of interfaces, counted from below
+
+
+@dataclass(frozen=True)
+class Cell:
+    """What leaving an ingredient out of a scene does: share (None where that cannot be said), verdict, time over the scene's own."""
+
+    share: float | None
+    verdict: str
+    time: float
+
+
+@dataclass(frozen=True)
+class AblationFigure:
+    """Rows of ingredients with their group, columns of scenes; a cell is None where the scene does not have the ingredient."""
+
+    title: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str, str, tuple[Cell | None, ...]], ...]
+
+
+def section(runs: Path, out: Path) -> Section | None:
+    """The part of the page from the records beside the folder of runs; None where there are none."""
+    root = runs.parent
+    return section_of(read_all(root / RECORDS.relative_to(RECORDS.parents[2])), reasons(root / REASONS.relative_to(REASONS.parents[2])), out)
+
+
+def section_of(kept: Sequence[Kept], why: Reasons, out: Path) -> Section | None:
+    """The part of the page from tables and reasons."""
+    if not kept:
+        return None
+    figure = ablation_figure(kept)
+    pictures: list[Picture] = [put_figure(draw_ablation(figure), out, "ablation", figure.title, CAPTION)]
+    return Section(title="What each experiment needs", intro=METHOD, figures=pictures, tables=[table_of(one, why) for one in kept])
+
+
+def _row_of(line: Tried) -> str:
+    """The row of a line: interfaces share one each by their number."""
+    if line.id == "interface" or line.id.startswith(_NUMBERED):
+        return "interface_1" if line.id == "interface" else line.id
+    return line.id
+
+
+def ablation_figure(kept: Sequence[Kept]) -> AblationFigure:
+    """What is drawn: the tables in which more than the interfaces was left out."""
+    whole = [one for one in kept if one.extent != "interfaces"] or list(kept)
+    labels: dict[str, tuple[str, str]] = {}
+    for group in _GROUPS:
+        for one in whole:
+            for line in one.lines:
+                if line.group == group:
+                    number_of = _row_of(line).removeprefix(_NUMBERED)
+                    numbered = _row_of(line).startswith(_NUMBERED)
+                    label = ("an interface that acts" if number_of == "1" else "the second one") if numbered else line.label
+                    labels.setdefault(_row_of(line), (label, _GROUPS[group]))
+    rows = []
+    for name, (label, group) in labels.items():
+        cells = tuple(_cell(one, name) for one in whole)
+        if any(cell is not None for cell in cells):
+            rows.append((label, group, cells))
+    columns = tuple(f"{experiment_name(one.experiment).replace('Experiment', 'Exp.')}\n{plain(one.variant)}" for one in whole)
+    return AblationFigure(finding(whole), columns, tuple(rows))
+
+
+def _cell(one: Kept, name: str) -> Cell | None:
+    """The cell of a table's line, None where the ingredient does not apply."""
+    line = next((line for line in one.lines if _row_of(line) == name and line.applies), None)
+    if line is None:
+        return None
+    return Cell(line.largest, line.verdict, line.cpu_s / one.cpu_s)
+
+
+def finding(kept: Sequence[Kept]) -> str:
+    """What all scenes need for 1 %, and what none does."""
+    lines: dict[str, list[Tried]] = {}
+    for one in kept:
+        for line in one.lines:
+            if line.applies and line.group != LEFT_OUT and not line.id.startswith("interface"):
+                lines.setdefault(line.id, []).append(line)
+    always = [found[0].label for found in lines.values() if all(line.verdict in (NEEDED, CHANGES) for line in found)]
+    never = [found[0].label for found in lines.values() if all(line.verdict == SPARED for line in found)]
+    told = [f"every scene that has them needs {listed(always)}"] if always else []
+    told += [f"none needs {listed(never)}"] if never else []
+    return f"For {share(WANTED)}: " + ("; ".join(told) if told else "what a scene needs differs from one to the next")
+
+
+def table_of(one: Kept, why: Reasons) -> Table:
+    """The table of a scene: what was left out, the effect on each number, the time, the verdict and why it is kept."""
+    header = ["left out", "instead", *(f"{label} ({'kPa' if unit == 'Pa' else unit})" for _, label, unit in one.quantities),
+              "largest", "time", "for 1 %"]  # fmt: skip
+    own = [_value(one.base.get(name), unit) for name, _, unit in one.quantities]
+    rows, marked = [["nothing", "", *own, "", f"{number(one.cpu_s, 3)}\u00a0s", ""]], []
+    for line in one.lines:
+        if not line.applies:
+            rows.append([line.label, line.reason, *("–" for _ in one.quantities), "", "", ""])
+            continue
+        added = line.group == LEFT_OUT
+        cells = [_effect(line, name, unit) for name, _, unit in one.quantities]
+        if line.verdict == NOTHING or (added and line.verdict in (NEEDED, CHANGES)):
+            marked.append(len(rows))
+        largest = "–" if line.largest is None else share(line.largest)
+        rows.append([f"(added) {line.label}" if added else line.label, "modelled" if added else line.done, *cells, largest,
+                     f"×\u00a0{number(line.cpu_s / one.cpu_s, 2)}", verdict_words(line, one, why)])  # fmt: skip
+    title = f"{experiment_name(one.experiment)}, {plain(one.variant)}"
+    return Table(title=title, header=header, rows=rows, marked=marked, note=note_of(one))
+
+
+def verdict_words(line: Tried, one: Kept, why: Reasons) -> str:
+    """A verdict, with why the scene keeps what it does not need or goes without what it would."""
+    reason = reason_for(line, one.experiment, why)
+    if line.group == LEFT_OUT:
+        would = "moves it" if line.verdict in (NEEDED, CHANGES) else "not needed" if line.verdict == SPARED else NOTHING
+        return f"{would}; {reason}" if would == "moves it" and reason else would
+    if line.verdict == NOTHING:
+        return f"{NOTHING}: {line.status} ({line.reason})"
+    if line.verdict == SPARED and line in free(one.lines, one.cpu_s):
+        return "not needed, but leaving it out saves no time"
+    return f"not needed; {reason}" if line.verdict == SPARED else line.verdict
+
+
+def note_of(one: Kept) -> str:
+    """What the table says the scene needs."""
+    wanted = [line.label for line in needs(one.lines)]
+    spared = [line.label for line in not_needed(one.lines, one.cpu_s)]
+    lacks = [line.label for line in missing(one.lines)]
+    told = [f"For {share(WANTED)} it needs {listed(wanted)}."] if wanted else []
+    told += [f"It does not need {listed(spared)}."] if spared else []
+    told += [f"It would need {listed(lacks)}."] if lacks else []
+    return " ".join([*told, f"Version {one.version}."])
+
+
+def _value(value: float | None, unit: str) -> str:
+    """A number of the scene's own run."""
+    if value is None:
+        return "–"
+    return f"{value / 1e6:.4f}\u00a0MPa" if unit == "Pa" else f"{value:.4g}\u00a0{unit}"
+
+
+def _effect(line: Tried, name: str, unit: str) -> str:
+    """An effect with its share, or why there is none."""
+    effect = line.effects.get(name)
+    if effect is None or effect.value is None:
+        return effect.note if effect is not None and effect.note else "–"
+    size = f"{effect.value / 1e3:+.2f}" if unit == "Pa" else f"{effect.value:+.3f}"
+    part = f" ({share(line.shares[name])})" if name in line.shares else ""
+    return f"{size}{part}".replace("-", "−")

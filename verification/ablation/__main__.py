@@ -1,0 +1,84 @@
+"""What each ingredient of an experiment is worth: left out one at a time, with the effect beside the time saved.
+
+usage: ci/ablate [exp1 ...] [--variants soft,weak] [--ingredients inertia,flow] [--set KEY=VALUE]... [--out DIR] [--runs DIR]
+
+Without names: all experiments. Without --variants: all ingredients of the perfect case, those that the scene has of the one whose
+interfaces act most (soft; weak_soft and soft_weak in Experiment 3), and of the study's other variants the interfaces alone. Runs one at a time, in the
+scene's own mechanics (explicit). Tables are printed, and kept in verification/ablation/records (DIR) where nothing was chosen by
+--ingredients or --set.
+"""
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from verification.ablation import store
+from verification.ablation.effects import missing, needs, not_needed
+from verification.ablation.measure import EVERYTHING, INTERFACES, OWN, RUNS, NoBase, table_of
+from verification.harness.paths import EXPERIMENTS, solver
+from verification.harness.refine import chosen, scene_of
+from verification.harness.scenes import STUDY_VARIANTS, scenes_of, variants_of
+
+# Variants of which everything is left out in turn; of the first what they go without is tried, too.
+THOROUGH = ("perfect",)
+WHOLE = ("soft", "weak_soft", "soft_weak")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Measure, print and keep the tables; 0, 3 where a scene's own run failed, 2 for bad input."""
+    parser = argparse.ArgumentParser(prog="ci/ablate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("experiments", nargs="*", help="beginnings of names, or scene files (default: all)")
+    parser.add_argument("--variants", default="", help="names, comma-separated: all their ingredients")
+    parser.add_argument("--ingredients", default="", help="ids, comma-separated (default: all)")
+    parser.add_argument("--set", dest="settings", action="append", default=[], metavar="KEY=VALUE", help="a scene key, in all runs")
+    parser.add_argument("--out", type=Path, default=store.RECORDS, help="folder for the tables")
+    parser.add_argument("--runs", type=Path, default=RUNS, help="folder for the runs")
+    options = parser.parse_args(arguments)
+    if not solver().is_file():
+        parser.error(f"there is no solver at {solver()}: build it first (ci/reproduce and ci/test do)")
+    only = [name for name in options.ingredients.split(",") if name]
+    keep = not only and (not options.settings or options.out != store.RECORDS)
+    good = True
+    try:
+        for scene in [scene_of(name) for name in options.experiments] or scenes_of(EXPERIMENTS):
+            for variant in variants(scene, options.variants):
+                try:
+                    table = table_of(scene, variant, extent(variant, options.variants), options.settings, only, options.runs.resolve(), print)
+                except NoBase as failure:
+                    print(failure, file=sys.stderr)
+                    good = False
+                    continue
+                print(summary(table))
+                if keep:
+                    store.write(table, options.out)
+    except ValueError as error:
+        parser.error(str(error))
+    return 0 if good else 3
+
+
+def variants(scene: Path, names: str) -> list[str]:
+    """The variants that were asked for, or those of the study."""
+    if names:
+        return chosen(scene, names)
+    return [name for name in variants_of(scene) if name in STUDY_VARIANTS] or [""]
+
+
+def extent(variant: str, asked: str) -> str:
+    """How much is tried of a variant."""
+    if asked or variant in THOROUGH:
+        return EVERYTHING
+    return OWN if variant in WHOLE else INTERFACES
+
+
+def summary(table: store.Table) -> str:
+    """What follows from a table, in a line."""
+    parts = []
+    for words, lines in (("needs", needs(table.lines)), ("not", not_needed(table.lines, table.cpu_s)), ("goes without", missing(table.lines))):
+        if lines:
+            parts.append(f"{words} {', '.join(line.label for line in lines)}")
+    return f"  for 1 %: {'; '.join(parts) or 'nothing that costs time'}\n"
+
+
+if __name__ == "__main__":
+    sys.exit(main())
