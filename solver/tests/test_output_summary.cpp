@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -172,9 +173,11 @@ namespace {
 
 const double nan_value = std::numeric_limits<double>::quiet_NaN();
 
-// A run of which nothing is to be said: a ledger that closes, a step within its limit.
+// A run of which nothing is to be said: a ledger that closes, a step within its limit, particles in their cells.
 State sound_state() {
   State state = made_state();
+  std::fill(state.particles.u_x.begin(), state.particles.u_x.end(), 0.0);
+  std::fill(state.particles.u_y.begin(), state.particles.u_y.end(), 0.0);
   state.ledger = Ledger{};
   state.ledger.fluid_work = state.ledger.strain = 100.0, state.ledger.largest = 1000.0;
   state.monitors = Monitors{};

@@ -94,7 +94,7 @@ TEST_CASE("The value of --set is TOML, a bare word a string") {
 TEST_CASE("Errors of --set name it in the place of a line, and come after those of the file") {
   const std::string text = errors(with(layered, "width_m = 80", "width_m = -80"), "", {"numerics.courant=3"});
   CHECK_THAT(text, Catch::StartsWith("scene.toml:3:1: "));
-  CHECK_THAT(text, Catch::Contains("\n--set numerics.courant=3: numerics.courant = 3 is outside (0, 1]."));
+  CHECK_THAT(text, Catch::Contains("\n--set numerics.courant=3: numerics.courant = 3 is outside (0, 2]."));
 }
 
 TEST_CASE("A rock that only --set names is a slip, unless a layer uses it") {
