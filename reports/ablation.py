@@ -73,12 +73,13 @@ def ablation_figure(kept: Sequence[Kept]) -> AblationFigure:
     whole = [one for one in kept if one.extent != "interfaces"] or list(kept)
     labels: dict[str, tuple[str, str]] = {}
     for group in _GROUPS:
-        for one in whole:
+        # Those with the most interfaces first, so that the rows of these come one below the other.
+        for one in sorted(whole, key=lambda one: -sum(line.id.startswith(_NUMBERED) for line in one.lines)):
             for line in one.lines:
                 if line.group == group:
                     number_of = _row_of(line).removeprefix(_NUMBERED)
                     numbered = _row_of(line).startswith(_NUMBERED)
-                    label = ("an interface that acts" if number_of == "1" else "the second one") if numbered else line.label
+                    label = ("an interface that acts" if number_of == "1" else "a second one") if numbered else line.label
                     labels.setdefault(_row_of(line), (label, _GROUPS[group]))
     rows = []
     for name, (label, group) in labels.items():
