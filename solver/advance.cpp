@@ -45,7 +45,9 @@ void advance_updated(const Scene& scene, const std::vector<Elasticity>& rocks, b
   add_net_tractions(state);                                     // f_i += D^T (P n - t_in_situ) A
   fold_to_masters(state, state.sums);                           // symmetric and fixed edges
   const GridEnergy grid = advance_momentum(scene.numerics.damping_1_s, state);  // v_i = mom_i/m_i + dt f_i/m_i
+  const double friction = state.ledger.friction;
   solve_reactions(scene, rocks, state);  // contact, friction, springs at the step's end
+  watch_made(grid.mapped, grid.swing - 0.5 * (state.ledger.friction - friction), state);
   const GridEnergyAfter after = grid_energy(state);
   spread_to_tied(state);
   state.ledger.body_work += body_work(state);

@@ -15,7 +15,6 @@ void watch_energies(State& state) {
   Monitors& m = state.monitors;
   const Ledger& ledger = state.ledger;
   note_largest(m.largest_open_J, std::abs(ledger.open()));
-  note_largest(m.largest_made_J, -(ledger.transfer + ledger.integration));
   note_largest(m.largest_strain_J, ledger.strain + ledger.interface_strain);
   note_largest(m.largest_kinetic_J, ledger.kinetic);
 }
@@ -69,6 +68,12 @@ void add_reactions(State& state) {
 }
 
 }  // namespace
+
+void watch_made(double kinetic, double swing, State& state) {
+  const Ledger& ledger = state.ledger;
+  note_largest(state.monitors.largest_made_J, swing - (ledger.transfer + ledger.integration));
+  note_largest(state.monitors.largest_made_J, -(kinetic + swing) - ledger.largest);
+}
 
 void expect_momentum(const Scene& scene, State& state) {
   Monitors& m = state.monitors;

@@ -30,11 +30,17 @@ void note_motion(State& state) {
   }
 }
 
+// Of all forces but the rock's own and those of springs, whose step is implicit and takes but what they store.
+double work_of_loads(const Ledger& ledger) {
+  return ledger.fluid_work + ledger.in_situ_work + ledger.body_work - ledger.friction;
+}
+
 // Energies at the step's end. external: power sum m v . a of all forces but the rock's own; elastic: of the rock's at
-// the step's end. What the rock stores and what its force of the step's start does differ by v K v dt^2/2, which
-// follows from the change of that force.
+// the step's end; loads: what loads did in the step, of which the next will do as much as they do not jump (J/m). What
+// the rock stores and what its force of the step's start does differ by v K v dt^2/2, which follows from the change of
+// that force.
 void close_ledger(const Scene& scene, const std::vector<Elasticity>& rocks, const NodeTotals& moved, double external,
-                  double elastic, State& state) {
+                  double elastic, double loads, State& state) {
   Ledger& ledger = state.ledger;
   const double keep = 1.0 - scene.numerics.damping_1_s * state.dt;
   ledger.damping += (1.0 - keep * keep) * ledger.kinetic;
@@ -44,6 +50,7 @@ void close_ledger(const Scene& scene, const std::vector<Elasticity>& rocks, cons
   note_largest(state.monitors.largest_particle_velocity, std::sqrt(moved.largest_speed2));
   ledger.largest = std::max({ledger.largest, std::abs(ledger.fluid_work), std::abs(ledger.in_situ_work),
                              std::abs(ledger.body_work), ledger.kinetic});
+  watch_made(ledger.kinetic, 0.5 * (state.dt * elastic + loads), state);
   require_stable(scene, rocks, state);
 }
 
@@ -61,9 +68,10 @@ void rebuild_total(const Scene& scene, const std::vector<Elasticity>& rocks, Sta
 
 void advance_total(const Scene& scene, const std::vector<Elasticity>& rocks, bool look, bool grow_now, State& state) {
   const double keep = 1.0 - scene.numerics.damping_1_s * state.dt;
-  start_base(scene, rocks, state);                   // after events: a_i of the particles' stress
-  advance_pressure(scene, state);                    // P(s) from the opening at the step's start
-  set_body_acceleration(scene, state.time, state);   // b(X_p, t)
+  start_base(scene, rocks, state);                  // after events: a_i of the particles' stress
+  advance_pressure(scene, state);                   // P(s) from the opening at the step's start
+  set_body_acceleration(scene, state.time, state);  // b(X_p, t)
+  const double before = work_of_loads(state.ledger);
   const BodyPush body = push_body(scene, state);     // a_i += sum N_ip m_p b_p / m_i
   double external = step_surfaces(keep, state);      // a_i += tractions, contact, friction, springs; w
   const NodeTotals moved = move_nodes(keep, state);  // v_i, u_i
@@ -72,7 +80,7 @@ void advance_total(const Scene& scene, const std::vector<Elasticity>& rocks, boo
   ++state.step;
   if (look) note_motion(state);
   const double elastic = find_accelerations(scene, rocks, state);  // a_i = -(M^-1 K u)_i + ...
-  close_ledger(scene, rocks, moved, external, elastic, state);
+  close_ledger(scene, rocks, moved, external, elastic, work_of_loads(state.ledger) - before, state);
   expect_momentum(scene, state);
   bool changed = false;
   if (any_bond_fails(scene, state)) {

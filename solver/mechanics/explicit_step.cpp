@@ -50,13 +50,13 @@ GridEnergy advance_momentum(double damping, State& state) {
     const Lane zero{}, m = lanes.load(sums.m.data() + r), per_m = m > 0.0 ? 1.0 / m : zero;
     const Lane v_x = per_m * lanes.load(sums.mom_x.data() + r), v_y = per_m * lanes.load(sums.mom_y.data() + r);
     const Lane dv_x = dt * per_m * lanes.load(sums.f_x.data() + r), dv_y = dt * per_m * lanes.load(sums.f_y.data() + r);
-    sum.first += m * (v_x * v_x + v_y * v_y);
+    sum.first += m * (v_x * v_x + v_y * v_y), sum.second += m * (v_x * dv_x + v_y * dv_y);
     lanes.store(motion.dv_x.data() + r, dv_x), lanes.store(motion.dv_y.data() + r, dv_y);
     lanes.store(motion.v_x.data() + r, keep * v_x + dv_x), lanes.store(motion.v_y.data() + r, keep * v_y + dv_y);
   });
   const double mapped = 0.5 * sum_of_lanes(energy.first);
   state.ledger.damping += mapped - keep * keep * mapped;
-  return {mapped, keep * keep * mapped};
+  return {mapped, keep * keep * mapped, 0.5 * sum_of_lanes(energy.second)};
 }
 
 GridEnergyAfter grid_energy(const State& state) {

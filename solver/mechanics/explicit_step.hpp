@@ -13,6 +13,7 @@ namespace strata {
 struct GridEnergy {
   double mapped = 0.0;
   double damped = 0.0;
+  double swing = 0.0;  // sum m v . dv/2 of the forces at the step's start: see watch_made()
 };
 
 /// Momentum balance at the masters: v_i = mom_i/m_i (1 - damping dt) + dt f_i/m_i, written to state.motion with the

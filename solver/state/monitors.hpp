@@ -21,7 +21,7 @@ struct Monitors {
   bool mirror = false;                     // solved on half of a mirror-symmetric block
 
   double largest_open_J = 0.0;     // |stored + dissipated - supplied| of the ledger, at rows
-  double largest_made_J = 0.0;     // energy that the time step and the transfer have made, net, at rows
+  double largest_made_J = 0.0;     // energy that the time step and the transfer have made, net (watch_made)
   double largest_strain_J = 0.0;   // strain energy of rock and interfaces, at rows
   double largest_kinetic_J = 0.0;  // at rows, too
 

@@ -19,7 +19,8 @@ ABOUT = (
     "A crack of 4 m half length under constant pressure in a block of 1 m cells stands at 0.01 to 0.99 of a cell, and motion is damped until nothing moves. A node"
     " beside it has a copy on each side, whose mass falls to a ten thousandth of a whole one's as the crack comes to a column of points. K_I is held against"
     " collocation for the same block (strata-reference block_crack). Small masses come with as small stiffnesses, so the time step is that of a block without a"
-    " crack: its largest eigenvalue, by Python, is the prediction. A step of more than about 0.9 is marked for the swing of the energy between steps."
+    " crack: its largest eigenvalue, by Python, is the prediction. Steps of more than about 0.9 are marked: the ledger takes damping by the"
+    " velocities of a step's start, and where a tenth is damped away in a step counts a tenth too much of it, and that as made; undamped, 1e-15 is made."
 )
 
 

@@ -5,7 +5,7 @@ import math
 
 from verification.harness.load import Run
 from verification.harness.paths import ROOT
-from verification.stability.family import FAILED, MARKED, STABLE, Checked, Edge, Family, Parameter, Point, at_most
+from verification.stability.family import FAILED, STABLE, Checked, Edge, Family, Parameter, Point, at_most
 from verification.stability.theory.step_limit import Block, courant_limit
 
 SCENE = ROOT / "verification" / "stability" / "scenes" / "time_step.toml"
@@ -16,7 +16,7 @@ WAYS = {"total": "nodes keep velocities", "flip": "FLIP", "pic": "PIC", "xpic2":
 ACROSS = (2, 3, 4)  # points across a cell
 SHARES = (0.5, 0.8, 0.95, 1.05, 1.2, 1.5)  # of the predicted limit: values below are rounded, so that scenes stay the same
 
-MOST_ENERGY = 10.0  # kinetic energy at the end over what was put in: beyond it the solver ends a run itself
+MOST_ENERGY = 10.0  # kinetic energy at the end over what was put in: a mode at 0.95 of its limit swings up to 1/(1 - 0.95^2) times that
 
 MOVE_S = 0.05  # in which points are moved: some 100 steps
 LONGER = ("stop.time_s=0.25", "output.fields_every_s=0.25")
@@ -35,8 +35,7 @@ ABOUT = (
     "A block of 6 x 6 cells starts with velocities that have no pattern, so that all of its modes are in it. Where the step is longer than the"
     " limit of the fastest mode, that mode grows by a factor every step. Predicted: the largest eigenvalue of M^-1 K, or of the step's map where"
     " points carry the velocities, of the same block, put together in Python from the published shape functions. Beyond it the solver ends the"
-    " run once the kinetic energy is ten times all that was put in, with the last good state. Where nodes keep their velocities, some 5 % below"
-    " the edge the energy, taken between two steps, swings by more than 1 %, which marks the run although nothing grows."
+    " run once the kinetic energy is ten times all that was put in, with the last good state."
 )
 
 
@@ -96,11 +95,10 @@ def family(shape: str, way: str, across: int, held: bool = False, shift: float =
         check=energy_kept,
         check_name="kinetic energy at the end over ten times what was put in",
         beyond=(FAILED,),
-        before=(STABLE, MARKED) if way == "total" else (STABLE,),
         edge=Edge(
             source="Largest eigenvalue of M^-1 K, or of the step's map, of the same block, put together in Python (verification/stability/theory/step_limit.py).",
             predicted=lambda: limit(shape, way, across, held, shift),
-            at=at, bracket=(0.8 * rough, min(1.5 * rough, 2.0)),
+            at=at, bracket=(0.8 * rough, min(1.5 * rough, 2.0)), by_check=True,  # within a few per cent below it a swing to many times the energy may be marked
         ),
         section="Time step of the explicit update",
         about=ABOUT,
