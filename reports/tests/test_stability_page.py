@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -15,7 +16,7 @@ from verification.stability.family import GARBAGE
 def test_the_page_shows_every_walk_with_its_edge(tmp_path: Path) -> None:
     """Every family's title, a figure a section, and no word of garbage but the one that explains it."""
     front = write_stability(tmp_path)
-    text = (tmp_path / NAME).read_text(encoding="utf-8")
+    text = html.unescape((tmp_path / NAME).read_text(encoding="utf-8"))
     every = parts()
     assert not front.lack and front.link == NAME and "all as they are to be" in front.words
     for part in every:
