@@ -24,19 +24,17 @@ constexpr int most_lanes = 2;
 
 typedef double Lane __attribute__((vector_size(8 * most_lanes)));
 typedef double UnalignedLane __attribute__((vector_size(8 * most_lanes), aligned(8), may_alias));
-typedef long LaneIndex __attribute__((vector_size(8 * most_lanes)));
 
 // Lanes moved up by some, zeros before them; and those that this moves out, zeros behind.
 template <int by, std::size_t... l>
 inline Lane moved_up(const Lane& value, std::index_sequence<l...>) {
-  constexpr long W = most_lanes;
-  return __builtin_shuffle(value, Lane{}, LaneIndex{(static_cast<long>(l) < by ? W : static_cast<long>(l) - by)...});
+  constexpr int W = most_lanes;
+  return __builtin_shufflevector(value, Lane{}, (static_cast<int>(l) < by ? W : static_cast<int>(l) - by)...);
 }
 template <int by, std::size_t... l>
 inline Lane moved_out(const Lane& value, std::index_sequence<l...>) {
-  constexpr long W = most_lanes;
-  return __builtin_shuffle(value, Lane{},
-                           LaneIndex{(static_cast<long>(l) < by ? W - by + static_cast<long>(l) : W)...});
+  constexpr int W = most_lanes;
+  return __builtin_shufflevector(value, Lane{}, (static_cast<int>(l) < by ? W - by + static_cast<int>(l) : W)...);
 }
 using EachLane = std::make_index_sequence<most_lanes>;
 
