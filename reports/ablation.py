@@ -25,7 +25,7 @@ CAPTION = (
     " of the scene's own run (lower number, ×). ≠: an arrest, a height or a growth of the scene is not there without it. Empty: the scene does not have it."
 )
 _GROUPS = {MODELLED: "modelled", RESOLVED: "resolved", LEFT_OUT: "gone without"}
-_NUMBERED = "interface_"  # ids of interfaces, counted from below
+_INTERFACES = {"interface_1": "an interface that acts", "interface_2": "a second one"}  # rows that scenes share, whatever the law
 
 
 @dataclass(frozen=True)
@@ -61,26 +61,16 @@ def section_of(kept: Sequence[Kept], why: Reasons, out: Path) -> Section | None:
     return Section(title="What each experiment needs", intro=METHOD, figures=pictures, tables=[table_of(one, why) for one in kept])
 
 
-def _row_of(line: Tried) -> str:
-    """The row of a line: interfaces share one each by their number."""
-    if line.id == "interface" or line.id.startswith(_NUMBERED):
-        return "interface_1" if line.id == "interface" else line.id
-    return line.id
-
-
 def ablation_figure(kept: Sequence[Kept]) -> AblationFigure:
     """What is drawn: the tables in which more than the interfaces was left out."""
     whole = [one for one in kept if one.extent != "interfaces"] or list(kept)
     labels: dict[str, tuple[str, str]] = {}
     for group in _GROUPS:
         # Those with the most interfaces first, so that the rows of these come one below the other.
-        for one in sorted(whole, key=lambda one: -sum(line.id.startswith(_NUMBERED) for line in one.lines)):
+        for one in sorted(whole, key=lambda one: -sum(line.id in _INTERFACES for line in one.lines)):
             for line in one.lines:
                 if line.group == group:
-                    number_of = _row_of(line).removeprefix(_NUMBERED)
-                    numbered = _row_of(line).startswith(_NUMBERED)
-                    label = ("an interface that acts" if number_of == "1" else "a second one") if numbered else line.label
-                    labels.setdefault(_row_of(line), (label, _GROUPS[group]))
+                    labels.setdefault(line.id, (_INTERFACES.get(line.id, line.label), _GROUPS[group]))
     rows = []
     for name, (label, group) in labels.items():
         cells = tuple(_cell(one, name) for one in whole)
@@ -92,7 +82,7 @@ def ablation_figure(kept: Sequence[Kept]) -> AblationFigure:
 
 def _cell(one: Kept, name: str) -> Cell | None:
     """The cell of a table's line, None where the ingredient does not apply."""
-    line = next((line for line in one.lines if _row_of(line) == name and line.applies), None)
+    line = next((line for line in one.lines if line.id == name and line.applies), None)
     if line is None:
         return None
     return Cell(line.largest, line.verdict, line.cpu_s / one.cpu_s)

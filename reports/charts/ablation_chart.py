@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
 from reports.charts.style import INK, new_figure, put_legend, put_title
+from verification.ablation.effects import CHANGES
 
 if TYPE_CHECKING:  # the other way round at run time: the part of the page draws itself
     from reports.ablation import AblationFigure, Cell
@@ -17,7 +18,7 @@ if TYPE_CHECKING:  # the other way round at run time: the part of the page draws
 _STEPS: tuple[tuple[float, str, str], ...] = (
     (0.0, "#eef3f8", "below 0.1 %"), (1e-3, "#c9dcee", "0.1 to 1 %"), (1e-2, "#f3c67a", "1 to 10 %"), (1e-1, "#e07b39", "10 % and more"),
 )
-_CHANGES = ("#8c2d04", "≠ something else happens")
+_OTHER = ("#8c2d04", "≠ something else happens")
 _FAILED = ("#d9d9d9", "the run says nothing")
 
 
@@ -43,15 +44,15 @@ def draw_ablation(data: AblationFigure) -> Figure:
     for spine in axes.spines.values():
         spine.set_visible(False)
     patches = [Patch(facecolor=colour, label=name) for _, colour, name in _STEPS]
-    patches += [Patch(facecolor=colour, label=name) for colour, name in (_CHANGES, _FAILED)]
+    patches += [Patch(facecolor=colour, label=name) for colour, name in (_OTHER, _FAILED)]
     put_legend(figure, patches, 3)
     return figure
 
 
 def colour_of(cell: Cell) -> str:
     """The colour of a cell by its effect."""
-    if cell.verdict.startswith("needed:"):
-        return _CHANGES[0]
+    if cell.verdict == CHANGES:
+        return _OTHER[0]
     if cell.share is None:
         return _FAILED[0]
     return [colour for least, colour, _ in _STEPS if cell.share >= least][-1]
@@ -59,7 +60,7 @@ def colour_of(cell: Cell) -> str:
 
 def _words(cell: Cell) -> str:
     """The effect in per cent, or a sign."""
-    if cell.verdict.startswith("needed:"):
+    if cell.verdict == CHANGES:
         return "≠"
     if cell.share is None:
         return "?"
@@ -73,7 +74,7 @@ def _draw_cell(axes: Axes, column: int, place: int, cell: Cell | None) -> None:
         return
     colour = colour_of(cell)
     axes.add_patch(Rectangle((column - 0.47, place - 0.46), 0.94, 0.92, facecolor=colour, edgecolor="none"))
-    dark = colour == _CHANGES[0]
+    dark = colour == _OTHER[0]
     axes.text(column, place - 0.13, _words(cell), ha="center", va="center", fontsize=8, color="white" if dark else INK)
     time = f"×{cell.time:.1f}" if cell.time >= 1.0 else f"×{cell.time:.2f}"
     axes.text(column, place + 0.28, time, ha="center", va="center", fontsize=6.5, color="white" if dark else INK)
