@@ -58,7 +58,7 @@ def section_of(kept: Sequence[Kept], why: Reasons, out: Path) -> Section | None:
         return None
     figure = ablation_figure(kept)
     pictures: list[Picture] = [put_figure(draw_ablation(figure), out, "ablation", figure.title, CAPTION)]
-    return Section(title="What each experiment needs", intro=METHOD, figures=pictures, tables=[table_of(one, why) for one in kept])
+    return Section(title="What each experiment needs", intro=f"{figure.title}. {METHOD}", figures=pictures, tables=[table_of(one, why) for one in kept])
 
 
 def ablation_figure(kept: Sequence[Kept]) -> AblationFigure:
