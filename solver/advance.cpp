@@ -1,6 +1,5 @@
 #include "advance.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "advance_monitors.hpp"
@@ -31,8 +30,7 @@ void close_ledger(const Scene& scene, const std::vector<Elasticity>& rocks, cons
   ledger.integration += after.increment - particles.step_strain;
   ledger.interface_strain = spring_energy(scene, state);
   note_largest(state.monitors.largest_particle_velocity, std::sqrt(particles.largest_speed2));
-  ledger.largest = std::max({ledger.largest, std::abs(ledger.fluid_work), std::abs(ledger.in_situ_work),
-                             std::abs(ledger.body_work), ledger.kinetic});
+  ledger.note_scale();
   require_stable(scene, rocks, state);
 }
 
@@ -78,6 +76,7 @@ void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& st
   const bool grow_now = grows && (state.step + 1) % scene.numerics.tip_steps == 0;
   const bool total = scene.numerics.kinematics == Numerics::Kinematics::total;
   (total ? advance_total : advance_updated)(scene, rocks, look || grow_now, grow_now, state);
+  require_finite(state);
 }
 
 void complete_particles(const Scene& scene, State& state) {

@@ -1,7 +1,11 @@
 #include "advance_monitors.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "mechanics/surface_law.hpp"
 #include "mechanics/surface_tractions.hpp"
@@ -108,6 +112,29 @@ void watch_forces(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
   }
   state.sums = kept;
   if (load != 0.0) note_largest(state.monitors.force_balance, left / load);
+}
+
+void require_finite(const State& state) {
+  const Ledger& l = state.ledger;
+  if (l.finite()) return;
+  std::string which;
+  for (const auto& [name, energy] : {std::pair{"kinetic", l.kinetic},
+                                     {"strain", l.strain},
+                                     {"interface_strain", l.interface_strain},
+                                     {"fluid_work", l.fluid_work},
+                                     {"in_situ_work", l.in_situ_work},
+                                     {"body_work", l.body_work},
+                                     {"damping", l.damping},
+                                     {"transfer", l.transfer},
+                                     {"integration", l.integration},
+                                     {"friction", l.friction},
+                                     {"fracture", l.fracture}}) {
+    if (!std::isfinite(energy)) which += (which.empty() ? "" : ", ") + std::string(name);
+  }
+  throw NumericalFailure(
+      fmt::format("step {}, t = {:.6g} s: energies of the ledger are no finite numbers: {}. Check the "
+                  "sizes of the scene's loads and stiffnesses.",
+                  state.step, state.time, which));
 }
 
 void watch_row(const Scene& scene, State& state) {

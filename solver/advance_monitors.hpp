@@ -27,6 +27,10 @@ void expect_momentum(const Scene& scene, State& state);
 /// be up to date. At step 0 the momentum found is the one expected from there on. Throws nothing.
 void watch_row(const Scene& scene, State& state);
 
+/// Throws NumericalFailure where an energy of the ledger is no finite number, and names it: all that a row or a
+/// checkpoint would say of energies from there on were worth nothing.
+void require_finite(const State& state);
+
 /// Balance of forces at every node of an equilibrium, by the loops over particles that runs with inertia use and the
 /// condensed block does not: f_i = -sum V sigma grad N_i of the particles' stress against D^T (P n - t_in_situ + r) A
 /// of surfaces, springs of tips and the body force. Notes the largest force left over the largest load. All particles

@@ -236,8 +236,8 @@ void close_ledger(const Quasistatic& run, const LoadPoint& before, Change change
   const double friction = dissipated_by_friction(run.model, run.equilibrium);
   ledger.friction += change == Change::failure ? released : friction;
   if (change == Change::growth) ledger.fracture += released - friction;
-  ledger.largest = std::max(
-      {ledger.largest, std::abs(ledger.fluid_work), std::abs(ledger.in_situ_work), std::abs(ledger.body_work)});
+  ledger.note_scale();
+  require_finite(state);
 }
 
 void accept(const Scene& scene, const LoadPoint& before, Change change, State& state, Quasistatic& run) {

@@ -1,6 +1,5 @@
 #include "advance_total.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "advance_monitors.hpp"
@@ -48,8 +47,7 @@ void close_ledger(const Scene& scene, const std::vector<Elasticity>& rocks, cons
   ledger.integration += moved.increment - 0.5 * state.dt * (moved.power - external - elastic);
   ledger.interface_strain = spring_energy(scene, state);
   note_largest(state.monitors.largest_particle_velocity, std::sqrt(moved.largest_speed2));
-  ledger.largest = std::max({ledger.largest, std::abs(ledger.fluid_work), std::abs(ledger.in_situ_work),
-                             std::abs(ledger.body_work), ledger.kinetic});
+  ledger.note_scale();
   watch_made(ledger.kinetic, 0.5 * (state.dt * elastic + loads), state);
   require_stable(scene, rocks, state);
 }

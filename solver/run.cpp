@@ -119,6 +119,7 @@ void complete_fields(Run& run) {
     complete_particles(run.scene, run.state);
     run.state.ledger.strain = strain_energy(run.rocks, run.state.particles);
   }
+  require_finite(run.state);
   watch_row(run.scene, run.state);
 }
 

@@ -1,6 +1,7 @@
 // The whole state of a run as plain data: what is saved in a checkpoint is what is here.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -79,7 +80,14 @@ struct Ledger {
   double stored() const { return kinetic + strain + interface_strain; }
   double dissipated() const { return damping + transfer + integration + friction + fracture; }
   double open() const { return stored() + dissipated() - supplied(); }
-  double closure() const { return largest > 0.0 ? open() / largest : 0.0; }
+  double closure() const { return largest == 0.0 ? 0.0 : open() / largest; }
+  bool finite() const { return std::isfinite(open()) && std::isfinite(largest); }
+
+  // Takes up what has been done so far as the scale; a number that is none stays.
+  void note_scale() {
+    for (const double work : {fluid_work, in_situ_work, body_work}) note_largest(largest, std::abs(work));
+    note_largest(largest, kinetic);
+  }
 };
 
 struct State {

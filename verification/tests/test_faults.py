@@ -259,6 +259,9 @@ time_s = 0.05
 numerics.kinematics = "total"
 [variants.quasistatic]
 numerics.mechanics = "quasistatic"
+[variants.overflow]
+numerics.mechanics = "quasistatic"
+body.acceleration_m_s2 = ["sin(pi*X/8)*cos(pi*Y/8)*exp(20000*t)", "0"]
 [variants.mechanism]
 body.acceleration_m_s2 = ["0", "0"]
 numerics.mechanics = "quasistatic"
@@ -289,6 +292,21 @@ def test_what_is_no_longer_finite_ends_the_run_with_its_last_good_state(tmp_path
     again = strata("resume", "X", "--quiet", cwd=tmp_path)
     assert again.returncode == 3 and "starts anew" not in again.stderr
     assert json.loads((tmp_path / "X" / "summary.json").read_text())["reason"] == summary["reason"]
+
+
+def test_energies_that_are_no_longer_finite_end_the_run(tmp_path: Path) -> None:
+    """The push is finite throughout, its square beyond any number from 0.018 s on: exit 3, named, no row with it written."""
+    (tmp_path / "block.toml").write_text(BLOCK)
+    done = strata("run", "block.toml", "--variant", "overflow", "--out", "X", "--quiet", cwd=tmp_path)
+    assert done.returncode == 3, done.stderr
+    summary = json.loads((tmp_path / "X" / "summary.json").read_text())
+    assert summary["status"] == "failed" and summary["reason"] in done.stderr
+    assert "energies of the ledger are no finite numbers: strain, body_work" in summary["reason"]
+    assert all(math.isfinite(energy) for energy in summary["energy"].values())
+    rows = list(csv.DictReader((tmp_path / "X" / "history.csv").open()))
+    assert 0.016 <= float(rows[-1]["time_s"]) < 0.0185
+    assert all(math.isfinite(float(row[name])) for row in rows for name in ("strain_J", "body_work_J"))
+    assert (tmp_path / "X" / "checkpoint.bin").exists() and torn(tmp_path / "X") == []
 
 
 def test_a_mechanism_ends_the_run_with_the_reason_in_its_summary(tmp_path: Path) -> None:
