@@ -8,6 +8,7 @@
 #include "mechanics/equilibrium.hpp"
 #include "mechanics/explicit_step.hpp"
 #include "mechanics/tip_ties.hpp"
+#include "scene/points_across.hpp"
 #include "state/body_force.hpp"
 #include "state/make_grid.hpp"
 #include "state/rebuild.hpp"
@@ -30,37 +31,8 @@ void append_particle(const Scene& scene, const std::vector<Elasticity>& rocks, c
   p.id.push_back(p.next_id++);
 }
 
-// Whether a layer between two surfaces, or one and an edge that moves freely, is thinner than 1.5 cells. A layer of one
-// cell has four rows of quadratic B-splines, and two rows of particles leave one motion of these without any strain:
-// the layer would be a mechanism.
-bool has_thin_layer(const Scene& scene) {
-  const auto& layers = scene.strata.layers;
-  const auto parts = [&](std::size_t interface) {
-    return scene.laws[scene.strata.interfaces[interface].law].kind != InterfaceLaw::Kind::perfect;
-  };
-  const bool along_y = scene.strata.along == Strata::Along::y, ends = scene.domain.beyond_m == 0.0;
-  const bool first = ends && (along_y ? scene.domain.bottom : scene.domain.sides) == Edge::traction;
-  const bool last = ends && (along_y ? scene.domain.top : scene.domain.sides) == Edge::traction;
-  for (std::size_t k = 0; k < layers.size(); ++k) {
-    const bool below = k > 0 ? parts(k - 1) : first, above = k + 1 < layers.size() ? parts(k) : last;
-    if (below && above && layers[k].to_m - layers[k].from_m < 1.49 * scene.numerics.cell_m) return true;
-  }
-  return false;
-}
-
-// Particles across a cell. Along a fracture that turns there are four (refine_particles()). Without inertia they stand
-// everywhere from the start then: the stiffness of the intact block stays what it is, and is factored once.
-int particles_across(const Scene& scene) {
-  const int across = static_cast<int>(std::lround(std::sqrt(scene.numerics.particles_per_cell)));
-  const bool turns = scene.fracture && scene.fracture->growth != Fracture::Growth::none &&
-                     scene.fracture->direction == Fracture::Direction::max_hoop;
-  const bool refined = scene.numerics.mechanics == Numerics::Mechanics::quasistatic && turns;
-  const bool spline = scene.numerics.shape == Numerics::Shape::bspline2;
-  return across == 2 && (refined || (spline && has_thin_layer(scene))) ? 4 : across;
-}
-
 Particles make_particles(const Scene& scene, const std::vector<Elasticity>& rocks, const Grid& grid) {
-  const int across = particles_across(scene);
+  const int across = points_across(scene);
   const std::vector<GridPoint> columns = points_along_x(grid, across), rows = points_along_y(grid, across);
   Particles particles;
   for (const GridPoint& y : rows) {

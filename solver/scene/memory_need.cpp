@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "scene/graded_cells.hpp"
+#include "scene/points_across.hpp"
 
 namespace strata {
 namespace {
@@ -58,11 +59,6 @@ Cells cells_of(const Scene& scene) {
           ends * beyond + (graded ? graded_cells(scene, 1, domain.height_m, far) : domain.height_m / h)};
 }
 
-bool may_turn(const Scene& scene) {
-  return scene.fracture && scene.fracture->growth != Fracture::Growth::none &&
-         scene.fracture->direction == Fracture::Direction::max_hoop;
-}
-
 // As far as the scene alone tells it: solved on one half of the block.
 bool is_halved(const Scene& scene) {
   if (!scene.fracture || scene.strata.along != Strata::Along::y || scene.body.acceleration_m_s2) return false;
@@ -76,10 +72,7 @@ bool is_halved(const Scene& scene) {
 
 double points_of(const Scene& scene) {
   const Cells cells = cells_of(scene);
-  const Numerics& numerics = scene.numerics;
-  // Everywhere from the start where the path may turn.
-  const bool refined = numerics.mechanics == Numerics::Mechanics::quasistatic && may_turn(scene);
-  return cells.x * cells.y * (refined ? std::max(16, numerics.particles_per_cell) : numerics.particles_per_cell);
+  return cells.x * cells.y * std::pow(points_across(scene), 2);
 }
 
 double memory_need(const Scene& scene) {
@@ -97,8 +90,7 @@ std::optional<std::string> too_large(const Scene& scene, double available) {
   const Cells cells = cells_of(scene);
   return fmt::format(
       "too large for this machine: about {:.2g} cells of numerics.cell_m = {} m need about {:.3g} GB, and {:.3g} GB "
-      "are "
-      "available. Use larger cells{}.",
+      "are available. Use larger cells{}.",
       cells.x * cells.y, scene.numerics.cell_m, need / gigabyte, available / gigabyte,
       scene.numerics.mechanics == Numerics::Mechanics::quasistatic ? ", or grade them with numerics.far_cell_m" : "");
 }

@@ -1,3 +1,4 @@
+#include "initialise.hpp"
 #include "scene/graded_cells.hpp"
 #include "scene/keys.hpp"
 #include "scene/memory_need.hpp"
@@ -133,6 +134,29 @@ TEST_CASE("Memory needed grows with the particles, more so with a factor, and le
   CHECK_THAT(too_large(scene, 0.5 * memory_need(scene)).value(),
              Catch::Contains("need about 0.243 GB, and 0.122 GB are available"));
   CHECK(available_memory() > 1e6);
+}
+
+// Requires the estimate to count the points that a block is then filled with: those of paths that may turn, with 4 and
+// 9 a cell, of thin layers, and of neither. Mutations that fail: 16 for all paths that may turn, thin layers forgotten.
+TEST_CASE("Points are counted as blocks are filled with them") {
+  Scene scene = good(layered);
+  const auto check = [&](double per_cell) {
+    CHECK(points_of(scene) == 80.0 * 80.0 * per_cell);
+    CHECK(initialise(scene, make_elasticities(scene)).particles.size() == static_cast<std::size_t>(points_of(scene)));
+  };
+  check(4.0);
+  scene.fracture->direction = Fracture::Direction::max_hoop;
+  check(4.0);  // with inertia along the path only
+  scene.numerics.mechanics = Numerics::Mechanics::quasistatic;
+  check(16.0);
+  scene.numerics.particles_per_cell = 9;
+  check(9.0);
+  scene.fracture->growth = Fracture::Growth::none;
+  scene.numerics.particles_per_cell = 4;
+  check(4.0);
+  scene.strata.layers.front().to_m = scene.strata.layers.back().from_m = scene.strata.interfaces.back().at_m = 79.0;
+  scene.domain.top = Edge::traction;
+  check(16.0);
 }
 
 TEST_CASE("Points are counted as cells are graded, and as the rock goes on beyond the block") {
