@@ -133,8 +133,7 @@ double friction_of(const InterfaceLaw& law) {
       "the block has become a mechanism: parts that its surfaces cut off move freely, since nothing on " +
       std::to_string(places.size()) + " split places (of a fracture and " + std::to_string(interfaces) +
       " interfaces) and on the edges holds them. Use domain.sides = \"fixed\", friction, or a stiffer interface; where "
-      "a "
-      "fracture turns sharply or runs into an edge, smaller cells or an earlier stop");
+      "a fracture turns sharply or runs into an edge, smaller cells or an earlier stop");
 }
 
 // How many unknowns take part in the softest motion of a tangent whose factor is at hand (inverse iteration).

@@ -227,8 +227,7 @@ std::vector<Key> fracture_keys() {
           {as("J", Fracture::Growth::J), as("none", Fracture::Growth::none), as("energy", Fracture::Growth::energy)},
           [](Scene& s, std::size_t) -> Fracture::Growth& { return s.fracture->growth; },
           "Grow where J reaches J_c of the rock ahead, or never; energy: by the energy released over a finite "
-          "increment "
-          "everywhere, as crossing does near interfaces."),
+          "increment everywhere, as crossing does near interfaces."),
       number(
           "fracture.increment_m", "m", positive,
           +[](Scene& s, std::size_t) -> double& { return s.fracture->increment_m; }, "Length of a growth step.",
@@ -255,8 +254,7 @@ std::vector<Key> fracture_keys() {
           "fracture.faces", {as("contact", Fracture::Faces::contact), as("free", Fracture::Faces::free)},
           [](Scene& s, std::size_t) -> Fracture::Faces& { return s.fracture->faces; },
           "Where the fracture closes its faces meet, or they pass through each other as rock does not: to see what "
-          "contact "
-          "is worth."),
+          "contact is worth."),
   };
 }
 
@@ -267,8 +265,7 @@ std::vector<Key> fluid_keys() {
           {as("paper", Fluid::Law::paper), as("uniform", Fluid::Law::uniform), as("reynolds", Fluid::Law::reynolds)},
           [](Scene& s, std::size_t) -> Fluid::Law& { return s.fluid.law; },
           "Pressure diffusion along the fracture by eq. (3), the inlet's pressure everywhere in it, or lubrication "
-          "that "
-          "conserves mass."),
+          "that conserves mass."),
       number(
           "fluid.bulk_modulus_Pa", "Pa", positive,
           +[](Scene& s, std::size_t) -> double& { return s.fluid.bulk_modulus_Pa; }, "Bulk modulus M."),
@@ -291,8 +288,7 @@ std::vector<Key> fluid_keys() {
           "fluid.inlet.rate_m2_s", "m^2/s", positive,
           +[](Scene& s, std::size_t) -> std::optional<double>& { return s.fluid.rate_m2_s; },
           "Fluid fed into the whole fracture per metre out of plane, instead of a pressure; with symmetry at the "
-          "bottom the "
-          "modelled half gets half of it."),
+          "bottom the modelled half gets half of it."),
       word(
           "fluid.new_point", {as("dry", Fluid::NewPoint::dry), as("inherit", Fluid::NewPoint::inherit)},
           [](Scene& s, std::size_t) -> Fluid::NewPoint& { return s.fluid.new_point; },
@@ -337,8 +333,7 @@ std::vector<Key> numerics_keys() {
           +[](Scene& s, std::size_t) -> std::optional<double>& { return s.numerics.far_cell_m; },
           "Side of the cells far away, not for explicit kinematics = \"updated\": cells are of cell_m within 10 of "
           "them around the initial fracture and its straight way up to stop.tip_y_m, and within 4 of them around "
-          "interfaces and borders of "
-          "rocks elsewhere; then coarser by at most 1.2 a cell. Left out: uniform."),
+          "interfaces and borders of rocks elsewhere; then coarser by at most 1.2 a cell. Left out: uniform."),
       particles,
       word(
           "numerics.shape", {as("bspline2", Shape::bspline2), as("linear", Shape::linear), as("gimp", Shape::gimp)},
@@ -373,21 +368,18 @@ std::vector<Key> numerics_keys() {
           "numerics.ring_cells", "cells", {2.5, 8.0, false, false},
           +[](Scene& s, std::size_t) -> double& { return s.numerics.ring_cells; },
           "Outer radius of the widest of three rings around a tip, by which J and K are measured; edges, interfaces "
-          "and "
-          "the other tip may leave less.",
+          "and the other tip may leave less.",
           "A smaller ring holds little but the tip's own error, a larger one leaves the fine cells of a graded grid."),
       number(
           "numerics.flow_change", "", {0.0, 1.0, true, false},
           +[](Scene& s, std::size_t) -> double& { return s.numerics.flow_change; },
           "Quasi-static only: change of the nearest event's margin (1: the event) aimed at in a step of a flow that "
-          "takes "
-          "time; steps that change it by twice as much are tried again with half the length."),
+          "takes time; steps that change it by twice as much are tried again with half the length."),
       number(
           "numerics.flow_error", "", {0.0, 1.0, true, false},
           +[](Scene& s, std::size_t) -> double& { return s.numerics.flow_error; },
           "Under fluid.law = \"reynolds\": error of the largest opening aimed at in a step; steps with four times as "
-          "much "
-          "are tried again with half the length."),
+          "much are tried again with half the length."),
   };
 }
 

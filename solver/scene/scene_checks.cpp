@@ -139,8 +139,7 @@ void check_shape(const Scene& scene, const Positions& positions, Faults& faults)
   if (both && scene.domain.bottom == Edge::symmetry) {
     faults.add(where_is(positions, "fracture.path_m"),
                "fracture.path_m has both ends on the symmetry line; one may be there. A fracture that cuts out a piece "
-               "of rock "
-               "has no tip.");
+               "of rock has no tip.");
   }
 }
 

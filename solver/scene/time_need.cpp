@@ -70,8 +70,7 @@ std::optional<std::string> too_long(const Scene& scene) {
   if (!need || *need <= longest_run_s) return std::nullopt;
   return fmt::format(
       "would take too long: about {:.2g} steps of {:.2g} points, some {:.2g} days on one thread. Use larger cells or "
-      "an "
-      "earlier stop, or --any-time to run it all the same.",
+      "an earlier stop, or --any-time to run it all the same.",
       *steps_of(scene), points_of(scene), *need / 86400.0);
 }
 
