@@ -93,7 +93,7 @@ FluidStep couple(const Scene& scene, double dt, State& state, QuasistaticModel& 
   // Of the largest opening, a step: some hundred of them add up to less than a per cent, since what one does wrong the
   // next ones heal.
   const double allowed = scene.numerics.flow_error;
-  const double step = std::max(dt, shortest_fluid_step);
+  const double step = std::max(dt, shortest_coupled_step);
   const double end = state.time + step;
   const StepReport report = step_reynolds(scene.fluid, inlet_at(scene, state, end), step,
                                           rock_of(scene, end, state, model), state.reynolds, state.balance);

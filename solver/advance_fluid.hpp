@@ -21,11 +21,11 @@ struct FluidStep {
 
 // The shortest step of flow and rock together (s). After growth the pressure drops at once, but for what flows
 // meanwhile.
-constexpr double shortest_fluid_step = 1e-6;
+constexpr double shortest_coupled_step = 1e-6;
 
 /// Pressures at the end of a step dt (s), in state.fluid, at the fracture's points and, under law = "reynolds", in
 /// state.reynolds; state.time moves on. uniform: the inlet's. paper: the study's diffusion in steps that resolve it,
-/// with the opening of the step's start. reynolds: flow and rock in one system, over shortest_fluid_step at least.
+/// with the opening of the step's start. reynolds: flow and rock in one system, over shortest_coupled_step at least.
 /// dt = 0: only what growth changed. Throws NumericalFailure as find_equilibrium() and diffuse() do.
 FluidStep advance_fluid(const Scene& scene, double dt, State& state, QuasistaticModel& model);
 

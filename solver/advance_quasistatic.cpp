@@ -18,7 +18,9 @@ namespace {
 constexpr double event_tolerance = 1e-4;  // of an event's margin: 0.01 % in K
 constexpr double first_flow_step = 1e-3;  // s, after each event; steps then grow as the margin's change allows
 
-constexpr double shortest_step = 1e-7;  // s, below which nothing is gained by halving
+// A trial step shorter than this (s) that is not found ends the run, and one that is found is taken however rough it
+// is. Of flow and rock in one system a step is of shortest_coupled_step at least, whatever is tried.
+constexpr double shortest_trial = 1e-7;
 
 // What a trial step changes and a rejected one takes back. Particles only hold what follows from it.
 struct LoadPoint {
@@ -448,11 +450,11 @@ void advance_quasistatic(const Scene& scene, const std::vector<Elasticity>& rock
   for (bool good = false; !good; dt *= good ? 1.0 : 0.5) {
     fluid = try_step(scene, rocks, from, dt, state, run);
     change = fluid.found ? std::abs(run.margin - margin) : 0.0;
-    if (!fluid.found && dt < shortest_step)
+    if (!fluid.found && dt < shortest_trial)
       throw NumericalFailure("at t = " + std::to_string(from.time) + " s, in any step: " + fluid.reason);
     const bool event = run.margin >= 1.0;
     good = fluid.found && (!flows || event || change < 2.0 * aim) && fluid.error < 4.0;
-    good = good || (fluid.found && dt < shortest_step);
+    good = good || (fluid.found && dt < shortest_trial);
   }
   if (run.margin > 1.0 + event_tolerance) locate_event(scene, rocks, from, margin, dt, state, run);
   accept(scene, from, Change::load, state, run);

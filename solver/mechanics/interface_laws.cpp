@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mechanics/failure.hpp"
 #include "mechanics/surface_law.hpp"
 
 namespace strata {
@@ -200,10 +201,7 @@ void note_sweeps(int sweeps, double change, double largest, Monitors& monitors) 
 }
 
 bool fails(const InterfaceLaw& law, const Reaction& r) {
-  if (law.kind == Kind::friction) return r.n < 0.0 || std::abs(r.t) > law.coefficient * r.n;
-  if (law.kind != Kind::weak) return false;
-  const double S = r.t / law.shear_strength_Pa, N = std::max(0.0, -r.n) / law.tensile_strength_Pa;
-  return S * S + N * N >= 1.0;
+  return failure_index(law, r.n, r.t) >= 1.0;
 }
 
 bool fail_interfaces(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {

@@ -54,8 +54,7 @@ void note_jump(const InterfaceLaw& law, const Vec2& dw, SurfacePoint& s, State& 
 /// against the largest reaction (Pa, 1 at least).
 void note_sweeps(int sweeps, double change, double largest, Monitors& monitors);
 
-/// True if a bonded place fails under the reaction r: weak by (S/Sc)^2 + (N/Nc)^2 >= 1 with N in tension only (the
-/// study's eq. 5); friction where |t| > mu n or in tension.
+/// True if a bonded place fails under the reaction r: where failure_index() is 1 or more. Throws nothing.
 bool fails(const InterfaceLaw& law, const Reaction& r);
 
 /// Checks the bonded points of weak and friction interfaces against the mean total stress of the particles around them

@@ -153,14 +153,7 @@ void watch_contrast(const Scene& scene, std::vector<Watched>& out) {
 }  // namespace
 
 double courant_limit(Numerics::Shape shape) {
-  switch (shape) {
-    case Numerics::Shape::linear:
-      return 1.04;
-    case Numerics::Shape::gimp:
-      return 1.04;
-    default:
-      return 1.71;
-  }
+  return shape == Numerics::Shape::bspline2 ? 1.71 : 1.04;
 }
 
 std::vector<Watched> watched(const Scene& scene, const State& state) {

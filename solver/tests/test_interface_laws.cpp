@@ -228,6 +228,7 @@ TEST_CASE("strength envelopes") {
     CHECK(fails(weak, {-0.6 * 0.2501e6, sign * 0.8 * 0.5001e6}));
     CHECK_FALSE(fails(friction_law(0.6), {1e6, sign * 0.5999e6}));
     CHECK(fails(friction_law(0.6), {1e6, sign * 0.6001e6}));
+    CHECK(fails(friction_law(0.5), {1e6, sign * 0.5e6}));  // at the bound itself, as without inertia
   }
   CHECK_FALSE(fails(weak, {-0.2499e6, 0.0}));
   CHECK(fails(weak, {-0.2501e6, 0.0}));
