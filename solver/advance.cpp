@@ -47,6 +47,7 @@ void advance_updated(const Scene& scene, const std::vector<Elasticity>& rocks, b
   solve_reactions(scene, rocks, state);  // contact, friction, springs at the step's end
   watch_made(grid.mapped, grid.swing - 0.5 * (state.ledger.friction - friction), state);
   const GridEnergyAfter after = grid_energy(state);
+  take_damping(scene.numerics.damping_1_s, grid, state);  // as v_i at the step's start and end have it
   spread_to_tied(state);
   state.ledger.body_work += body_work(state);
   const Uptake uptake = prepare_transfer(scene, state);  // FLIP, PIC or XPIC

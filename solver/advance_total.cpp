@@ -42,7 +42,9 @@ void close_ledger(const Scene& scene, const std::vector<Elasticity>& rocks, cons
                   double elastic, double loads, State& state) {
   Ledger& ledger = state.ledger;
   const double keep = 1.0 - scene.numerics.damping_1_s * state.dt;
-  ledger.damping += (1.0 - keep * keep) * ledger.kinetic;
+  const double damped = (1.0 - keep) * (ledger.kinetic + 0.5 * moved.product);  // as take_damping() has it
+  ledger.damping += damped;
+  ledger.integration += (1.0 - keep * keep) * ledger.kinetic - damped;
   ledger.kinetic = moved.kinetic;
   ledger.integration += moved.increment - 0.5 * state.dt * (moved.power - external - elastic);
   ledger.interface_strain = spring_energy(scene, state);

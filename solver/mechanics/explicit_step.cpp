@@ -55,8 +55,21 @@ GridEnergy advance_momentum(double damping, State& state) {
     lanes.store(motion.v_x.data() + r, keep * v_x + dv_x), lanes.store(motion.v_y.data() + r, keep * v_y + dv_y);
   });
   const double mapped = 0.5 * sum_of_lanes(energy.first);
-  state.ledger.damping += mapped - keep * keep * mapped;
   return {mapped, keep * keep * mapped, 0.5 * sum_of_lanes(energy.second)};
+}
+
+void take_damping(double damping, const GridEnergy& grid, State& state) {
+  if (damping == 0.0) return;
+  const NodalSums& sums = state.sums;
+  const NodalMotion& motion = state.motion;
+  const auto both = over_records<LaneEnergies>(sums.size(), [&](auto lanes, std::size_t r, LaneEnergies& sum) {
+    sum.first += lanes.load(sums.mom_x.data() + r) * lanes.load(motion.v_x.data() + r);
+    sum.second += lanes.load(sums.mom_y.data() + r) * lanes.load(motion.v_y.data() + r);
+  });
+  const double product = sum_of_lanes(both.first) + sum_of_lanes(both.second);
+  const double taken = damping * state.dt * (grid.mapped + 0.5 * product);
+  state.ledger.damping += taken;
+  state.ledger.integration += (grid.mapped - grid.damped) - taken;
 }
 
 GridEnergyAfter grid_energy(const State& state) {
@@ -126,8 +139,7 @@ void require_stable(const Scene& scene, const std::vector<Elasticity>& rocks, co
   if (finite && ledger.kinetic <= floor) return;
   throw NumericalFailure(
       fmt::format("step {}: the motion has become unstable: its kinetic energy, {:.3g} J/m, is more than {:g} times "
-                  "all that was put "
-                  "in, {:.3g} J/m. Lower numerics.courant (now {})",
+                  "all that was put in, {:.3g} J/m. Lower numerics.courant (now {})",
                   state.step, ledger.kinetic, times_supplied, supplied, scene.numerics.courant));
 }
 

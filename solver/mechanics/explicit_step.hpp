@@ -19,9 +19,16 @@ struct GridEnergy {
 /// Momentum balance at the masters: v_i = mom_i/m_i (1 - damping dt) + dt f_i/m_i, written to state.motion with the
 /// increment dt f_i/m_i beside it. Forces are those of the step's start, t, and places move with v_i at its end: v
 /// stands for the middle of the step, t + dt/2, and places are those of the central difference u(t + dt) - 2 u(t) + u(t
-/// - dt) = dt^2 f(t)/m, of second order in dt for any load that is taken at t. Ghosts must be folded before. Adds to
-/// the ledger's damping.
+/// - dt) = dt^2 f(t)/m, of second order in dt for any load that is taken at t. Ghosts must be folded before.
 GridEnergy advance_momentum(double damping, State& state);
+
+/// Adds to the ledger what damping took in a step, its force damping m v at the step's start along the mean of the
+/// velocities there and at the end: damping dt sum m v_start . (v_start + v_end)/2 (J/m). A free oscillation of central
+/// differences, v_end = (1 - damping dt) v_start - omega^2 dt u, that starts at u = 0 and dies away gives all its
+/// energy to it, for any damping dt and omega dt that it is stable for; damping m v_start^2, for one, is off by damping
+/// dt/2. What this and the change by damping alone, of grid, differ by goes to the step itself (Ledger::integration).
+/// Reactions must be in state.motion, momenta still in state.sums. damping in 1/s. Throws nothing.
+void take_damping(double damping, const GridEnergy& grid, State& state);
 
 // Kinetic energy of the grid at the end of a step and that of the step's increments alone, sum m_i dv_i^2/2 (J/m).
 struct GridEnergyAfter {

@@ -294,6 +294,7 @@ NodeTotals over_ranges(const StencilOperator& op, Work work) {
     all.kinetic += totals.kinetic;
     all.increment += totals.increment;
     all.power += totals.power;
+    all.product += totals.product;
     all.largest_speed2 = std::max(all.largest_speed2, totals.largest_speed2);
   }
   return all;
@@ -322,21 +323,24 @@ NodeTotals move_nodes(double keep, State& state) {
   TotalMotion& t = state.total;
   const double dt = state.dt;
   return over_ranges(*t.op, [&](const SlotRange& range, NodeTotals& totals) {
-    Eight kinetic{}, increment{}, power{}, fastest{};
+    Eight kinetic{}, increment{}, power{}, product{}, fastest{};
     for (auto s = static_cast<std::size_t>(range.first); s < static_cast<std::size_t>(range.last); s += lanes) {
       const Eight a_x = load(&t.a_x[s]), a_y = load(&t.a_y[s]), m = load(&t.m[s]);
-      const Eight v_x = keep * load(&t.v_x[s]) + dt * a_x, v_y = keep * load(&t.v_y[s]) + dt * a_y;
+      const Eight before_x = load(&t.v_x[s]), before_y = load(&t.v_y[s]);
+      const Eight v_x = keep * before_x + dt * a_x, v_y = keep * before_y + dt * a_y;
       store(&t.v_x[s], v_x), store(&t.v_y[s], v_y);
       store(&t.u_x[s], load(&t.u_x[s]) + dt * v_x), store(&t.u_y[s], load(&t.u_y[s]) + dt * v_y);
       const Eight speed2 = v_x * v_x + v_y * v_y;
       kinetic += m * speed2;
       increment += m * (a_x * a_x + a_y * a_y);
       power += m * (v_x * a_x + v_y * a_y);
+      product += m * (before_x * v_x + before_y * v_y);
       fastest = larger(fastest, speed2);
     }
     totals.kinetic += 0.5 * sum(kinetic);
     totals.increment += 0.5 * dt * dt * sum(increment);
     totals.power += sum(power);
+    totals.product += sum(product);
     for (int k = 0; k < lanes; ++k) totals.largest_speed2 = std::max(totals.largest_speed2, fastest[k]);
   });
 }

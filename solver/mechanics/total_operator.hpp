@@ -17,6 +17,7 @@ struct NodeTotals {
   double kinetic = 0.0;    // sum m v^2/2 (J/m)
   double increment = 0.0;  // sum m dv^2/2, dv what all forces added in the step (J/m)
   double power = 0.0;      // sum m v . a (W/m)
+  double product = 0.0;    // sum m v . v, the velocities before and after (J/m)
   double largest_speed2 = 0.0;
 };
 
