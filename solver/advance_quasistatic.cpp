@@ -191,6 +191,8 @@ void equilibrate(const Scene& scene, const std::vector<Elasticity>& rocks, State
 // Energy bookkeeping of an accepted change of load or geometry.
 enum class Change { load, growth, failure };
 
+// Work of the fluid from one state to the next, as if its pressure and what surfaces have released of the in-situ
+// traction had changed with the jumps (J/m); the latter's in `in_situ`.
 double work_of_loads(const State& state, const LoadPoint& before, double& in_situ) {
   double fluid = 0.0;
   in_situ = 0.0;
@@ -204,10 +206,10 @@ double work_of_loads(const State& state, const LoadPoint& before, double& in_sit
       const SurfacePoint& s = now[q];
       if (!s.split) continue;
       const bool is_new = q < shift || q - shift >= then.size();
-      const Vec2 dw = is_new || !then[q - shift].split ? s.w : Vec2{s.w - then[q - shift].w};
-      const double P = is_new ? s.P : 0.5 * (s.P + then[q - shift].P);
-      fluid += s.A * P * s.n.dot(dw);
-      in_situ -= s.A * s.in_situ.dot(dw);
+      const SurfacePoint& old = is_new ? s : then[q - shift];
+      const Vec2 dw = is_new || !old.split ? s.w : Vec2{s.w - old.w};
+      fluid += s.A * 0.5 * (s.P + old.P) * s.n.dot(dw);
+      in_situ -= s.A * (0.5 * (s.in_situ + old.in_situ)).dot(dw);
     }
   }
   return fluid;
@@ -419,14 +421,19 @@ void start_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks,
   remember(state, run.model, run.equilibrium);
   state.dt = first_flow_step;
   state.ledger = Ledger{};
+  // The in-situ state: the fluid holds the fracture's faces against the stress across it, bonds carry all the rest and
+  // give it up as they give way. The work of either is then half of its last value times the jump, and what rock and
+  // springs store is as much (Clapeyron).
   const LoadPoint unloaded = [&] {
     LoadPoint point = load_point(state);
     std::fill(point.u.begin(), point.u.end(), Vec2::Zero());
     point.body = point.u;
     for (Surface& surface : point.surfaces) {
       for (SurfacePoint& s : surface.points) {
+        const bool fracture = surface.kind == Surface::Kind::fracture;
         s.w = Vec2::Zero();
-        if (surface.kind == Surface::Kind::fracture) s.P = s.closing_stress();
+        if (fracture) s.P = s.closing_stress();
+        s.in_situ = fracture ? Vec2{s.P * s.n} : Vec2{Vec2::Zero()};
       }
     }
     return point;
