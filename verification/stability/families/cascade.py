@@ -1,0 +1,187 @@
+"""A weak interface fails at once and its load swings onto another one: what fails with inertia and would not without."""
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import lru_cache
+
+import numpy as np
+
+from verification.harness.load import LoadError, Run, frames
+from verification.stability.cracks import SCENES
+from verification.stability.family import STABLE, Checked, Edge, Family, Parameter, Point, close
+from verification.stability.theory.swing import Chain, carried, damping_for, most
+
+SCENE = SCENES / "cascade.toml"
+FOOT, LAST = 0, 3  # places of the two bonds among the scene's interfaces
+LAST_PA = 10.0e3  # strength of the one that is to fail first
+BLOCK_KG_M2, SPRING_PA_M = 1.0e4, 0.5e6  # of the lower block: 4 m of 2500 kg/m^3
+UPPER = {"": 0.9, "light": 1.0 / 6.0}  # mass and spring of the upper block over those of the lower one, by variant
+SWING_S = 1.8  # from the failure to the end of the runs, at least: more than a period of the slowest mode
+TOLERANCE = 0.03
+DAMPED_RATIO = 1.2
+SECTION = "Sudden failure of a weak interface"
+
+ABOUT = (
+    "Two blocks hang on springs between a bond at the foot and a bond above them, all in even tension, pulled so slowly that"
+    " inertia hardly matters until the upper bond fails at 10 kPa. What it carried is gone at once: without inertia the foot"
+    " then carries nothing, and fails only if it was the weaker of the two; with inertia the blocks swing, and where their"
+    " two modes meet the foot carries more than it ever did. The walk is over its strength. Theory: m u'' = -K u of two"
+    " masses (verification/stability/theory/swing.py); one block alone, or a bar of one rock, never carries more than before."
+)
+REMARK = (
+    "Between the two edges a run with inertia breaks the foot and one without does not. Each is right in its own sense: a"
+    " bond that lets go at once in rock that damps nothing sends its load on as a wave, however slowly it was loaded; the"
+    " quasi-static answer is that of rock which loses this energy as fast as it is released. No monitor marks either: all"
+    " energy is accounted for, and the kinetic share is that of any free vibration. A scene that means slow loading of rock"
+    " that damps is solved quasi-statically, or with damping_1_s beyond the edge of the walk over damping."
+)
+
+
+@lru_cache
+def chain(variant: str) -> Chain:
+    """The blocks and springs between the two bonds."""
+    share = UPPER[variant]
+    return Chain((BLOCK_KG_M2, share * BLOCK_KG_M2), (SPRING_PA_M, share * SPRING_PA_M))
+
+
+def failed_s(run: Run, interface: int) -> float | None:
+    """When an interface failed, all of it at once (s); None where it did not. Raises LoadError where only a part did."""
+    times = np.unique(frames(run, "interfaces")[-1][1][f"{interface}/failed_s"])
+    if times.size != 1:
+        raise LoadError(f"{run.folder}: parts of interface {interface} failed at different times")
+    return float(times[0]) if times[0] >= 0.0 else None
+
+
+def strength(run: Run) -> float:
+    """Strength of the foot over that of the last bond."""
+    return float(run.scene["interface"]["foot"]["tensile_strength_Pa"]) / LAST_PA
+
+
+def damping(run: Run) -> float:
+    """Damping of a run, 1/s."""
+    return float(run.scene["numerics"].get("damping_1_s", 0.0))
+
+
+def largest_carried(run: Run) -> float:
+    """Largest tension of the particles beside the foot's bond at any output time, over the last bond's strength."""
+    def beside(fields: Mapping[str, np.ndarray]) -> float:
+        """The mean over the cells above and below the bond."""
+        near = np.abs(fields["y_m"] - fields["u_y_m"] - 3.0) < 1.0
+        return float(fields["s_yy_Pa"][near].mean())
+
+    return max(beside(fields) for _, fields in frames(run, "particles")) / LAST_PA
+
+
+def swung(run: Run) -> Checked:
+    """What the foot came to carry against theory: of one that failed, what theory had let it carry until then against its strength;
+    of one that holds, the largest tension against what theory lets it carry at most."""
+    own, c = chain(run.summary.variant), damping(run)
+    let_go, foot, ratio = failed_s(run, LAST), failed_s(run, FOOT), strength(run)
+    if let_go is None or (foot is not None and foot <= let_go):
+        raise LoadError(f"{run.folder}: the last bond was not the first to fail")
+    if foot is not None:
+        reached = float(carried(own, np.linspace(0.0, foot - let_go, 20001), c).max())
+        return close(reached, ratio, TOLERANCE, f"the foot fails {foot - let_go:.3f} s later")
+    peak = most(own, c, SWING_S)
+    return close(largest_carried(run), min(peak, ratio), TOLERANCE, f"the foot holds; theory lets it carry {peak:.3f}")
+
+
+PULL_M_S2, FROM_PA = 2.0, 5000.0  # without inertia a long pull will do: it costs nothing
+SHARE = (1.0 / SPRING_PA_M) / (2.0 / SPRING_PA_M + 1.0 / (UPPER[""] * SPRING_PA_M))  # of the pull, on the bonds below it
+
+
+def pull_setting(most_m_s2: float, over_s: float) -> str:
+    """A pull at the block above the last bond that rises smoothly, as a scene key."""
+    rise = f"{most_m_s2!r}*0.5*(1-cos(3.14159265358979*min(1,t/{over_s!r})))"
+    return f'body.acceleration_m_s2=["0","Y > 13 ? (Y < 17 ? {rise} : 0) : 0"]'
+
+
+def weaker_fails(run: Run) -> Checked:
+    """Without inertia: the load at which a bond fails is the weaker one's strength, and the other one holds."""
+    let_go, foot, ratio = failed_s(run, LAST), failed_s(run, FOOT), strength(run)
+    if (let_go is None) == (foot is None):
+        raise LoadError(f"{run.folder}: {'neither bond' if foot is None else 'both bonds'} failed")
+    time = let_go if let_go is not None else foot
+    pull = BLOCK_KG_M2 * PULL_M_S2 * 0.5 * (1.0 - np.cos(0.5 * np.pi * min(2.0, float(time or 0.0))))
+    words = "the foot fails" if foot is not None else "the foot holds"
+    return close((FROM_PA + SHARE * float(pull)) / LAST_PA, min(1.0, ratio), 0.01, words)
+
+
+def turns(runs: Mapping[str, Run], walked: str) -> float:
+    """The value between the last run whose foot failed and the first one whose foot held; raises LoadError where they are mixed."""
+    values: dict[bool, list[float]] = {True: [], False: []}
+    for run in runs.values():
+        values[failed_s(run, FOOT) is not None].append(strength(run) if walked == "strength" else damping(run))
+    if not values[True] or not values[False] or max(values[True]) >= min(values[False]):
+        raise LoadError("feet that fail and feet that hold are not on two sides of one value")
+    return 0.5 * (max(values[True]) + min(values[False]))
+
+
+def by_strength(runs: Mapping[str, Run]) -> float:
+    """The strength at which the foot ceases to fail."""
+    return turns(runs, "strength")
+
+
+def by_damping(runs: Mapping[str, Run]) -> float:
+    """The damping at which the foot ceases to fail."""
+    return turns(runs, "damping")
+
+
+def foot_setting(ratio: float) -> str:
+    """The foot's strength over the last bond's, as a scene key."""
+    return f"interface.foot.tensile_strength_Pa={ratio * LAST_PA:.8g}"
+
+
+def walk(ratios: tuple[float, ...], smoke: tuple[float, ...], variant: str = "", more: tuple[str, ...] = ()) -> tuple[Point, ...]:
+    """Runs over the foot's strength."""
+    return tuple(Point(f"{ratio:g}", ratio, SCENE, (foot_setting(ratio), *more), variant, smoke=ratio in smoke) for ratio in ratios)
+
+
+def slow(over_s: float) -> Point:
+    """A run pulled over so long a time, whose foot never fails."""
+    keys = (foot_setting(9.0), pull_setting(0.12, over_s), f"stop.time_s={0.65 * over_s + SWING_S!r}")
+    return Point(f"{over_s:g} s", over_s, SCENE, keys, smoke=over_s == 2.0)
+
+
+def damped(c: float) -> Point:
+    """A damped run."""
+    return Point(f"{c:g}", c, SCENE, (foot_setting(DAMPED_RATIO), f"numerics.damping_1_s={c!r}"), smoke=c in (0.1, 0.3))
+
+
+STRENGTH = Parameter("strength of the foot over that of the bond above")
+NAME = "tension at the foot less that of theory"
+TWO_MODES = "(w_2^2 + w_1^2)/(w_2^2 - w_1^2) of two blocks on springs, reached after one period of the slow mode as w_2/w_1 is"
+STILL = ("numerics.mechanics=quasistatic", f"in_situ.vertical_Pa={-FROM_PA!r}", pull_setting(PULL_M_S2, 2.0), "stop.time_s=2")
+
+FAMILIES = (
+    Family(
+        "cascade", "A bond fails: blocks alike, with inertia",
+        "With inertia the foot fails too unless it is stronger by the swing of two like blocks.", STRENGTH,
+        walk((1.05, 1.2, 1.3, 1.36, 1.375, 1.385, 1.4, 1.45, 1.7), (1.3, 1.45)), swung, section=SECTION, about=ABOUT, check_name=NAME,
+        edge=Edge(f"With inertia: {TWO_MODES} 5/2, or 3/2 for the light block.", lambda: most(chain(""), 0.0, SWING_S), read=by_strength, unsound_above=False), remark=REMARK,
+    ),
+    Family(
+        "cascade_light", "A bond fails: a light block on a heavy one, with inertia",
+        "A light block tuned to a heavy one throws 2.6 times the load that was there onto the foot.", STRENGTH,
+        walk((1.1, 1.5, 2.0, 2.4, 2.54, 2.58, 2.62, 2.7, 3.0), (2.0,), "light"), swung, section=SECTION, check_name=NAME,
+        edge=Edge("", lambda: most(chain("light"), 0.0, SWING_S), read=by_strength, unsound_above=False),
+    ),
+    Family(
+        "cascade_still", "A bond fails: without inertia", "Without inertia the weaker bond fails at its strength, and the other one holds.", STRENGTH,
+        walk((0.6, 0.8, 0.95, 0.99, 1.01, 1.05, 1.2, 1.4), (0.95, 1.05), more=STILL), weaker_fails, section=SECTION, check_name="load at the failure less the weaker strength",
+        edge=Edge("Without inertia: equilibrium of a chain, whose weakest link fails and unloads all others.", lambda: 1.0, read=by_strength, unsound_above=False),
+    ),
+    Family(
+        "cascade_damped", "A bond fails: damping, with inertia", f"Damping brings the answer with inertia to the other one: a foot that is {DAMPED_RATIO:g} times as strong holds beyond the edge.",
+        Parameter("damping", "1/s"), tuple(damped(c) for c in (0.0, 0.1, 0.15, 0.19, 0.197, 0.202, 0.21, 0.3, 0.5, 1.0)), swung,
+        section=SECTION, check_name=NAME,
+        edge=Edge(
+            f"With damping: modes decay as e^(-c t/2); the c at which what the foot carries just reaches {DAMPED_RATIO:g}.",
+            lambda: damping_for(chain(""), DAMPED_RATIO, SWING_S), read=by_damping, unsound_above=False,
+        ),
+    ),
+    Family(
+        "cascade_slow", "A bond fails: how slowly it was loaded", "Slower loading does not make the failure slower: the foot's swing is the same.", Parameter("time of the pull", "s"),
+        tuple(slow(time) for time in (1.5, 2.0, 4.0, 8.0)), swung, beyond=(STABLE,), section=SECTION, check_name=NAME,
+    ),
+)  # fmt: skip
