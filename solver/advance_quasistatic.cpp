@@ -1,5 +1,7 @@
 #include "advance_quasistatic.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -340,6 +342,10 @@ void measure_release(const Scene& scene, const std::vector<Elasticity>& rocks, d
   }
 }
 
+[[noreturn]] void no_way_on(const char* when, double time, const std::string& reason) {
+  throw NumericalFailure(fmt::format("at t = {:.6g} s, {}: {}", time, when, reason));
+}
+
 // What is due at the present load: the worst bonded column fails or, where none does, tips grow.
 void let_happen(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
   const LoadPoint before = load_point(state);
@@ -358,7 +364,7 @@ void let_happen(const Scene& scene, const std::vector<Elasticity>& rocks, State&
   rebuild_all(scene, rocks, state, run);
   if (!growing.empty()) measure_release(scene, rocks, energy_before, growing, state, run);
   const FluidStep fluid = advance_fluid(scene, 0.0, state, run.model);
-  if (!fluid.found) throw NumericalFailure("after growth at t = " + std::to_string(state.time) + " s: " + fluid.reason);
+  if (!fluid.found) no_way_on("just after growth or failure", state.time, fluid.reason);
   equilibrate(scene, rocks, state, run);
   accept(scene, before, growing.empty() ? Change::failure : Change::growth, state, run);
   state.dt = first_flow_step;
@@ -408,7 +414,7 @@ void locate_event(const Scene& scene, const std::vector<Elasticity>& rocks, cons
     side = beyond ? 1 : -1;
   }
   const FluidStep last = try_step(scene, rocks, from, high, state, run);
-  if (!last.found) throw NumericalFailure(last.reason);
+  if (!last.found) no_way_on("before the next event", from.time, last.reason);
 }
 
 }  // namespace
@@ -457,8 +463,7 @@ void advance_quasistatic(const Scene& scene, const std::vector<Elasticity>& rock
   for (bool good = false; !good; dt *= good ? 1.0 : 0.5) {
     fluid = try_step(scene, rocks, from, dt, state, run);
     change = fluid.found ? std::abs(run.margin - margin) : 0.0;
-    if (!fluid.found && dt < shortest_trial)
-      throw NumericalFailure("at t = " + std::to_string(from.time) + " s, in any step: " + fluid.reason);
+    if (!fluid.found && dt < shortest_trial) no_way_on("in any step", from.time, fluid.reason);
     const bool event = run.margin >= 1.0;
     good = fluid.found && (!flows || event || change < 2.0 * aim) && fluid.error < 4.0;
     good = good || (fluid.found && dt < shortest_trial);

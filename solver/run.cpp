@@ -225,8 +225,8 @@ Outcome run_to_end(Run& run, const RunFolder& folder, const RunOptions& options,
     looks_at_signals = 1;
     outcome = march(run, options.checkpoint_every_s, progress);
   } catch (const NumericalFailure& failure) {
-    outcome = {numerics_failed,
-               fmt::format("{} The last good state, of step {}, is in checkpoint.bin.", failure.what(), run.good.step)};
+    outcome = {numerics_failed, fmt::format("{}. The last good state, of step {}, is in checkpoint.bin.",
+                                            failure.what(), run.good.step)};
     record.status = "failed";
     run.state = run.good;
     run.recorder.checkpoint(run.scene, run.good, run.good_mark);
@@ -281,7 +281,7 @@ int fail_at_start(const Scene& scene, const RunFolder& folder, const NumericalFa
                   Clock::time_point start) {
   RunRecord record = make_record(scene);
   record.status = "failed";
-  record.reason = fmt::format("{} The run has no state yet.", failure.what());
+  record.reason = fmt::format("{}. The run has no state yet.", failure.what());
   record.wall_s = seconds_since(start);
   fmt::print(stderr, "{}\n", record.reason);
   try {

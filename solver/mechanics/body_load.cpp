@@ -26,7 +26,7 @@ void require_balance(const Scene& scene, const State& state) {
   const auto refuse = [](const char* what, double value, const char* unit, const char* advice) {
     throw NumericalFailure(
         fmt::format("the body force {} the whole block with {} {} per metre, and no edge holds it. Use "
-                    "{}, or a force without resultant.",
+                    "{}, or a force without resultant",
                     what, value, unit, advice));
   };
   if (free_x && std::abs(sum.x()) > balanced * size.x()) refuse("pushes", sum.x(), "N", "domain.sides = \"fixed\"");

@@ -1,5 +1,7 @@
 #include "mechanics/interface_laws.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -200,6 +202,21 @@ void note_sweeps(int sweeps, double change, double largest, Monitors& monitors) 
   note_largest(monitors.contact_left, change / std::max(largest, 1.0));
 }
 
+void require_settled(int sweeps, double change, double largest, const State& state) {
+  if (sweeps < most_sweeps) return;
+  double traction = std::max(largest, 1.0);
+  for (const Surface& surface : state.surfaces) {
+    for (const SurfacePoint& s : surface.points) {
+      if (s.split) traction = std::max({traction, std::abs(s.P), s.in_situ.norm()});
+    }
+  }
+  if (change <= most_left * traction) return;
+  throw NumericalFailure(
+      fmt::format("step {}: contact, friction and springs were not solved: after {} sweeps a reaction still changed by "
+                  "{:.3g} Pa, the largest traction being {:.3g} Pa. Use a smaller coefficient of friction",
+                  state.step, sweeps, change, traction));
+}
+
 bool fails(const InterfaceLaw& law, const Reaction& r) {
   return failure_index(law, r.n, r.t) >= 1.0;
 }
@@ -249,6 +266,7 @@ void solve_reactions(const Scene& scene, const std::vector<Elasticity>& rocks, S
     }
   }
   note_sweeps(sweeps, change, largest, state.monitors);
+  require_settled(sweeps, change, largest, state);
   for (const SplitPlace& place : places)
     note_jump(*place.law, state.dt * jump_rate(place, state.motion), *place.s, state);
   state.places.clear();  // they point into the surfaces

@@ -35,6 +35,9 @@ Reaction react(const InterfaceLaw& law, double k, const FreeJump& w);
 constexpr double reaction_tolerance = 1e-6;
 // Bounds the time of a step; steps that end here are counted in the monitors.
 constexpr int most_sweeps = 200;
+// Share of the largest traction that the last sweep of a step may change. What the experiments leave is below 3e-3 of
+// the largest reaction; friction coefficients of 1e3 and more leave more than this.
+constexpr double most_left = 0.1;
 
 /// One visit of successive over-relaxation to a place whose reaction is `now`: past react(), but never out of what the
 /// law allows.
@@ -54,6 +57,11 @@ void note_jump(const InterfaceLaw& law, const Vec2& dw, SurfacePoint& s, State& 
 /// against the largest reaction (Pa, 1 at least).
 void note_sweeps(int sweeps, double change, double largest, Monitors& monitors);
 
+/// Ends the run where a step ran out of sweeps while a reaction still changed by more than a tenth (most_left) of the
+/// largest traction at any split place (Pa: reaction, fluid or in-situ, 1 at least): reactions that far from their laws
+/// are no solution. What is left below that is noted, and marks the run. Throws NumericalFailure.
+void require_settled(int sweeps, double change, double largest, const State& state);
+
 /// True if a bonded place fails under the reaction r: where failure_index() is 1 or more. Throws nothing.
 bool fails(const InterfaceLaw& law, const Reaction& r);
 
@@ -64,8 +72,8 @@ bool fail_interfaces(const Scene& scene, const std::vector<Elasticity>& rocks, S
 
 /// Finds the reactions of all split places and of the springs of tips together (successive over-relaxation on D M^-1
 /// D^T, started from the last step's reactions) and adds what they do to state.motion, which holds the motion without
-/// them. Jumps are those at the end of the step. Adds to the ledger's friction, to slip and to the monitors. Throws
-/// nothing: a solve that runs out of sweeps is counted there.
+/// them. Jumps are those at the end of the step. Adds to the ledger's friction, to slip and to the monitors. A
+/// solve that runs out of sweeps is counted there. Throws NumericalFailure as require_settled() does.
 void solve_reactions(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
 
 /// Energy in the springs of soft interfaces, sum A (D_n w_n^2 + D_t w_t^2)/2, and of tips, sum k w^2/2 (J/m).

@@ -186,6 +186,7 @@ void find_reactions(State& state, TotalSurfaces& surfaces) {
     }
   }
   note_sweeps(sweeps, change, largest, state.monitors);
+  require_settled(sweeps, change, largest, state);
 }
 
 // The place's jump at the end of the step, and what was done on the way.

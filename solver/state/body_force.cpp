@@ -37,7 +37,7 @@ std::vector<Vec2> evaluate(const char* key, const Formulas& formulas, const Star
       const std::string when = time != nullptr ? fmt::format(", t = {} s", *time) : "";
       throw NumericalFailure(
           fmt::format("{}[{}] = \"{}\" is {} at X = {} m, Y = {} m{}: give a formula that is finite in "
-                      "the whole block.",
+                      "the whole block",
                       key, k, formulas[k], values[q], start.X[q], start.Y[q], when));
     }
   }
