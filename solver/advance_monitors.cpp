@@ -133,7 +133,7 @@ void require_finite(const State& state) {
   }
   throw NumericalFailure(
       fmt::format("step {}, t = {:.6g} s: energies of the ledger are no finite numbers: {}. Check the "
-                  "sizes of the scene's loads and stiffnesses.",
+                  "sizes of the scene's loads and stiffnesses",
                   state.step, state.time, which));
 }
 
