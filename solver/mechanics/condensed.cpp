@@ -22,15 +22,10 @@ std::uint64_t fingerprint(const Particles& p, std::size_t q) {
   return bits ^ (bits >> 31U);
 }
 
-bool is_cut(const State& state, int record) {
-  const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
-  return state.copies.cut_of_node[static_cast<std::size_t>(node)] >= 0;
-}
-
 std::vector<std::uint64_t> fingerprints(const State& state) {
   std::vector<std::uint64_t> prints(static_cast<std::size_t>(state.copies.records()), 0);
   for (const Bin& bin : state.bins) {
-    if (std::none_of(bin.record.begin(), bin.record.end(), [&](int r) { return is_cut(state, r); })) continue;
+    if (std::none_of(bin.record.begin(), bin.record.end(), [&](int r) { return is_cut(state.copies, r); })) continue;
     std::uint64_t sum = 0;
     for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
          q += static_cast<std::size_t>(bin.stride))

@@ -6,7 +6,6 @@
 #include "mechanics/stiffness.hpp"
 #include "mechanics/surface_tractions.hpp"
 #include "mechanics/tip_ties.hpp"
-#include "mechanics/transfers.hpp"
 
 namespace strata {
 
@@ -35,7 +34,7 @@ void set_particles(const Scene& scene, const std::vector<Vec2>& u, const std::ve
 std::vector<char> watched_bins(const Scene& scene, const State& state, const Bonds& bonds) {
   if (scene.body.acceleration_m_s2) return std::vector<char>(state.bins.size(), 1);  // its work needs them all
   const double around_tip_cells =
-      2.0 * scene.numerics.ring_cells;  // J's widest ring, and what its weight reaches beyond
+      scene.numerics.ring_cells + 2.0;  // J's widest ring, and what its weight reaches beyond
   const Particles& p = state.particles;
   std::vector<char> particle(p.size(), 0);
   for (const BondSample& sample : bonds.samples) {
@@ -54,6 +53,20 @@ std::vector<char> watched_bins(const Scene& scene, const State& state, const Bon
     }
   }
   return watched;
+}
+
+// Masses of the copies of cut nodes (kg/m), which tell those that have rock; others' are not complete.
+void weigh_copies(const Scene& scene, State& state) {
+  state.sums.clear(state.sums.size());
+  const Particles& p = state.particles;
+  for (const Bin& bin : state.bins) {
+    if (std::none_of(bin.record.begin(), bin.record.end(), [&](int r) { return is_cut(state.copies, r); })) continue;
+    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+         q += static_cast<std::size_t>(bin.stride)) {
+      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]);
+      for (std::size_t n = 0; n < 9; ++n) state.sums[static_cast<std::size_t>(bin.record[n])].m += g.N[n] * p.m[q];
+    }
+  }
 }
 
 // The records that some bins reach.
@@ -81,7 +94,7 @@ double plastic_slip(const ContactPlace& place, const LawAnswer& r, const Vec2& w
 void update_model(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, QuasistaticModel& model,
                   bool halve) {
   rebuild(scene, rocks, state);
-  particles_to_grid(scene, rocks, state);  // which copies have mass
+  weigh_copies(scene, state);
   update_stencil_weights(scene, state);
   const bool halved = halve && mirror_symmetric(scene, state);
   const bool same_body = model.body && model.body->particles() == state.particles.size();

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -85,12 +85,19 @@ void write_interface(hdf5::Id group, const Scene& scene, const Surface& surface)
   hdf5::write(group, "failed_s", collect(points, [](const SurfacePoint& s) { return s.failed_s; }), "s");
 }
 
+// Particles in the order of their ids, of which there is one each below next_id and some may be gone.
+std::vector<std::size_t> by_id(const Particles& particles) {
+  constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> order(static_cast<std::size_t>(particles.next_id), none);
+  for (std::size_t p = 0; p < particles.size(); ++p) order.at(static_cast<std::size_t>(particles.id[p])) = p;
+  std::erase(order, none);
+  return order;
+}
+
 void write_particles(hdf5::Id group, const Scene& scene, const State& state) {
   const Particles& particles = state.particles;
   const std::vector<Elasticity> rocks = make_elasticities(scene);
-  std::vector<std::size_t> order(particles.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return particles.id[a] < particles.id[b]; });
+  const std::vector<std::size_t> order = by_id(particles);
 
   std::vector<float> field(order.size());
   const auto put = [&](const char* name, const char* unit, auto value) {

@@ -83,6 +83,11 @@ struct SurfaceStencil {
   std::array<double, 9> N{};
 };
 
+/// Whether a record is a copy of a cut node.
+inline bool is_cut(const Copies& copies, int record) {
+  return copies.cut_of_node[static_cast<std::size_t>(copies.node_of_record[static_cast<std::size_t>(record)])] >= 0;
+}
+
 /// The copy of a node that a place with these sides belongs to: index of its record, or -1 where no such copy exists.
 int record_of(const Copies& copies, int node, SideWord sides);
 

@@ -76,14 +76,30 @@ struct Corners {
   std::vector<Corner> all;
 };
 
+// By node, whether the 3 x 3 nodes around it have corners.
+std::vector<char> near_corners(const State& state) {
+  const Grid& g = state.grid;
+  std::vector<char> near(static_cast<std::size_t>(g.nodes()), 0);
+  for (int node = 0; node < g.nodes(); ++node) {
+    const int c = state.copies.cut_of_node[static_cast<std::size_t>(node)];
+    if (c < 0 || !has_corners(state.copies.cut[static_cast<std::size_t>(c)])) continue;
+    for (int j = std::max(g.row(node) - 1, 0); j <= std::min(g.row(node) + 1, g.ny); ++j) {
+      for (int i = std::max(g.column(node) - 1, 0); i <= std::min(g.column(node) + 1, g.nx); ++i)
+        near[static_cast<std::size_t>(g.node(i, j))] = 1;
+    }
+  }
+  return near;
+}
+
 // sum_p V_p |grad N_i| of each corner of each cut node that has some.
 std::vector<Corners> corners_of(const Scene& scene, const State& state) {
   std::vector<Corners> corners(state.copies.cut.size());
   const Particles& p = state.particles;
   const Grid& grid = state.grid;
+  const std::vector<char> near = near_corners(state);
   for (std::size_t q = 0; q < p.size(); ++q) {
     const int i = grid.column_at(p.x[q]), j = grid.row_at(p.y[q]);
-    if (i < 0 || i > grid.nx || j < 0 || j > grid.ny) continue;
+    if (i < 0 || i > grid.nx || j < 0 || j > grid.ny || near[static_cast<std::size_t>(grid.node(i, j))] == 0) continue;
     for (std::size_t n = 0; n < 9; ++n) {
       const int node = grid.node(i + static_cast<int>(n % 3) - 1, j + static_cast<int>(n / 3) - 1);
       const int c = state.copies.cut_of_node[static_cast<std::size_t>(node)];

@@ -8,6 +8,8 @@ namespace strata {
 
 namespace {
 
+constexpr double on_it = 1e-9;  // of a segment's length: nearer than this a place is on the surface, and on its + side
+
 struct Foot {
   double distance2 = 0.0;
   double along = 0.0;  // from the segment's start (m), beyond its ends where it is extended
@@ -41,11 +43,14 @@ Projection project(const Surface& surface, const Vec2& x, double reach) {
   if (foot.along >= L && best + 1 < n) normal = v[best + 1].n;
   if (foot.along <= 0.0 && best > 0) normal = v[best].n;
   const Vec2 off = x - v[best].x - d * foot.along;
-  const bool plus = off.dot(normal) >= -1e-9 * L;
+  const bool plus = off.dot(normal) >= -on_it * L;
   return {(plus ? 1.0 : -1.0) * std::sqrt(foot.distance2), v[best].arc + foot.along};
 }
 
 bool side(const Surface& surface, const Vec2& x, double reach) {
+  const SurfacePoint& first = surface.points.front();
+  if (std::all_of(surface.points.begin(), surface.points.end(), [&](const SurfacePoint& s) { return s.n == first.n; }))
+    return (x - surface.vertices.front().x).dot(first.n) >= -on_it * first.A;
   return project(surface, x, reach).distance >= 0.0;
 }
 

@@ -36,7 +36,8 @@ Eigen::MatrixXd schur_complement(Statics& s) {
   Eigen::MatrixXd T = Eigen::MatrixXd::Zero(K.rows(), base + jumps);  // records from (u, j)
   for (int record = 0; record < s.state().copies.records(); ++record) {
     const auto r = static_cast<std::size_t>(record);
-    if (condensed.masters[r].record != record || s.state().sums[r].m == 0.0) continue;
+    if (condensed.masters[r].record != record || (is_cut(s.state().copies, record) && s.state().sums[r].m == 0.0))
+      continue;
     for (int c = 0; c < 2; ++c) {
       const Unknown u = unknown_of(body.masters(), s.state().copies.node_of_record[r], c);
       const int j = condensed.jump_of_record[r][static_cast<std::size_t>(c)];
