@@ -24,7 +24,7 @@ void append_particle(const Scene& scene, const std::vector<Elasticity>& rocks, c
   p.x.push_back(x.at), p.y.push_back(y.at);
   p.V.push_back(x.length * y.length);
   p.m.push_back(rocks[rock].rho * x.length * y.length);
-  p.half.push_back(0.5 * std::min(x.length, y.length));
+  p.half_x.push_back(0.5 * x.length), p.half_y.push_back(0.5 * y.length);
   p.rock.push_back(static_cast<std::uint8_t>(rock));
   p.sides.push_back(0);
   p.in_situ.push_back({-scene.in_situ.horizontal_Pa, -scene.in_situ.vertical_Pa, 0.0});

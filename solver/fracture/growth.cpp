@@ -120,8 +120,9 @@ bool off_grid(const SurfacePoint& s, double h) {
 }
 
 void split_particle(Particles& p, std::size_t q) {
-  const double quarter = 0.5 * p.half[q], x = p.x[q], y = p.y[q], u_x = p.u_x[q], u_y = p.u_y[q];
-  p.m[q] *= 0.25, p.V[q] *= 0.25, p.half[q] *= 0.5;
+  p.m[q] *= 0.25, p.V[q] *= 0.25, p.half_x[q] *= 0.5, p.half_y[q] *= 0.5;
+  const Vec2 quarter = p.half(q);
+  const double x = p.x[q], y = p.y[q], u_x = p.u_x[q], u_y = p.u_y[q];
   for (int child = 3; child >= 0; --child) {
     std::size_t c = q;
     if (child > 0) {
@@ -129,7 +130,8 @@ void split_particle(Particles& p, std::size_t q) {
       c = p.size() - 1;
       p.id[c] = p.next_id++;
     }
-    const double d_x = (child & 1) != 0 ? quarter : -quarter, d_y = (child & 2) != 0 ? quarter : -quarter;
+    const double d_x = (child & 1) != 0 ? quarter.x() : -quarter.x(),
+                 d_y = (child & 2) != 0 ? quarter.y() : -quarter.y();
     p.x[c] = x + d_x, p.y[c] = y + d_y;
     p.u_x[c] = u_x + p.g_xx[q] * d_x + p.g_xy[q] * d_y;
     p.u_y[c] = u_y + p.g_yx[q] * d_x + p.g_yy[q] * d_y;

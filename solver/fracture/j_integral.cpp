@@ -148,7 +148,7 @@ ParticleFields particle_fields(const Scene& scene, const State& state, const Bin
   const Particles& p = state.particles;
   ParticleFields f{{{p.g_xx[q], p.g_xy[q]}, {p.g_yx[q], p.g_yy[q]}}, {p.v_x[q], p.v_y[q]}};
   if (!state.total.based) return f;
-  const Gradients w = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]);
+  const Gradients w = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
   f.v.setZero();
   for (std::size_t n = 0; n < 9; ++n) {
     const Vec2 u = total_displacement(state, bin.record[n]);

@@ -156,7 +156,7 @@ std::vector<Entries> assemble_jumps(const Scene& scene, const std::vector<Elasti
     for (const Member& m : members) {
       if (body.halved() && p.x[m.q] > 0.5 * scene.domain.width_m) continue;
       LocalStiffness K = LocalStiffness::Zero();
-      const Gradients g = gradients_at(scene, state.grid, m.bin->i, m.bin->j, {p.x[m.q], p.y[m.q]}, p.half[m.q]);
+      const Gradients g = gradients_at(scene, state.grid, m.bin->i, m.bin->j, {p.x[m.q], p.y[m.q]}, p.half(m.q));
       add_stiffness(rocks[p.rock[m.q]], g, body.halved() ? 2.0 * p.V[m.q] : p.V[m.q], K);
       add_particle(K, *m.bin, body, out, state, is_new, out.K_jj, G);
     }
@@ -264,7 +264,7 @@ void remove_rigid_motion(const Scene& scene, const State& state, bool halved, st
     for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
          q += static_cast<std::size_t>(bin.stride)) {
       const Vec2 x{p.x[q], p.y[q]};
-      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, x, p.half[q]);
+      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, x, p.half(q));
       Vec2 u_p = Vec2::Zero();
       for (std::size_t n = 0; n < 9; ++n) u_p += g.N[n] * u[static_cast<std::size_t>(bin.record[n])];
       mean += p.V[q] * u_p;

@@ -21,7 +21,7 @@ void load_point(const Scene& scene, const State& state, const Vec2& x, const Vec
                 Eigen::VectorXd& f) {
   const Grid& g = state.grid;
   const int i = std::min(g.column_at(x.x()), g.nx), j = std::min(g.row_at(x.y()), g.ny);
-  const Gradients weights = gradients_at(scene, g, i, j, x, 1e-6 * g.h);
+  const Gradients weights = gradients_at(scene, g, i, j, x, Vec2::Constant(1e-6 * g.h));
   for (std::size_t node = 0; node < 9; ++node) {
     const int record = g.node(i + static_cast<int>(node % 3) - 1, j + static_cast<int>(node / 3) - 1);
     for (int component = 0; component < 2; ++component) {
@@ -85,7 +85,7 @@ void load_in_situ(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
   for (const Bin& bin : state.bins) {
     for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
          q += static_cast<std::size_t>(bin.stride)) {
-      const Gradients g = gradients_at(loaded, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]);
+      const Gradients g = gradients_at(loaded, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
       double e[2][2] = {};
       for (std::size_t n = 0; n < 9; ++n) {
         for (int component = 0; component < 2; ++component) {

@@ -66,7 +66,7 @@ struct ColumnWeights {
   std::array<Vec2, 3> grad{Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
 };
 
-ColumnWeights column_weights(const Builder& b, const Vec2& x, double half) {
+ColumnWeights column_weights(const Builder& b, const Vec2& x, const Vec2& half) {
   const Grid& g = b.state.grid;
   const int i = std::clamp(g.column_at(x.x()), 0, g.nx), j = std::clamp(g.row_at(x.y()), 0, g.ny);
   const Gradients N = gradients_at(b.scene, g, i, j, x, half);
@@ -90,7 +90,7 @@ void add_particles(Builder& b) {
     const Vec2 x{p.x[q], p.y[q]};
     const int across = b.band.along_x ? g.row_at(x.y()) : g.column_at(x.x());
     if (across < b.band.first - 2 || across > b.band.last + 2) continue;
-    const ColumnWeights w = column_weights(b, x, p.half[q]);
+    const ColumnWeights w = column_weights(b, x, p.half(q));
     const bool plus = (p.sides[q] & b.surface.mask()) != 0;
     for (std::size_t a = 0; a < 3; ++a) {
       if (w.grad[a].isZero() && (!has_body || w.Phi[a] == 0.0)) continue;
@@ -108,7 +108,7 @@ void add_faces(Builder& b) {
     const Grid& g = b.state.grid;
     const int across = b.band.along_x ? g.row_at(s.x.y()) : g.column_at(s.x.x());
     if (across < b.band.first - 2 || across > b.band.last + 2) continue;
-    const ColumnWeights w = column_weights(b, s.x, 0.0);
+    const ColumnWeights w = column_weights(b, s.x, Vec2::Zero());
     const bool plus = (s.sides & b.surface.mask()) != 0;
     for (std::size_t a = 0; a < 3; ++a) {
       if (w.Phi[a] == 0.0) continue;
@@ -124,7 +124,7 @@ void add_faces(Builder& b) {
 // The same rule along the interface as the particles': then a uniform stress implies its own traction to round-off, at
 // columns that an edge or the fracture cuts off too.
 void add_lengths(Builder& b) {
-  const auto& sizes = b.state.particles.half;
+  const auto& sizes = b.band.along_x ? b.state.particles.half_x : b.state.particles.half_y;
   const double half = *std::min_element(sizes.begin(), sizes.end());
   for (std::size_t q = 0; q < b.surface.points.size(); ++q) {
     const SurfacePoint& s = b.surface.points[q];
@@ -132,7 +132,7 @@ void add_lengths(Builder& b) {
     for (int part = 0; part < parts; ++part) {
       const Vec2 along{s.n.y(), -s.n.x()};
       const Vec2 x = s.x + s.A * ((part + 0.5) / parts - 0.5) * along;
-      const ColumnWeights w = column_weights(b, x, 0.0);
+      const ColumnWeights w = column_weights(b, x, Vec2::Zero());
       const SideWord sides = sides_at(b.state, x, b.surface.bit);
       for (std::size_t a = 0; a < 3; ++a) {
         const double share = s.A / parts * w.Phi[a];

@@ -19,7 +19,7 @@ void set_particles(const Scene& scene, const std::vector<Vec2>& u, const std::ve
     const Bin& bin = state.bins[b];
     for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
          q += static_cast<std::size_t>(bin.stride)) {
-      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]);
+      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
       Vec2 u_p = Vec2::Zero(), d_x = Vec2::Zero(), d_y = Vec2::Zero();
       for (std::size_t n = 0; n < 9; ++n) {
         const Vec2& u_i = u[static_cast<std::size_t>(bin.record[n])];

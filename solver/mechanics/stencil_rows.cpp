@@ -73,7 +73,7 @@ BinKind make_kind(const Scene& scene, const std::vector<Elasticity>& rocks, cons
   BinKind kind;
   for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
        q += static_cast<std::size_t>(bin.stride)) {
-    const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]);
+    const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
     add_stiffness(rocks[p.rock[q]], g, p.V[q], kind.K);
     for (std::size_t n = 0; n < 9; ++n) kind.m[n] += g.N[n] * p.m[q];
   }

@@ -29,7 +29,7 @@ Eigen::SparseMatrix<double> assemble_stiffness(const Scene& scene, const std::ve
     LocalStiffness K = LocalStiffness::Zero();
     for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
          q += static_cast<std::size_t>(bin.stride)) {
-      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]);
+      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
       add_stiffness(rocks[p.rock[q]], g, p.V[q], K);
     }
     for (int r = 0; r < 18; ++r) {

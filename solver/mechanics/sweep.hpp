@@ -23,7 +23,7 @@ namespace strata {
 // The arrays that a sweep works on. take_x and take_y are what particles' velocities take up.
 struct SweepArrays {
   double *x, *y, *u_x, *u_y, *v_x, *v_y, *g_xx, *g_xy, *g_yx, *g_yy;
-  const double *m, *V, *half;
+  const double *m, *V, *half_x, *half_y;
   const std::uint8_t* rock;
   const double *node_v_x, *node_v_y, *take_x, *take_y;
   double *sum_m, *sum_mom_x, *sum_mom_y, *sum_f_x, *sum_f_y;
@@ -72,6 +72,12 @@ template <class Lanes>
   for (std::size_t a = 0; a < 3; ++a) c[0][a] -= c[1][a], c[2][a] -= c[1][a];
 }
 
+// Halves of the sizes of particles along both axes.
+template <class Real>
+struct ParticleSizes {
+  ParticleSize<Real> x, y;
+};
+
 // Outer weights of a place on both axes.
 template <class Real>
 struct PlaceWeights {
@@ -80,10 +86,10 @@ struct PlaceWeights {
 
 template <class Shape, class Spans, class Real>
 [[gnu::always_inline]] inline PlaceWeights<Real> weights_at(const Spans& at, const Real& x, const Real& y,
-                                                            const ParticleSize<Real>& size) {
+                                                            const ParticleSizes<Real>& size) {
   const SpanShares<Real> y_share{Real{} + at.y.share.before, Real{} + at.y.share.after};
-  return {Shape::outer((x - at.x.node) * at.x.per_length, at.x.share, size),
-          Shape::outer((y - at.y.node) * at.y.per_length, y_share, size)};
+  return {Shape::outer((x - at.x.node) * at.x.per_length, at.x.share, size.x),
+          Shape::outer((y - at.y.node) * at.y.per_length, y_share, size.y)};
 }
 
 template <class Real>
@@ -300,7 +306,8 @@ void sweep_block(const Lanes lanes, const std::vector<Elasticity>& rocks, const 
   for (int first = bin.first; first < bin.last; first += bin.stride) {
     const auto q = static_cast<std::size_t>(first);
     const Elasticity& rock = rocks[arrays.rock[q]];
-    const ParticleSize<Real> size = Shape::template size<Real>(lanes, arrays.half + q, at.y.per_length);
+    const ParticleSizes<Real> size{Shape::template size<Real>(lanes, arrays.half_x + q, at.x.per_length),
+                                   Shape::template size<Real>(lanes, arrays.half_y + q, at.y.per_length)};
     ParticleState<Real> is = load_particles(lanes, arrays, q);
     if constexpr (Move) {
       const Real off_x = (is.x - at.x.node) * at.x.per_length, off_y = (is.y - at.y.node) * at.y.per_length;

@@ -21,7 +21,7 @@ void for_each_particle(const Scene& scene, const State& state, Visit visit) {
     for (const Bin& bin : state.bins) {
       for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
            q += static_cast<std::size_t>(bin.stride))
-        visit(bin, q, gradients_of<decltype(shape)>(state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]));
+        visit(bin, q, gradients_of<decltype(shape)>(state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q)));
     }
   });
 }

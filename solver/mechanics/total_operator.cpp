@@ -257,7 +257,7 @@ void apply_particles(const Scene& scene, const std::vector<Elasticity>& rocks, S
     for (std::size_t n = 0; n < 9; ++n) u[n] = total_displacement(state, bin.record[n]);
     for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
          q += static_cast<std::size_t>(bin.stride)) {
-      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]);
+      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
       Vec2 u_1 = Vec2::Zero(), u_2 = Vec2::Zero();
       for (std::size_t n = 0; n < 9; ++n) u_1 += g.N_x[n] * u[n], u_2 += g.N_y[n] * u[n];
       const Stress s = stress_of(rocks[p.rock[q]], u_1.x(), u_2.x(), u_1.y(), u_2.y());

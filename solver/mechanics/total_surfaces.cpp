@@ -288,7 +288,7 @@ void add_sample(const Scene& scene, const std::vector<Elasticity>& rocks, const 
   const Elasticity& rock = rocks[p.rock[q]];
   const Stress change = stress_of(rock, p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]);
   sensor.base -= sample.weight * (p.in_situ[q] + change).on(n);
-  const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]);
+  const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
   for (std::size_t k = 0; k < 9; ++k) {
     const auto r = static_cast<std::size_t>(bin.record[k]);
     const Master& master = state.masters[r];

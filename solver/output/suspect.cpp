@@ -45,11 +45,12 @@ void watch_energy(const Scene& scene, const State& state, std::vector<Watched>& 
 // carried them back has left its mark on the energy.
 double share_crossed(const State& state) {
   const Particles& p = state.particles;
-  const auto other = [&](double x, double u) {
-    return std::floor(x / state.grid.h) != std::floor((x - u) / state.grid.h);
-  };
+  const Grid& g = state.grid;
   std::size_t crossed = 0;
-  for (std::size_t q = 0; q < p.size(); ++q) crossed += other(p.x[q], p.u_x[q]) || other(p.y[q], p.u_y[q]);
+  for (std::size_t q = 0; q < p.size(); ++q) {
+    crossed += g.cell_along_x(p.x[q]) != g.cell_along_x(p.x[q] - p.u_x[q]) ||
+               g.cell_along_y(p.y[q]) != g.cell_along_y(p.y[q] - p.u_y[q]);
+  }
   return p.size() > 0 ? static_cast<double>(crossed) / static_cast<double>(p.size()) : 0.0;
 }
 

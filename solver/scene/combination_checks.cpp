@@ -36,21 +36,6 @@ void check_explicit(const Scene& scene, const Positions& positions, Faults& faul
            "\"quasistatic\", but mechanics = \"explicit\".",
            "Use law = \"paper\" or \"uniform\".");
   }
-  const bool moves = !scene.numerics.keeps_places();
-  if (scene.numerics.far_cell_m && moves) {
-    refuse("numerics.far_cell_m",
-           fmt::format("numerics.far_cell_m = {} grades the grid, and with mechanics = \"explicit\" only kinematics = "
-                       "\"total\" takes a graded one.",
-                       number_text(*scene.numerics.far_cell_m)),
-           "Use kinematics = \"total\", or leave it out: all cells are of cell_m then.");
-  }
-  if (scene.domain.beyond_m > 0.0 && moves) {
-    refuse("domain.beyond_m",
-           fmt::format("domain.beyond_m = {} grades the grid beyond the block, and with mechanics = \"explicit\" only "
-                       "kinematics = \"total\" takes a graded one.",
-                       number_text(scene.domain.beyond_m)),
-           "Use kinematics = \"total\", leave it out, or make the block larger.");
-  }
   if (scene.stop.time_s && *scene.stop.time_s == 0.0) {
     refuse("stop.time_s",
            "stop.time_s = 0 asks for one equilibrium and needs mechanics = \"quasistatic\", but "

@@ -331,7 +331,7 @@ std::vector<Key> numerics_keys() {
       number(
           "numerics.far_cell_m", "m", positive,
           +[](Scene& s, std::size_t) -> std::optional<double>& { return s.numerics.far_cell_m; },
-          "Side of the cells far away, not for explicit kinematics = \"updated\": cells are of cell_m within 10 of "
+          "Side of the cells far away: cells are of cell_m within 10 of "
           "them around the initial fracture and its straight way up to stop.tip_y_m, and within 4 of them around "
           "interfaces and borders of rocks elsewhere; then coarser by at most 1.2 a cell. Left out: uniform."),
       particles,

@@ -90,9 +90,8 @@ std::optional<std::string> too_large(const Scene& scene, double available) {
   const Cells cells = cells_of(scene);
   return fmt::format(
       "too large for this machine: about {:.2g} cells of numerics.cell_m = {} m need about {:.3g} GB, and {:.3g} GB "
-      "are available. Use larger cells{}.",
-      cells.x * cells.y, scene.numerics.cell_m, need / gigabyte, available / gigabyte,
-      scene.numerics.mechanics == Numerics::Mechanics::quasistatic ? ", or grade them with numerics.far_cell_m" : "");
+      "are available. Use larger cells, or grade them with numerics.far_cell_m.",
+      cells.x * cells.y, scene.numerics.cell_m, need / gigabyte, available / gigabyte);
 }
 
 double available_memory() {

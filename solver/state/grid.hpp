@@ -43,6 +43,10 @@ struct Grid {
   int column_at(double x) const { return holding(x_knots, x); }
   int row_at(double y) const { return holding(y_knots, y); }
 
+  // Column (row) of the node before a coordinate (m): that of the cell, from node to node, that it is in.
+  int cell_along_x(double x) const { return column_at(x) - (x < this->x(column_at(x)) ? 1 : 0); }
+  int cell_along_y(double y) const { return row_at(y) - (y < this->y(row_at(y)) ? 1 : 0); }
+
   // True where all spans that meet the square of `reach` m around a place (m) are of h.
   bool fine_around(double x, double y, double reach) const {
     return fine(x_knots, nx, x - reach, x + reach) && fine(y_knots, ny, y - reach, y + reach);

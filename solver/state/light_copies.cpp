@@ -21,7 +21,8 @@ std::vector<double> reached_by_points(const Scene& scene, const State& state, st
   for (std::size_t k = 0; k < points.size(); ++k) {
     const SurfaceStencil& stencil = state.point_stencils[surface][k];
     if (!points[k].split) continue;
-    const Gradients g = gradients_at(scene, state.grid, stencil.i, stencil.j, points[k].x, 0.5 * state.grid.h);
+    const Vec2 half = Vec2::Constant(0.5 * state.grid.h);
+    const Gradients g = gradients_at(scene, state.grid, stencil.i, stencil.j, points[k].x, half);
     for (std::size_t n = 0; n < 9; ++n) {
       if (stencil.plus[n] == stencil.minus[n]) continue;
       for (const int record : {stencil.plus[n], stencil.minus[n]}) {
@@ -42,7 +43,7 @@ std::vector<double> worth_of_particles(const Scene& scene, const State& state, c
       continue;
     for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
          q += static_cast<std::size_t>(bin.stride)) {
-      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]);
+      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
       for (std::size_t n = 0; n < 9; ++n)
         worth[master_of(state, bin.record[n])] += p.V[q] * std::hypot(g.N_x[n], g.N_y[n]);
     }
@@ -105,7 +106,7 @@ std::vector<Corners> corners_of(const Scene& scene, const State& state) {
       const int c = state.copies.cut_of_node[static_cast<std::size_t>(node)];
       if (c < 0 || !has_corners(state.copies.cut[static_cast<std::size_t>(c)])) continue;
       const SideWord key = state.copies.cut[static_cast<std::size_t>(c)].key(p.sides[q]);
-      const Gradients g = gradients_at(scene, grid, i, j, {p.x[q], p.y[q]}, p.half[q]);
+      const Gradients g = gradients_at(scene, grid, i, j, {p.x[q], p.y[q]}, p.half(q));
       corners[static_cast<std::size_t>(c)].node = node;
       auto& of_node = corners[static_cast<std::size_t>(c)].all;
       auto at = std::find_if(of_node.begin(), of_node.end(), [key](const Corner& corner) { return corner.key == key; });

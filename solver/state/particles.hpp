@@ -10,21 +10,22 @@
 namespace strata {
 
 struct Particles {
-  std::vector<double> x, y;        // position (m)
-  std::vector<double> u_x, u_y;    // displacement since the in-situ state (m)
-  std::vector<double> v_x, v_y;    // velocity (m/s)
-  std::vector<double> g_xx, g_xy;  // displacement gradient: g_xy = du_x/dy
-  std::vector<double> g_yx, g_yy;  //
-  std::vector<double> m;           // mass per metre of thickness (kg/m)
-  std::vector<double> V;           // area (m^2)
-  std::vector<double> half;        // half of the side of a particle's square (m), for uGIMP
-  std::vector<std::uint8_t> rock;  // index into Scene::rocks
-  std::vector<SideWord> sides;     // side of each surface
-  std::vector<Stress> in_situ;     // in-situ stress (Pa), tension positive
-  std::vector<std::int32_t> id;    // fixed for life; the arrays are reordered as particles change bins
+  std::vector<double> x, y;            // position (m)
+  std::vector<double> u_x, u_y;        // displacement since the in-situ state (m)
+  std::vector<double> v_x, v_y;        // velocity (m/s)
+  std::vector<double> g_xx, g_xy;      // displacement gradient: g_xy = du_x/dy
+  std::vector<double> g_yx, g_yy;      //
+  std::vector<double> m;               // mass per metre of thickness (kg/m)
+  std::vector<double> V;               // area (m^2)
+  std::vector<double> half_x, half_y;  // half of the sides of a particle's rectangle (m), for uGIMP
+  std::vector<std::uint8_t> rock;      // index into Scene::rocks
+  std::vector<SideWord> sides;         // side of each surface
+  std::vector<Stress> in_situ;         // in-situ stress (Pa), tension positive
+  std::vector<std::int32_t> id;        // fixed for life; the arrays are reordered as particles change bins
   std::int32_t next_id = 0;
 
   std::size_t size() const { return x.size(); }
+  Vec2 half(std::size_t q) const { return {half_x[q], half_y[q]}; }
 };
 
 // What particles say of a step: their kinetic energy (J/m) before and after they took up the grid's motion, the
@@ -42,7 +43,7 @@ template <class AnyParticles, class Visit>
 void for_each_array(AnyParticles& p, Visit visit) {
   visit(p.x), visit(p.y), visit(p.u_x), visit(p.u_y), visit(p.v_x), visit(p.v_y);
   visit(p.g_xx), visit(p.g_xy), visit(p.g_yx), visit(p.g_yy);
-  visit(p.m), visit(p.V), visit(p.half);
+  visit(p.m), visit(p.V), visit(p.half_x), visit(p.half_y);
   visit(p.rock), visit(p.sides), visit(p.in_situ), visit(p.id);
 }
 

@@ -32,7 +32,7 @@ struct SpanShares {
   Real before, after;
 };
 
-// Half the size of a uGIMP particle and 1/(its size), in cells; other shapes are of points.
+// Half the size of a uGIMP particle along an axis and 1/(its size), in spans; other shapes are of points.
 template <class Real>
 struct ParticleSize {
   Real half{}, per_size{};
@@ -40,8 +40,8 @@ struct ParticleSize {
 
 // What the shapes of points, which have no size, share.
 struct OfPoints {
-  template <class Real, class Lanes>
-  static ParticleSize<Real> size(const Lanes& /*lanes*/, const double* /*half*/, double /*per_length*/) {
+  template <class Real, class Lanes, class PerLength>
+  static ParticleSize<Real> size(const Lanes& /*lanes*/, const double* /*half*/, const PerLength& /*per_length*/) {
     return {};
   }
 };
@@ -70,29 +70,31 @@ struct Linear : OfPoints {
   }
 };
 
-// Hat functions averaged over a particle's own length 2 half (in cells), not deformed: uGIMP (Bardenhagen & Kober
-// 2004), for particles that do not reach beyond the nodes beside, half <= 1/2. With the distances A, B that a
-// particle's two ends go past the middle node, 0 where they do not, a node beside has N = (A^2 - B^2)/(4 half) and |dN|
-// = (A - B)/(2 half), in the form that keeps its digits where N is nearly zero: a particle that just touches a node
-// must not give it a mass of round-off. Scenes refuse graded grids.
+// Hat functions averaged over a particle's own length 2 half (in spans), not deformed: uGIMP (Bardenhagen & Kober
+// 2004), for particles that do not reach beyond the nodes beside. With the
+// distances A, B that a particle's two ends go past the middle node, 0 where they do not, and d to a node beside, that
+// one has N = (A^2 - B^2)/(4 half d) and |dN| = (A - B)/(2 half d), in the form that keeps its digits where N is nearly
+// zero: a particle that just touches a node must not give it a mass of round-off. As long as particles' rectangles fill
+// the block sum_p V_p grad N_ip is the integral of grad N_i, on graded cells too, wherever they have moved to.
 struct Ugimp {
   template <class Real>
-  static OuterWeights<Real> outer(const Real& f, const SpanShares<Real>&, const ParticleSize<Real>& size) {
+  static OuterWeights<Real> outer(const Real& f, const SpanShares<Real>& share, const ParticleSize<Real>& size) {
     const Real zero{};
     const Real before_A = larger<Real>(zero, size.half - f), before_B = larger<Real>(zero, -size.half - f);
     const Real after_A = larger<Real>(zero, f + size.half), after_B = larger<Real>(zero, f - size.half);
-    const Real before = (before_A - before_B) * size.per_size, after = (after_A - after_B) * size.per_size;
+    const Real before = (2.0 * share.before) * ((before_A - before_B) * size.per_size);  // 2 share is 1/d
+    const Real after = (2.0 * share.after) * ((after_A - after_B) * size.per_size);
     return {0.5 * before * (before_A + before_B), 0.5 * after * (after_A + after_B), -before, after};
   }
-  template <class Real, class Lanes>
-  static ParticleSize<Real> size(const Lanes& lanes, const double* half, double per_length) {
-    const Real cells = lanes.load(half) * per_length;
-    return {cells, lanes.used(0.5 / cells)};
+  template <class Real, class Lanes, class PerLength>
+  static ParticleSize<Real> size(const Lanes& lanes, const double* half, const PerLength& per_length) {
+    const Real spans = lanes.load(half) * per_length;
+    return {spans, lanes.used(0.5 / spans)};
   }
 };
 
 /// Weights of all three nodes at f, spans before and after of `before` and `after` times the middle one; half: half the
-/// size of a uGIMP particle in cells.
+/// size of a uGIMP particle in spans.
 template <class Shape>
 Weights graded_weights(double f, double before, double after, double half) {
   const OuterWeights<double> w =
@@ -143,11 +145,11 @@ struct Gradients {
   std::array<double, 9> N{}, N_x{}, N_y{};
 };
 
-/// Weights at x (m) of the 3 x 3 nodes around column i and row j, whose spans hold x; half: half the size of a uGIMP
+/// Weights at x (m) of the 3 x 3 nodes around column i and row j, whose spans hold x; half: half the sides of a uGIMP
 /// particle (m). Throws nothing.
 template <class Shape>
-Gradients gradients_of(const Grid& grid, int i, int j, const Vec2& x, double half) {
-  const Weights X = weights_x<Shape>(grid, i, x.x(), half), Y = weights_y<Shape>(grid, j, x.y(), half);
+Gradients gradients_of(const Grid& grid, int i, int j, const Vec2& x, const Vec2& half) {
+  const Weights X = weights_x<Shape>(grid, i, x.x(), half.x()), Y = weights_y<Shape>(grid, j, x.y(), half.y());
   const double s_x = grid.span_x(i), s_y = grid.span_y(j);
   Gradients out;
   for (std::size_t n = 0; n < 9; ++n) {
@@ -159,7 +161,7 @@ Gradients gradients_of(const Grid& grid, int i, int j, const Vec2& x, double hal
 }
 
 /// The same with the scene's shape function.
-inline Gradients gradients_at(const Scene& scene, const Grid& grid, int i, int j, const Vec2& x, double half) {
+inline Gradients gradients_at(const Scene& scene, const Grid& grid, int i, int j, const Vec2& x, const Vec2& half) {
   return with_shape(scene.numerics.shape,
                     [&](auto shape) { return gradients_of<decltype(shape)>(grid, i, j, x, half); });
 }

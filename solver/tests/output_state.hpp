@@ -69,7 +69,7 @@ inline Particles made_particles(std::size_t n, Numbers& number) {
     for (std::size_t k = 0; k < n; ++k) array.push_back(number.next());
   };
   fill(p.x), fill(p.y), fill(p.u_x), fill(p.u_y), fill(p.v_x), fill(p.v_y);
-  fill(p.g_xx), fill(p.g_xy), fill(p.g_yx), fill(p.g_yy), fill(p.m), fill(p.V), fill(p.half);
+  fill(p.g_xx), fill(p.g_xy), fill(p.g_yx), fill(p.g_yy), fill(p.m), fill(p.V), fill(p.half_x), fill(p.half_y);
   for (std::size_t k = 0; k < n; ++k) {
     p.rock.push_back(static_cast<std::uint8_t>(k % 2));
     p.sides.push_back(static_cast<SideWord>(k * 7 + 1));

@@ -25,7 +25,7 @@ NodalIntegrals integrals(const Scene& scene, const State& state) {
   NodalIntegrals sum{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n)};
   for (std::size_t q = 0; q < p.size(); ++q) {
     const int i = g.column_at(p.x[q]), j = g.row_at(p.y[q]);
-    const Gradients at = gradients_at(scene, g, i, j, {p.x[q], p.y[q]}, p.half[q]);
+    const Gradients at = gradients_at(scene, g, i, j, {p.x[q], p.y[q]}, p.half(q));
     for (int k = 0; k < 9; ++k) {
       const auto node = static_cast<std::size_t>(g.node(i + k % 3 - 1, j + k / 3 - 1));
       const auto a = static_cast<std::size_t>(k);
@@ -43,7 +43,7 @@ NodalIntegrals edge_integrals(const Scene& scene, const State& state) {
   const int across = static_cast<int>(std::lround(std::sqrt(scene.numerics.particles_per_cell)));
   const auto add = [&](const Vec2& x, double length, std::vector<double>& to) {
     const int i = std::min(g.column_at(x.x()), g.nx), j = std::min(g.row_at(x.y()), g.ny);
-    const Gradients at = gradients_at(scene, g, i, j, x, 0.1);
+    const Gradients at = gradients_at(scene, g, i, j, x, Vec2::Constant(0.1));
     for (int k = 0; k < 9; ++k)
       to[static_cast<std::size_t>(g.node(i + k % 3 - 1, j + k / 3 - 1))] += length * at.N[static_cast<std::size_t>(k)];
   };
@@ -184,7 +184,7 @@ struct GradedInterface {
       for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
            q += static_cast<std::size_t>(bin.stride)) {
         const Stress s = stress_of(run.rocks[p.rock[q]], p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]);
-        const Gradients g = gradients_at(run.scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]);
+        const Gradients g = gradients_at(run.scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
         for (std::size_t n = 0; n < 9; ++n) {
           const NodalSums::Record sum = state.sums[static_cast<std::size_t>(bin.record[n])];
           sum.m += p.m[q] * g.N[n];

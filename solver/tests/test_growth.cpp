@@ -284,7 +284,8 @@ TEST_CASE("refined particles conserve") {
   CHECK(p.next_id == static_cast<std::int32_t>(p.size()));
   for (std::size_t q = n; q < p.size(); ++q) {
     CHECK(p.V[q] == Approx(0.0625));
-    CHECK(p.half[q] == Approx(0.125));
+    CHECK(p.half_x[q] == Approx(0.125));
+    CHECK(p.half_y[q] == Approx(0.125));
     CHECK(((p.sides[q] & 1U) != 0) == side(state.fracture(), {p.x[q], p.y[q]}, 4.0));
   }
 }

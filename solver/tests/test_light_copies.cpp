@@ -96,7 +96,7 @@ TEST_CASE("copies that bear more than they are worth are joined at all places, w
             for (int q = bin.first; q < bin.last; q += bin.stride) {
               const auto k = static_cast<std::size_t>(q);
               const Particles& p = run.state.particles;
-              const Gradients g = gradients_at(run.scene, run.state.grid, bin.i, bin.j, {p.x[k], p.y[k]}, p.half[k]);
+              const Gradients g = gradients_at(run.scene, run.state.grid, bin.i, bin.j, {p.x[k], p.y[k]}, p.half(k));
               worth += p.V[k] * std::sqrt(g.N_x[m] * g.N_x[m] + g.N_y[m] * g.N_y[m]);
             }
           }
@@ -104,7 +104,7 @@ TEST_CASE("copies that bear more than they are worth are joined at all places, w
         for (std::size_t k = 0; k < run.state.fracture().points.size(); ++k) {
           const SurfaceStencil& other = run.state.point_stencils[0][k];
           const SurfacePoint& s = run.state.fracture().points[k];
-          const Gradients g = gradients_at(run.scene, run.state.grid, other.i, other.j, s.x, 0.0);
+          const Gradients g = gradients_at(run.scene, run.state.grid, other.i, other.j, s.x, Vec2::Zero());
           for (std::size_t m = 0; m < 9; ++m) {
             if (other.plus[m] == stencil.plus[n]) reached += s.A * g.N[m];
           }

@@ -110,7 +110,8 @@ void require_same(const Particles& a, const Particles& b) {
   CHECK(a.g_yy == b.g_yy);
   CHECK(a.m == b.m);
   CHECK(a.V == b.V);
-  CHECK(a.half == b.half);
+  CHECK(a.half_x == b.half_x);
+  CHECK(a.half_y == b.half_y);
   CHECK(a.rock == b.rock);
   CHECK(a.sides == b.sides);
   CHECK(a.in_situ == b.in_situ);

@@ -62,7 +62,7 @@ std::array<double, 2> balance(const Run& run, const QuasistaticModel& model, con
   for (const Bin& bin : state.bins) {
     for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
          q += static_cast<std::size_t>(bin.stride)) {
-      const Gradients g = gradients_at(run.scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half[q]);
+      const Gradients g = gradients_at(run.scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
       const Stress s = stress_of(run.rocks[p.rock[q]], p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]);
       for (std::size_t n = 0; n < 9; ++n) {
         inner[static_cast<std::size_t>(bin.record[n])] +=
