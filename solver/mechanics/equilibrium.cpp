@@ -21,7 +21,7 @@ void load_point(const Scene& scene, const State& state, const Vec2& x, const Vec
                 Eigen::VectorXd& f) {
   const Grid& g = state.grid;
   const int i = std::min(g.column_at(x.x()), g.nx), j = std::min(g.row_at(x.y()), g.ny);
-  const Gradients weights = gradients_at(scene, g, i, j, x, Vec2::Constant(1e-6 * g.h));
+  const Gradients weights = gradients_at(scene, g, i, j, x, Vec2::Zero());
   for (std::size_t node = 0; node < 9; ++node) {
     const int record = g.node(i + static_cast<int>(node % 3) - 1, j + static_cast<int>(node / 3) - 1);
     for (int component = 0; component < 2; ++component) {
@@ -66,6 +66,9 @@ void load_in_situ(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
   Scene loaded = scene;
   loaded.domain.sides = Edge::traction;
   loaded.domain.top = Edge::traction;
+  // uGIMP particles start between nodes, where they weigh as points do. Those that reach over an edge's by round-off
+  // would leave the ghosts beyond it all but free.
+  if (loaded.numerics.shape == Numerics::Shape::gimp) loaded.numerics.shape = Numerics::Shape::linear;
   rebuild_copies(loaded, state);
   SparseMatrix K = assemble_stiffness(loaded, rocks, state, state.masters);
   Eigen::VectorXd f = Eigen::VectorXd::Zero(K.rows());

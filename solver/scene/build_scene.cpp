@@ -139,8 +139,9 @@ void choose_inlet(const Positions& positions, Scene& scene, Faults& faults) {
   }
 }
 
-// The criterion of crossing left out of a quasi-static scene is energy. What only such a scene can use falls back on
-// its default where a variant or --set above it has chosen mechanics = "explicit".
+// The criterion of crossing left out of a quasi-static scene is energy. It, which no other can use, and cells far away,
+// chosen for statics, which waves may not pass, fall back on their defaults where a variant or --set above them has
+// chosen mechanics = "explicit".
 void follow_mechanics(const Positions& positions, Scene& scene) {
   if (scene.numerics.mechanics == Numerics::Mechanics::quasistatic) {
     if (scene.fracture && !positions.given("fracture.crossing")) scene.fracture->crossing = Fracture::Crossing::energy;

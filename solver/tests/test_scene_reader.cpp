@@ -163,10 +163,25 @@ TEST_CASE("What explicit runs cannot do is refused where it is typed, and left b
   const Scene scene = good(text, "", {"numerics.mechanics=explicit"});
   CHECK_FALSE(scene.numerics.far_cell_m.has_value());
   CHECK(scene.fracture->crossing == Fracture::Crossing::J);
-  CHECK(read(with(text, "quasistatic", "explicit")).errors.size() == 2);
+  CHECK(read(with(text, "quasistatic", "explicit")).errors.size() == 1);
   CHECK_THAT(
-      errors(with(text, "quasistatic", "explicit"), "", {"numerics.mechanics=explicit", "numerics.far_cell_m=4"}),
-      Catch::Contains("--set numerics.far_cell_m=4: numerics.far_cell_m = 4.0 grades the grid"));
+      errors(with(text, "quasistatic", "explicit"), "", {"numerics.mechanics=explicit", "fracture.crossing=energy"}),
+      Catch::Contains("--set fracture.crossing=energy: fracture.crossing = \"energy\" compares equilibria"));
+}
+
+TEST_CASE("Every explicit run takes a graded grid that is asked for with it") {
+  const std::string text = with(layered, "cell_m = 1", "cell_m = 1\nfar_cell_m = 5\nmechanics = \"explicit\"");
+  for (const char* kinematics : {"updated", "total"}) {
+    for (const char* shape : {"bspline2", "linear", "gimp"}) {
+      if (std::string_view{kinematics} == "total" && std::string_view{shape} == "gimp") continue;
+      const Scene scene = good(text, "",
+                               {"numerics.kinematics=" + std::string{kinematics}, "domain.beyond_m=400",
+                                "numerics.shape=" + std::string{shape}});
+      CHECK(scene.numerics.far_cell_m == 5.0);
+      CHECK(scene.domain.beyond_m == 400.0);
+    }
+  }
+  CHECK(good(text, "", {"numerics.mechanics=explicit", "numerics.far_cell_m=4"}).numerics.far_cell_m == 4.0);
 }
 
 TEST_CASE("What only explicit runs use stays allowed without inertia") {

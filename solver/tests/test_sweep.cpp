@@ -48,6 +48,7 @@ Scene random_explicit(unsigned seed) {
     scene.fracture->growth = Fracture::Growth::none;
     scene.fracture->crossing = Fracture::Crossing::J;
   }
+  if (dice.chance(0.5) && scene.numerics.particles_per_cell != 9) scene.domain.beyond_m = dice.uniform(3.0, 40.0);
   return scene;
 }
 
@@ -141,15 +142,17 @@ double share_in_lanes(const State& state) {
 
 // Requires that the fast loops give what plain ones give, to 1e-10 of each field's largest value, for one step and for
 // two (whose second one starts from sums of the first one's sweep), in 150 random scenes: cracks at any angle, layers,
-// interfaces that have failed, all edges, shapes, transfers and numbers of points.
+// interfaces that have failed, all edges, shapes, transfers and numbers of points, uniform and graded grids.
 TEST_CASE("fast loops give what plain loops give") {
   double in_lanes = 0.0;
+  int graded = 0;
   constexpr unsigned scenes = 150;
   for (unsigned seed = 0; seed < scenes; ++seed) {
     const Scene scene = random_explicit(seed);
     Both both(scene, seed);
     const State &fast = both.fast.state, &plain = both.plain.state;
     in_lanes += share_in_lanes(fast) / scenes;
+    graded += fast.grid.x_knots.empty() ? 0 : 1;
     CHECK(share_in_lanes(plain) == 0.0);
     for (int step = 1; step <= 2; ++step) {
       both.advance();
@@ -161,6 +164,7 @@ TEST_CASE("fast loops give what plain loops give") {
     }
   }
   CHECK(in_lanes > 0.6);
+  CHECK(graded > 30);
 }
 
 // Requires that nearly all particles are swept as lanes: beside the fracture, edges and an interface that has failed
@@ -176,9 +180,11 @@ TEST_CASE("particles are in lanes") {
 }
 
 // Requires that a fracture that grows through a weak interface does so at the same times and places in fast and plain
-// loops, to round-off.
+// loops, to round-off, on a uniform and on a graded grid.
 TEST_CASE("fast and plain loops lead to the same events") {
+  const double beyond = GENERATE(0.0, 50.0);
   Scene scene = block(16, 24);
+  scene.domain.beyond_m = beyond;
   hold_edges(scene);
   scene.in_situ.horizontal_Pa = 1e6, scene.in_situ.vertical_Pa = 2e6;
   add_interface(scene, weak_law(4e5, 4e5, 0.3), 10.0);

@@ -68,10 +68,17 @@ def test_damped_motion_settles_on_the_quasi_static_solution(
     settles(variant, of_largest, of_K, (f"numerics.kinematics={kinematics}",))
 
 
+GRADED = ("numerics.cell_m=0.5", "numerics.far_cell_m=2")
+
+
 @pytest.mark.parametrize("variant", ["alone", "spring"])
 def test_damped_motion_settles_on_graded_grids(variant: str) -> None:
-    graded = ("numerics.cell_m=0.5", "numerics.far_cell_m=2")
-    settles(variant, 1e-6, 1e-3, ("numerics.kinematics=total",), graded)
+    settles(variant, 1e-6, 1e-3, ("numerics.kinematics=total",), GRADED)
+
+
+@pytest.mark.parametrize("variant", SETTLED)
+def test_points_that_move_settle_on_graded_grids(variant: str) -> None:
+    settles(variant, 3e-3, 3e-3, ("numerics.kinematics=updated",), GRADED)
 
 
 def test_what_moving_points_add_falls_with_the_load() -> None:
