@@ -338,6 +338,8 @@ CASES = (
     settled("settled_mid_cell", "damped motion, crack between two grid lines", levels(FINE, "", mid_cell(20.0))),
     settled("settled_linear", "damped motion, linear shape functions", levels(FINE, "linear"), smoke=1),
     settled("settled_gimp", "damped motion, generalised interpolation", levels(FINE, "gimp"), smoke=1),
+    settled("settled_graded", "damped motion of points that move, cells growing away from the crack", levels(FINE, "", graded)),
+    settled("settled_gimp_graded", "the same, generalised interpolation", levels(FINE, "gimp", graded), smoke=1),
     settled("settled_closed", "fluid that just carries the in-situ stress", levels(FINE, "closed"), CLOSED, 1),
     settled("settled_closed_mid_cell", "the same between two grid lines", levels(FINE, "closed", mid_cell(20.0)), CLOSED, 1),
     *(case for degrees in (10.0, 30.0, 45.0) for case in inclined(degrees)),

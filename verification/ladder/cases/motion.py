@@ -204,7 +204,6 @@ def fall(kinematics: str) -> Case:
 # --- Uniform stress -----------------------------------------------------------------------------------------------------
 
 PATCH = ANALYTIC / "patch.toml"
-GIMP_EDGE = "edges of uGIMP points are loaded as if by points of a millionth of a cell, at every size"
 
 
 def uniform(component: str, key: str, why: str = SINGLE) -> Quantity:
@@ -257,8 +256,10 @@ PATCHES = tuple(
     )
 ) + (
     patch("updated", "explicit", ("numerics.kinematics=updated",)),
-    patch("gimp", "explicit", ("numerics.kinematics=updated", "numerics.shape=gimp"), why=GIMP_EDGE),
+    patch("gimp", "explicit", ("numerics.kinematics=updated", "numerics.shape=gimp")),
     patch("graded", "quasistatic", ("numerics.far_cell_m=4",)),
+    patch("graded", "explicit", ("numerics.kinematics=updated", "numerics.far_cell_m=4")),
+    patch("graded_gimp", "explicit", ("numerics.kinematics=updated", "numerics.shape=gimp", "numerics.far_cell_m=4")),
 )
 
 
