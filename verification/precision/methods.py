@@ -85,7 +85,10 @@ def with_inertia(cells: tuple[float, ...], some: tuple[float, ...], one: tuple[f
         Curve("ex_total_courant_0.8", "explicit, total, Courant number 0.8", replace(total, courant=0.8), one),
         Curve("ex_updated_plain", "explicit, updated, plain kernels", replace(updated, kernels="plain"), one),
         Curve("ex_total_plain", "explicit, total, plain kernels", replace(total, kernels="plain"), one),
-        Curve("ex_updated_graded", "explicit, updated, graded", replace(updated, graded=FAR), cells),
+        Curve("ex_updated_graded", "explicit, updated, graded", replace(updated, graded=FAR), cells, True),
+        Curve("ex_updated_graded_gimp", "explicit, updated, graded, GIMP", replace(updated, graded=FAR, shape="gimp"), some),
+        Curve("ex_updated_graded_linear", "explicit, updated, graded, linear", replace(updated, graded=FAR, shape="linear"), some),
+        Curve("ex_updated_graded_16", "explicit, updated, graded, 16 points a cell", replace(updated, graded=FAR, points=16), one),
         Curve("ex_total_graded", "explicit, total, graded", replace(total, graded=FAR), cells, True),
     ]
     return [curve for curve in curves if curve.cells_m]
