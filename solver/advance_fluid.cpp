@@ -22,8 +22,8 @@ void set_point_pressures(const Eigen::VectorXd& P, State& state) {
 }
 
 // The study's law in equal steps, none longer than some of what its diffusion takes across a segment: the trapezoidal
-// rule would ring otherwise.
-void diffuse_in_steps(const Scene& scene, double dt, State& state) {
+// rule would ring otherwise. Openings are the state's.
+void diffuse_in_steps(const Scene& scene, const State& state, double time, double dt, FluidLine& line) {
   // In ds^2/kappa: the trapezoidal rule hardly rings, the explicit one is stable.
   const double longest = scene.fluid.time_rule == Fluid::TimeRule::explicit_euler ? 0.5 : 2.0;
   constexpr int most = 1000;  // then the rule's own stability has to do
@@ -38,8 +38,8 @@ void diffuse_in_steps(const Scene& scene, double dt, State& state) {
   const Fluid& fluid = scene.fluid;
   Diffusion flow(channel_of(scene, state), fluid.bulk_modulus_Pa / fluid.viscosity_Pa_s, fluid.time_rule, step);
   for (int k = 1; k <= steps; ++k) {
-    state.fluid.inlet_Pa = fluid.start_Pa + fluid.rate_Pa_s * (state.time + k * step);
-    flow.step(state.fluid.inlet_Pa, state.fluid.P);
+    line.inlet_Pa = fluid.start_Pa + fluid.rate_Pa_s * (time + k * step);
+    flow.step(line.inlet_Pa, line.P);
   }
 }
 
@@ -124,6 +124,17 @@ void fill_fracture(const Scene& scene, State& state, QuasistaticModel& model) {
   state.fluid.inlet_Pa = P;
 }
 
+double lag_error(const Scene& scene, const FluidLine& before, double time, const State& state) {
+  double net = 0.0;
+  for (const SurfacePoint& s : state.fracture().points) net = std::max(net, std::abs(s.P - s.closing_stress()));
+  if (net == 0.0) return 0.0;
+  FluidLine again = before;
+  diffuse_in_steps(scene, state, time, state.time - time, again);
+  double change = 0.0;
+  for (std::size_t k = 0; k < again.P.size(); ++k) change = std::max(change, std::abs(again.P[k] - state.fluid.P[k]));
+  return 0.5 * change / net;
+}
+
 void add_fluid_cells(const Scene& scene, bool at_back, std::size_t added, State& state) {
   if (scene.fluid.law != Fluid::Law::reynolds) return;
   const auto& points = state.fracture().points;
@@ -140,7 +151,7 @@ FluidStep advance_fluid(const Scene& scene, double dt, State& state, Quasistatic
   }
   if (scene.fluid.law == Fluid::Law::reynolds) return couple(scene, dt, state, model);
   if (dt > 0.0) {
-    if (scene.fluid.law == Fluid::Law::paper) diffuse_in_steps(scene, dt, state);
+    if (scene.fluid.law == Fluid::Law::paper) diffuse_in_steps(scene, state, state.time, dt, state.fluid);
     state.dt = dt;
     if (scene.fluid.law == Fluid::Law::uniform) advance_pressure(scene, state);
     state.time += dt;

@@ -29,6 +29,10 @@ constexpr double shortest_coupled_step = 1e-6;
 /// dt = 0: only what growth changed. Throws NumericalFailure as find_equilibrium() and diffuse() do.
 FluidStep advance_fluid(const Scene& scene, double dt, State& state, QuasistaticModel& model);
 
+/// What a step of the study's law from `before` at a time (s) owes to the openings of its start, after the equilibrium
+/// at its end: half of what the openings of its end would have changed of any pressure, over the largest net pressure.
+double lag_error(const Scene& scene, const FluidLine& before, double time, const State& state);
+
 /// The new cells of a fracture that has grown by `added` points at a tip, empty (law = "reynolds").
 void add_fluid_cells(const Scene& scene, bool at_back, std::size_t added, State& state);
 

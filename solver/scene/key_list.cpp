@@ -378,8 +378,10 @@ std::vector<Key> numerics_keys() {
       number(
           "numerics.flow_error", "", {0.0, 1.0, true, false},
           +[](Scene& s, std::size_t) -> double& { return s.numerics.flow_error; },
-          "Under fluid.law = \"reynolds\": error of the largest opening aimed at in a step; steps with four times as "
-          "much are tried again with half the length."),
+          "Under fluid.law = \"reynolds\": error of the largest opening aimed at in a step; quasi-static under "
+          "\"paper\" "
+          "where nothing grows: of the pressure that the lag of the permeability makes, over the largest net pressure. "
+          "Steps with four times as much are tried again with half the length."),
   };
 }
 
