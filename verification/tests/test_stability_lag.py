@@ -1,0 +1,87 @@
+"""The models that the families of long flow steps are held against, on problems whose answers are known, and the families' checks."""
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from verification.stability.families import lagging
+from verification.stability.theory import ramped
+from verification.stability.theory.ramped import FLOOR_M, diffused, doubling, paper, reynolds
+from verification.stability.theory.staggered import BULK_PA, E_PRIME_PA, HALF_LENGTH_M, compliance
+
+CELLS = 20
+DS = HALF_LENGTH_M / CELLS
+
+
+def test_a_step_diffuses_as_fourier_has_it() -> None:
+    """A quarter wave between a held inlet and a closed end decays by exp(-kappa (pi/2L)^2 t), at an opening and at the floor of it."""
+    x = np.linspace(0.0, HALF_LENGTH_M, CELLS + 1)
+    wave = np.sin(0.5 * math.pi * x / HALF_LENGTH_M)
+    for opening, conducts in ((3e-4, 3e-4), (0.2 * FLOOR_M, FLOOR_M)):
+        kappa = BULK_PA * conducts**2 / 12.0
+        time = 0.5 * HALF_LENGTH_M**2 / kappa
+        found = diffused(1e5 * wave, np.full(CELLS, opening), DS, time, 1.0, (0.0, 0.0))
+        assert found == pytest.approx(1e5 * wave * math.exp(-0.5 * (0.5 * math.pi) ** 2), rel=2e-3, abs=1e-9)
+
+
+def test_a_ramp_ends_at_its_end() -> None:
+    """The inlet's pressure, and that of all else after a long time."""
+    p = diffused(np.zeros(CELLS + 1), np.full(CELLS, 1e-3), DS, 1e3, 1.0, (0.0, 2e5))
+    assert p[0] == pytest.approx(2e5, rel=1e-12) and p[-1] == pytest.approx(2e5, rel=1e-2) and p[-1] < 2e5
+
+
+def test_opening_is_sneddons() -> None:
+    """4 p a/E' at the middle under even pressure, to half a per cent with 20 cells."""
+    assert (compliance(CELLS)[0] @ np.full(CELLS, 3e5))[0] == pytest.approx(4.0 * 3e5 * HALF_LENGTH_M / E_PRIME_PA, rel=5e-3)
+
+
+def test_the_crack_takes_up_what_comes_in(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With a slow ramp the pressure is even and the opening the compliance's; with a quick one the inlet is ahead of the tip."""
+    slow, w = reynolds([1e4] * 20, 3e5, 5e-1, CELLS)
+    assert slow == pytest.approx(np.full(CELLS, 4e5), rel=5e-3)
+    assert w == pytest.approx(compliance(CELLS)[0] @ slow, rel=1e-9)
+    quick, _ = reynolds([0.01] * 10, 3e5, 1e6, CELLS)
+    assert quick[0] > 3.2e5 > quick[-1]
+    monkeypatch.setattr(ramped, "BULK_PA", 1e2 * BULK_PA)  # what is stored by compression is next to nothing: the crack's own answer stays
+    assert reynolds([0.01] * 10, 3e5, 1e6, CELLS)[0] == pytest.approx(quick, rel=2e-2)
+
+
+def test_long_steps_lag_and_short_ones_agree() -> None:
+    """Halving short steps changes nothing to speak of; doubling ones end a fracture of 1 Pa s at a fifth of its pressure."""
+    fine, finer = (float(paper([2.0 / n] * n, 0.05e6, 0.35e6, 1.0)[-1]) for n in (1000, 2000))
+    assert fine == pytest.approx(finer, rel=1e-3)
+    assert float(paper(doubling(2.0, 2.0), 0.05e6, 0.35e6, 1.0)[-1]) == pytest.approx(0.19 * finer, rel=0.05)
+
+
+def test_doubling_steps() -> None:
+    """They fill the time, end at each output, and never grow by more than two."""
+    for every in (0.02, 0.5, 2.0):
+        steps = np.array(doubling(2.0, every))
+        ends = np.cumsum(steps)
+        assert ends[-1] == pytest.approx(2.0)
+        assert all(np.min(np.abs(ends - k * every)) < 1e-9 for k in range(1, round(2.0 / every) + 1))
+        assert np.all(steps[1:] <= 2.0 * steps[:-1] * (1.0 + 1e-12))
+
+
+def made(monkeypatch: pytest.MonkeyPatch, tip_Pa: float, opened_m: float) -> Any:
+    """A run that ends at this net pressure at its tip, its mean opening grown by so much in a second."""
+    def fields(share: float) -> dict[str, np.ndarray]:
+        """An output at a share of the way."""
+        return {"pressure_Pa": np.array([2.1e6, lagging.CLOSING_PA + tip_Pa]), "opening_m": np.full(4, 1e-4 + share * opened_m)}
+
+    monkeypatch.setattr(lagging, "frames", lambda run, group: [(0.1 * k, fields(0.1 * k)) for k in range(11)])
+    return SimpleNamespace(scene={"fluid": {"viscosity_Pa_s": 1.0}}, folder=Path("made"), summary=SimpleNamespace(steps=10))
+
+
+def test_checks_refuse_what_is_off(monkeypatch: pytest.MonkeyPatch) -> None:
+    """None, twice, the other sign, and what long steps make of it."""
+    tip, opened = lagging.resolved(1.0), lagging.opened(1.0)
+    assert lagging.tip_pressure(made(monkeypatch, tip, opened)).holds and lagging.mean_opening(made(monkeypatch, tip, opened)).holds
+    for share in (0.0, 0.2, 0.9, 1.1, 2.0, -1.0):
+        run = made(monkeypatch, share * tip, share * opened)
+        assert not lagging.tip_pressure(run).holds and not lagging.mean_opening(run).holds, share
