@@ -1,5 +1,6 @@
 #include "advance_monitors.hpp"
 
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -198,6 +199,48 @@ TEST_CASE("an equilibrium balances forces at every node") {
   state.particles.g_yy[state.particles.size() / 2] += 1e-4;
   watch_forces(rest.run.scene, rest.run.rocks, state);
   CHECK(marks(rest.run) == Names{"force_balance"});
+}
+
+// Requires forces in balance to round-off with a body force and a crack that leans, so that springs of tips carry some.
+// Mutations that fail: the body force or the springs left out, or with the other sign.
+TEST_CASE("body force and springs of tips are in the balance of nodes") {
+  Scene scene = pressed();
+  scene.fracture->path_m = {{4.0, 5.0}, {10.0, 9.0}};
+  scene.in_situ = {3e6, 1e6, InSitu::Initialise::uniform};
+  scene.fluid.start_Pa = 4e6;
+  scene.body.acceleration_m_s2 = Formulas{"20*sin(X)", "-9.81"};
+  AtRest rest(scene);
+  double carried = 0.0;
+  for (const TipTie& tie : rest.run.state.ties) carried = std::max(carried, tie.s.reaction.norm());
+  REQUIRE(carried > 1e3);
+  watch_forces(rest.run.scene, rest.run.rocks, rest.run.state);
+  CHECK(rest.run.state.monitors.force_balance > 0.0);
+  CHECK(rest.run.state.monitors.force_balance < 1e-9);
+}
+
+// Requires of soft interfaces that tension is theirs to carry, that overlap counts where faces meet and not where a
+// spring acts both ways, and that what their springs store is strain. Mutations that fail: any of the three turned
+// round.
+TEST_CASE("soft interfaces may pull, and overlap where a spring acts both ways") {
+  for (const auto compression : {InterfaceLaw::Compression::contact, InterfaceLaw::Compression::spring}) {
+    Scene scene = block(6, 8);
+    scene.numerics.mechanics = Numerics::Mechanics::quasistatic;
+    add_interface(scene, soft_law(1e9, 1e9, compression), 4.0);
+    Run run(scene);
+    Monitors& m = run.state.monitors;
+    SurfacePoint& s = run.state.surfaces[0].points[3];
+    s.reaction = -1e3 * s.n;
+    watch_row(run.scene, run.state);
+    CHECK(m.largest_tension_Pa == 0.0);
+    s.reaction = 1e3 * s.n, s.w = -1e-5 * s.n;
+    watch_row(run.scene, run.state);
+    const bool meets = compression == InterfaceLaw::Compression::contact;
+    CHECK(m.largest_penetration == (meets ? Approx(1e-5) : Approx(0.0)));
+    CHECK(m.largest_contact_Pa == (meets ? Approx(1e3) : Approx(0.0)));
+    run.state.ledger.strain = 2.0, run.state.ledger.interface_strain = 3.0;
+    watch_row(run.scene, run.state);
+    CHECK(m.largest_strain_J == 5.0);
+  }
 }
 
 // Requires the overlap and the tension of places to be found where the law does not allow them, and only there.

@@ -219,6 +219,9 @@ TEST_CASE("rock so nearly incompressible that the shape's functions lock marks t
   CHECK(marks(scene, sound_state()).empty());
   scene.rocks.front().poisson_ratio = above;
   CHECK(marks(scene, sound_state()) == Names{"incompressibility"});
+  scene.rocks.insert(scene.rocks.begin(), scene.rocks.front());  // whichever rock it is
+  scene.rocks.front().poisson_ratio = 0.2;
+  CHECK(marks(scene, sound_state()) == Names{"incompressibility"});
 }
 
 TEST_CASE("bonded rocks of stiffnesses too far apart mark the run") {
@@ -232,6 +235,13 @@ TEST_CASE("bonded rocks of stiffnesses too far apart mark the run") {
   CHECK(marks(scene, sound_state()).empty());
   scene.rocks[1].youngs_modulus_Pa *= factor;
   CHECK(marks(scene, sound_state()) == Names{"stiffness_contrast"});
+  scene.strata.layers.push_back({1, 2.0, 3.0});  // whichever border it is
+  scene.strata.interfaces.push_back({0, 2.0});
+  CHECK(marks(scene, sound_state()) == Names{"stiffness_contrast"});
+  scene.laws.push_back(InterfaceLaw{"cut", InterfaceLaw::Kind::friction});
+  scene.strata.interfaces[0].law = 1;  // not bonded: the strain may jump there
+  CHECK(marks(scene, sound_state()).empty());
+  scene.strata.interfaces[0].law = 0;
   scene.numerics.shape = Numerics::Shape::linear;
   scene.numerics.kinematics = Numerics::Kinematics::total;  // no cells to cross
   CHECK(marks(scene, sound_state()).empty());
