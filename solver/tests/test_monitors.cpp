@@ -271,7 +271,7 @@ TEST_CASE("overlap and tension are found without inertia, too") {
 }
 
 // Requires an energy that is no number to end the run, by its name, whatever the mechanics, and to stay visible in the
-// ledger. Mutations that fail: the scale by std::max, as before; the check left out of either mechanics or of an entry.
+// ledger. Mutations that fail: the check left out of either mechanics.
 TEST_CASE("a ledger that is not finite ends the run") {
   const std::array entries{std::pair{"body_work", &Ledger::body_work}, std::pair{"fluid_work", &Ledger::fluid_work},
                            std::pair{"friction", &Ledger::friction}, std::pair{"damping", &Ledger::damping},
