@@ -17,7 +17,22 @@
 #include "state/elasticity.hpp"
 #include "state/state.hpp"
 
+// Whether the program is built with the thread sanitizer: GCC has a macro for it, clang a feature.
+#if defined(__SANITIZE_THREAD__)
+#define STRATA_TESTS_RACES 1
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define STRATA_TESTS_RACES 1
+#endif
+#endif
+#ifndef STRATA_TESTS_RACES
+#define STRATA_TESTS_RACES 0
+#endif
+
 namespace strata::test {
+
+// Blocks as small as those of the tests gain nothing by threads; there are two where races are looked for.
+constexpr int threads_of_tests = STRATA_TESTS_RACES ? 2 : 1;
 
 // A block of nx by ny cells of one rock, all edges loaded by the in-situ traction, which is zero.
 inline Scene block(int nx, int ny, double h = 1.0) {
@@ -98,9 +113,8 @@ struct Run {
   std::vector<Elasticity> rocks;
   State state;
 
-  // Blocks this small gain nothing by threads.
   explicit Run(const Scene& from) : scene(from), rocks(make_elasticities(scene)), state(initialise(scene, rocks)) {
-    omp_set_num_threads(1);
+    omp_set_num_threads(threads_of_tests);
   }
   void advance(int steps) {
     for (int k = 0; k < steps; ++k) strata::advance(scene, rocks, state);
