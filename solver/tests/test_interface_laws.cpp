@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <limits>
+
 #include "mechanics/surface_law.hpp"
 #include "small_scenes.hpp"
 
@@ -409,7 +411,8 @@ TEST_CASE("springs hold their law in random motion") {
 }
 
 // Requires that a stuck interface goes on holding the shear of either sign that it carries, step after step: nothing
-// moves, and no jump comes up. Mutations that fail: the reaction that friction remembers left out or of the other sign.
+// moves but by round-off of the reactions, and no jump comes up. Mutations that fail: the reaction that friction
+// remembers left out or of the other sign.
 TEST_CASE("stick holds what it carries") {
   for (const double sign : {1.0, -1.0}) {
     Scene scene = block(6, 8);
@@ -420,8 +423,12 @@ TEST_CASE("stick holds what it carries") {
       s.in_situ = s.reaction = Vec2{sign * 0.5e6, 1e6};
     }
     run.rebuild();
+    // An ulp of the reactions a step, on the half of a cell of rock beside them.
+    const double round_off =
+        100 * run.state.dt * std::numeric_limits<double>::epsilon() * std::hypot(0.5e6, 1e6) / (0.5 * 2500.0);
     run.advance(100);
-    CHECK(top_speed(run.state.particles) < 1e-15);
+    CAPTURE(1e15 * top_speed(run.state.particles));
+    CHECK(top_speed(run.state.particles) < round_off);
     for (const SurfacePoint& s : run.state.surfaces[0].points) {
       CHECK(s.w.norm() < 1e-18);
       CHECK(s.reaction.x() == Approx(sign * 0.5e6));

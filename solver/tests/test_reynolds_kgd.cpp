@@ -48,10 +48,11 @@ struct Growing {
   }
 };
 
-// Steps to the next moment at which the tip's K reaches the toughness (0: at which the tip opens), within 0.1 % of it
-// or 0.01 MPa sqrt(m), by shortening the step that passes it; keeps the opening's error below 0.1 % a step.
+// Steps to the next moment at which the tip's K reaches the toughness, within 0.1 % of it (0: at which the tip opens,
+// within 0.01 MPa sqrt(m)), by shortening the step that passes it; keeps the opening's error below 0.1 % a step.
 void to_growth(Growing& g, double& dt) {
-  const double K_c = std::max(g.setting.toughness, 1e-3), slack = std::max(1e-3 * g.setting.toughness, 1e4);
+  const double K_c = std::max(g.setting.toughness, 1e-3);
+  const double slack = g.setting.toughness > 0.0 ? 1e-3 * g.setting.toughness : 1e4;
   for (int step = 0; step < 3000; ++step) {
     const ReynoldsLine line = g.line;
     const FluidBalance balance = g.balance;

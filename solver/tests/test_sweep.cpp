@@ -28,6 +28,11 @@ std::atomic<long> allocations{0};
   if (void* p = std::malloc(size)) return p;
   throw std::bad_alloc();
 }
+// Catch asks for this one, and gives back by delete.
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t& /*none*/) noexcept {
+  ++allocations;
+  return std::malloc(size);
+}
 [[gnu::noinline]] void operator delete(void* p) noexcept {
   std::free(p);
 }
@@ -171,15 +176,16 @@ TEST_CASE("fast loops give what plain loops give") {
 }
 
 // Requires that nearly all particles are swept as lanes: beside the fracture, edges and an interface that has failed
-// too.
+// too. Of a row of 81 bins lanes of two leave one over.
 TEST_CASE("particles are in lanes") {
+  constexpr double left_over = most_lanes == 2 ? 1.0 / 80.0 : 0.0;
   Scene scene = block(80, 80);
   hold_edges(scene);
-  CHECK(share_in_lanes(Run(scene).state) > 0.99);
+  CHECK(share_in_lanes(Run(scene).state) > 0.99 - left_over);
   add_fracture(scene, {{40.0, 0.0}, {40.0, 5.0}});
-  CHECK(share_in_lanes(Run(scene).state) > 0.98);
+  CHECK(share_in_lanes(Run(scene).state) > 0.98 - left_over);
   add_interface(scene, soft_law(1e9, 1e9), 20.0);
-  CHECK(share_in_lanes(Run(scene).state) > 0.97);
+  CHECK(share_in_lanes(Run(scene).state) > 0.97 - left_over);
 }
 
 // Requires that a fracture that grows through a weak interface does so at the same times and places in fast and plain
