@@ -15,10 +15,12 @@ class Front(Protocol):
     """What writing a page tells: why there is none, and the defect behind that; both empty where there is one."""
 
     @property
-    def lack(self) -> str: ...
+    def lack(self) -> str:
+        """Why there is no page."""
 
     @property
-    def defect(self) -> str: ...
+    def defect(self) -> str:
+        """The defect behind that."""
 
 
 Made = TypeVar("Made", bound=Front)
