@@ -85,7 +85,7 @@ def run_solver(method: Method, level: Level, folder: Path, limit_s: float) -> tu
     outcome, (_, cpu) = timed(lambda: harness.run(job, force=True, limit_s=limit_s))
     if not outcome.ok:
         status = {2: REFUSED, harness.TOO_LONG: TOO_LONG}.get(outcome.exit_status, FAILED)
-        raise Failure(status, " ".join(outcome.reason.split()))
+        raise Failure(status, " ".join(outcome.reason.replace(f"{ROOT}/", "").split()))  # data are read on other machines, too
     return outcome, (outcome.wall_s, cpu)
 
 

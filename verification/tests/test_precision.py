@@ -267,6 +267,13 @@ def test_a_refusal_is_a_point(tmp_path: Path) -> None:
     assert found.status == REFUSED and "gimp" in found.reason and len(found.wall_s) == 1
 
 
+def test_a_reason_names_the_scene_by_its_place_in_the_project(tmp_path: Path) -> None:
+    """Data of one machine are read on others. Mutation that fails: the reason as the solver gives it, with the project's own place."""
+    one = replace(method("fed", 1.0), source=ANALYTIC / "kgd.toml", levels=(Level("1 m", 1.0, ("numerics.mechanics=explicit",)),))
+    found = measure.measured(Problem("fed", "fed", (wanted(),), (one,)), one, one.levels[0], tmp_path)
+    assert found.status == REFUSED and found.reason.startswith("verification/analytic/kgd.toml:")
+
+
 def test_a_run_that_takes_too_long_is_a_point(tmp_path: Path) -> None:
     one = replace(method("slow", 0.125), levels=(Level("0.125 m", 0.125, ("numerics.mechanics=quasistatic", "numerics.cell_m=0.125")),))
     problem = Problem("slow", "slow", (wanted(),), (one,), limit_s=0.2)

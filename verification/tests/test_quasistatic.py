@@ -40,16 +40,27 @@ def displacement(run: Run) -> np.ndarray:
 
 SETTLED = ["alone", "friction", "weak", "contact", "spring", "through_contact", "through_spring"]
 
+GRADED = ("numerics.cell_m=0.5", "numerics.far_cell_m=2")
 
-def settles(variant: str, of_largest: float, of_K: float, moving: tuple[str, ...], both: tuple[str, ...] = ()) -> None:
-    """Require that damped motion comes to rest at the equilibrium: displacement, in shares of the largest, and K_I."""
-    moved = completed(SETTLING, variant, (*moving, *both))
+
+@pytest.mark.parametrize(
+    "variant, kinematics, both, of_largest, of_K",
+    [(variant, "total", (), 1e-6, 1e-3) for variant in SETTLED]
+    + [(variant, "updated", (), 3e-3, 3e-3) for variant in SETTLED]
+    + [(variant, "total", GRADED, 1e-6, 1e-3) for variant in ("alone", "spring")]
+    + [(variant, "updated", GRADED, 3e-3, 3e-3) for variant in SETTLED],
+)
+def test_damped_motion_settles_on_the_quasi_static_solution(
+    variant: str, kinematics: str, both: tuple[str, ...], of_largest: float, of_K: float
+) -> None:
+    """Displacement, in shares of the largest, and K_I of damped motion at rest and of the equilibrium; settings of both."""
+    moved = completed(SETTLING, variant, (f"numerics.kinematics={kinematics}", *both))
     still = completed(SETTLING, variant, ("numerics.mechanics=quasistatic", "stop.time_s=0", *both))
     u, expected = displacement(moved), displacement(still)
     scale = float(np.abs(expected).max())
     assert scale > 1e-5
     off = float(np.abs(u - expected).max())
-    print(f"{variant} {moving} {both}: displacement off by {off / scale:.2e} of {scale:.3e} m")
+    print(f"{variant} {kinematics} {both}: displacement off by {off / scale:.2e} of {scale:.3e} m")
     require(
         compare("displacement", off, Expected(0.0, of_largest * scale, "m", scale=scale)),
         compare(
@@ -58,27 +69,6 @@ def settles(variant: str, of_largest: float, of_K: float, moving: tuple[str, ...
             within(still.summary.tips[0].K_I_Pa_sqrt_m, of_K, "Pa sqrt(m)"),
         ),
     )
-
-
-@pytest.mark.parametrize("variant", SETTLED)
-@pytest.mark.parametrize("kinematics, of_largest, of_K", [("total", 1e-6, 1e-3), ("updated", 3e-3, 3e-3)])
-def test_damped_motion_settles_on_the_quasi_static_solution(
-    variant: str, kinematics: str, of_largest: float, of_K: float
-) -> None:
-    settles(variant, of_largest, of_K, (f"numerics.kinematics={kinematics}",))
-
-
-GRADED = ("numerics.cell_m=0.5", "numerics.far_cell_m=2")
-
-
-@pytest.mark.parametrize("variant", ["alone", "spring"])
-def test_damped_motion_settles_on_graded_grids(variant: str) -> None:
-    settles(variant, 1e-6, 1e-3, ("numerics.kinematics=total",), GRADED)
-
-
-@pytest.mark.parametrize("variant", SETTLED)
-def test_points_that_move_settle_on_graded_grids(variant: str) -> None:
-    settles(variant, 3e-3, 3e-3, ("numerics.kinematics=updated",), GRADED)
 
 
 def test_what_moving_points_add_falls_with_the_load() -> None:
