@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "mechanics/quarter_forces.hpp"
 #include "mechanics/surface_law.hpp"
 #include "mechanics/surface_tractions.hpp"
 #include "mechanics/transfers.hpp"
@@ -88,9 +89,10 @@ void expect_momentum(const Scene& scene, State& state) {
   m.expected_y = keep * m.expected_y + state.dt * force.y();
 }
 
-void watch_forces(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+void watch_forces(const Scene& scene, const std::vector<Elasticity>& rocks, const std::vector<Vec2>& u, State& state) {
   const NodalSums kept = state.sums;
   particles_to_grid(scene, rocks, state);
+  exert_quarters(scene, rocks, u, state);
   update_stencil_weights(scene, state);
   NodalSums rock = state.sums;
   for (std::size_t r = 0; r < rock.size(); ++r) state.sums[r].f_x = state.sums[r].f_y = 0.0;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mechanics/stiffness.hpp"
+#include "state/quarters.hpp"
 #include "state/rebuild.hpp"
 
 namespace strata {
@@ -30,13 +31,9 @@ int mirror_record(const State& state, int record) {
   return found;
 }
 
-// The particles that stand for the block: all of them, or the left half twice.
-std::vector<double> weights_of(const Scene& scene, const State& state, bool halved) {
-  std::vector<double> weight(state.particles.size(), 1.0);
-  if (!halved) return weight;
-  for (std::size_t q = 0; q < weight.size(); ++q)
-    weight[q] = state.particles.x[q] < 0.5 * scene.domain.width_m ? 2.0 : 0.0;
-  return weight;
+// Lets the left half stand for the block: twice.
+void weigh_halves(const Scene& scene, Particles& p) {
+  for (std::size_t q = 0; q < p.size(); ++q) p.V[q] *= p.x[q] < 0.5 * scene.domain.width_m ? 2.0 : 0.0;
 }
 
 // Ties the corner unknowns that rigid motion needs held, so that K is regular.
@@ -84,12 +81,13 @@ std::vector<Master> mirrored(const State& state, std::vector<Master> masters) {
 }
 
 IntactBody::IntactBody(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, bool halved)
-    : particles_(state.particles.size()), halved_(halved) {
+    : halved_(halved) {
   State intact;
   intact.grid = state.grid;
   intact.particles = state.particles;
-  const std::vector<double> weight = weights_of(scene, state, halved);
-  for (std::size_t q = 0; q < weight.size(); ++q) intact.particles.V[q] *= weight[q];
+  Quarters(scene, state.grid).divide_all(intact.particles);
+  points_ = intact.particles.size();
+  if (halved) weigh_halves(scene, intact.particles);
   rebuild_copies(scene, intact);
   masters_ = halved ? mirrored(intact, intact.masters) : intact.masters;
   hold_rigid_motion(scene, state.grid, halved, masters_);

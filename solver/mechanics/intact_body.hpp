@@ -22,7 +22,7 @@ std::vector<Master> mirrored(const State& state, std::vector<Master> masters);
 // K of the intact block, factored.
 class IntactBody {
  public:
-  /// Assembles and factors K from the state's particles with all surfaces closed; halved: with the mirror's ties, the
+  /// Assembles and factors K from the state's particles with all surfaces closed, those that stand for four divided; halved: with the mirror's ties, the
   /// energy of the left half counted twice. Rigid motion that no edge holds is held at corners: loads are in balance.
   /// Throws NumericalFailure where the factorisation fails.
   IntactBody(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, bool halved);
@@ -31,14 +31,14 @@ class IntactBody {
   const TreeFactor& factor() const { return factor_; }
 
   bool halved() const { return halved_; }
-  std::size_t particles() const { return particles_; }
+  std::size_t points() const { return points_; }  // that K is summed over
   const std::vector<Master>& masters() const { return masters_; }  // of the grid's nodes
   int unknowns() const { return 2 * static_cast<int>(masters_.size()); }
 
  private:
   TreeFactor factor_;
   std::vector<Master> masters_;
-  std::size_t particles_ = 0;
+  std::size_t points_ = 0;
   bool halved_ = false;
 };
 

@@ -6,6 +6,7 @@
 #include "mechanics/stiffness.hpp"
 #include "mechanics/surface_tractions.hpp"
 #include "mechanics/tip_ties.hpp"
+#include "state/quarters.hpp"
 
 namespace strata {
 
@@ -97,7 +98,8 @@ void update_model(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
   weigh_copies(scene, state);
   update_stencil_weights(scene, state);
   const bool halved = halve && mirror_symmetric(scene, state);
-  const bool same_body = model.body && model.body->particles() == state.particles.size();
+  const bool same_body =
+      model.body && model.body->points() == Quarters(scene, state.grid).points(state.particles);
   if (!same_body) model.body = std::make_shared<const IntactBody>(scene, rocks, state, halved);
   model.condensed = condense(scene, rocks, state, *model.body, same_body ? &model.condensed : nullptr);
   model.places = contact_places(scene, rocks, state, model.condensed);
@@ -115,9 +117,11 @@ Equilibrium find_equilibrium(const Scene& scene, double time, State& state, Quas
   return found;
 }
 
-void set_all_particles(const Scene& scene, State& state, const QuasistaticModel& model) {
+std::vector<Vec2> set_all_particles(const Scene& scene, State& state, const QuasistaticModel& model) {
   const Asked all = ask_for_all(state, *model.body);
-  set_particles(scene, displacements(scene, state, *model.body, model.condensed, model.shown, all), {}, state);
+  std::vector<Vec2> u = displacements(scene, state, *model.body, model.condensed, model.shown, all);
+  set_particles(scene, u, {}, state);
+  return u;
 }
 
 void set_fields(const Scene& scene, State& state, QuasistaticModel& model, const Equilibrium& equilibrium) {

@@ -31,13 +31,21 @@ bool may_turn(const Scene& scene) {
          scene.fracture->direction == Fracture::Direction::max_hoop;
 }
 
-// Along a fracture that turns there are four (refine_particles()). Without inertia they stand everywhere from the start
-// then: the stiffness of the intact block stays what it is, and is factored once.
+// Of a loaded in-situ state each point has a stress of its own, and a body force has a value at each: quarters would have
+// their parent's.
+bool refines_ahead(const Scene& scene) {
+  if (scene.numerics.mechanics != Numerics::Mechanics::quasistatic || !may_turn(scene)) return false;
+  if (scene.numerics.particles_per_cell != 4 || points_across(scene) != 2) return false;
+  return true;
+}
+
 int points_across(const Scene& scene) {
   const int across = static_cast<int>(std::lround(std::sqrt(scene.numerics.particles_per_cell)));
-  const bool refined = scene.numerics.mechanics == Numerics::Mechanics::quasistatic && may_turn(scene);
+  const bool turns = scene.numerics.mechanics == Numerics::Mechanics::quasistatic && may_turn(scene);
+  const bool own_values =
+      scene.in_situ.initialise == InSitu::Initialise::loaded || scene.body.acceleration_m_s2.has_value();
   const bool spline = scene.numerics.shape == Numerics::Shape::bspline2;
-  return across == 2 && (refined || (spline && has_thin_layer(scene))) ? 4 : across;
+  return across == 2 && ((turns && own_values) || (spline && has_thin_layer(scene))) ? 4 : across;
 }
 
 }  // namespace strata
