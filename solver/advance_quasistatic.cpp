@@ -262,6 +262,7 @@ void accept(const Scene& scene, const LoadPoint& before, Change change, State& s
 
 void rebuild_all(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
   const double fracture = state.ledger.fracture;
+  run.trials.clear();  // which hold the body, too
   update_model(scene, rocks, state, run.model);
   state.ledger.fracture = fracture;  // what springs of tips give back is in the difference of stored energy already
   make_trials(scene, rocks, state, run);

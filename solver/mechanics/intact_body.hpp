@@ -22,16 +22,16 @@ std::vector<Master> mirrored(const State& state, std::vector<Master> masters);
 // K of the intact block, factored.
 class IntactBody {
  public:
-  /// Assembles and factors K from the state's particles with all surfaces closed, those that stand for four divided; halved: with the mirror's ties, the
-  /// energy of the left half counted twice. Rigid motion that no edge holds is held at corners: loads are in balance.
-  /// Throws NumericalFailure where the factorisation fails.
+  /// Assembles and factors K from the state's particles with all surfaces closed, those that stand for four divided;
+  /// halved: with the mirror's ties, the energy of the left half counted twice. Rigid motion that no edge holds is held
+  /// at corners: loads are in balance. Throws NumericalFailure where the factorisation fails.
   IntactBody(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, bool halved);
 
   /// K = L L^T in one value for each of the 2 x nodes unknowns (N/m, m); loads on held ones must be 0.
   const TreeFactor& factor() const { return factor_; }
 
   bool halved() const { return halved_; }
-  std::size_t points() const { return points_; }  // that K is summed over
+  std::size_t points() const { return points_; }                   // that K is summed over
   const std::vector<Master>& masters() const { return masters_; }  // of the grid's nodes
   int unknowns() const { return 2 * static_cast<int>(masters_.size()); }
 

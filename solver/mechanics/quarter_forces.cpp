@@ -1,23 +1,51 @@
 #include "mechanics/quarter_forces.hpp"
 
+#include <map>
+
+#include "mechanics/stiffness.hpp"
 #include "state/quarters.hpp"
-#include "state/shape_functions.hpp"
 
 namespace strata {
 
 namespace {
 
-using Forces = std::array<Vec2, 9>;  // on the nodes of a bin
+using Motion = Eigen::Matrix<double, 18, 1>;  // of a bin's nodes, (u_x, u_y) in turn
 
-void exert(const Stress& s, const Gradients& g, double V, Forces& f) {
-  for (std::size_t n = 0; n < 9; ++n) f[n] -= V * s.on({g.N_x[n], g.N_y[n]});
+// What quarters add to the stiffness of a bin whose particles q of its own stand for four.
+LocalStiffness stiffness_of_quarters(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
+                                     const Quarters& quarters, const Bin& bin) {
+  LocalStiffness more = LocalStiffness::Zero();
+  const Particles& p = state.particles;
+  const auto add = [&](std::size_t q, const Vec2& x, const Vec2& half, double V) {
+    add_stiffness(rocks[p.rock[q]], gradients_at(scene, state.grid, bin.i, bin.j, x, half), V, more);
+  };
+  for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+       q += static_cast<std::size_t>(bin.stride)) {
+    if (!quarters.whole(p, q)) continue;
+    add(q, {p.x[q], p.y[q]}, p.half(q), -p.V[q]);
+    quarters.for_each_point(p, q, [&](const Vec2& x, const Vec2& half, double V) { add(q, x, half, V); });
+  }
+  return more;
 }
 
-// Stress at a place whose gradients are g.
-Stress stress_at(const Elasticity& rock, const Gradients& g, const std::array<Vec2, 9>& u) {
-  Vec2 d_x = Vec2::Zero(), d_y = Vec2::Zero();
-  for (std::size_t n = 0; n < 9; ++n) d_x += g.N_x[n] * u[n], d_y += g.N_y[n] * u[n];
-  return stress_of(rock, d_x.x(), d_y.x(), d_x.y(), d_y.y());
+// The rock of a bin that is like all others of that rock: four particles that stand for four, on a uniform grid; else
+// -1.
+int rock_of_alike(const State& state, const Quarters& quarters, const Bin& bin) {
+  const Particles& p = state.particles;
+  if (!state.grid.x_knots.empty() || bin.last - bin.first != 4 * bin.stride) return -1;
+  const auto first = static_cast<std::size_t>(bin.first);
+  for (auto q = first; q < static_cast<std::size_t>(bin.last); q += static_cast<std::size_t>(bin.stride)) {
+    if (!quarters.whole(p, q) || p.rock[q] != p.rock[first]) return -1;
+  }
+  return p.rock[first];
+}
+
+bool any_whole(const State& state, const Quarters& quarters, const Bin& bin) {
+  for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+       q += static_cast<std::size_t>(bin.stride)) {
+    if (quarters.whole(state.particles, q)) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -26,29 +54,21 @@ void exert_quarters(const Scene& scene, const std::vector<Elasticity>& rocks, co
                     State& state) {
   const Quarters quarters(scene, state.grid);
   if (!quarters.in_use()) return;
-  const Particles& p = state.particles;
+  std::map<int, LocalStiffness> alike;
   for (const Bin& bin : state.bins) {
-    std::array<Vec2, 9> moved;
-    for (std::size_t n = 0; n < 9; ++n) moved[n] = u[static_cast<std::size_t>(bin.record[n])];
-    Forces f;
-    f.fill(Vec2::Zero());
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
-         q += static_cast<std::size_t>(bin.stride)) {
-      if (!quarters.whole(p, q)) continue;
-      const Elasticity& rock = rocks[p.rock[q]];
-      const auto at = [&](const Vec2& x, const Vec2& half) {
-        return gradients_at(scene, state.grid, bin.i, bin.j, x, half);
-      };
-      const Stress own = stress_of(rock, p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]);
-      exert(own, at({p.x[q], p.y[q]}, p.half(q)), -p.V[q], f);
-      quarters.for_each_point(p, q, [&](const Vec2& x, const Vec2& half, double V) {
-        const Gradients g = at(x, half);
-        exert(stress_at(rock, g, moved), g, V, f);
-      });
-    }
+    if (!any_whole(state, quarters, bin)) continue;
+    const int rock = rock_of_alike(state, quarters, bin);
+    const auto own = [&] { return stiffness_of_quarters(scene, rocks, state, quarters, bin); };
+    auto known = alike.find(rock);
+    if (known == alike.end() || rock < 0) known = alike.insert_or_assign(rock, own()).first;
+    Motion moved;
+    for (Eigen::Index n = 0; n < 9; ++n)
+      moved.segment<2>(2 * n) = u[static_cast<std::size_t>(bin.record[static_cast<std::size_t>(n)])];
+    const Motion f = known->second * moved;
     for (std::size_t n = 0; n < 9; ++n) {
       const auto r = static_cast<std::size_t>(bin.record[n]);
-      state.sums.f_x[r] += f[n].x(), state.sums.f_y[r] += f[n].y();
+      const auto k = static_cast<Eigen::Index>(2 * n);
+      state.sums.f_x[r] -= f[k], state.sums.f_y[r] -= f[k + 1];
     }
   }
 }

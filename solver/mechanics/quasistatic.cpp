@@ -98,9 +98,11 @@ void update_model(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
   weigh_copies(scene, state);
   update_stencil_weights(scene, state);
   const bool halved = halve && mirror_symmetric(scene, state);
-  const bool same_body =
-      model.body && model.body->points() == Quarters(scene, state.grid).points(state.particles);
-  if (!same_body) model.body = std::make_shared<const IntactBody>(scene, rocks, state, halved);
+  const bool same_body = model.body && model.body->points() == Quarters(scene, state.grid).points(state.particles);
+  if (!same_body) {
+    model.body.reset();  // two are not to be held at a time
+    model.body = std::make_shared<const IntactBody>(scene, rocks, state, halved);
+  }
   model.condensed = condense(scene, rocks, state, *model.body, same_body ? &model.condensed : nullptr);
   model.places = contact_places(scene, rocks, state, model.condensed);
   model.factor = TangentFactor{};

@@ -68,11 +68,32 @@ bool is_halved(const Scene& scene) {
                              [&](const auto& x) { return std::abs(x[0] - middle) < 1e-9 * scene.numerics.cell_m; });
 }
 
+// Cells that have 4 x 4 points at the end where others have 2 x 2: as far as J's rings reach beside the way up of a
+// tip, and 3.25 cells beside interfaces that may part (fracture/refine_beside.hpp).
+double refined_cells(const Scene& scene, const Cells& cells) {
+  const double h = scene.numerics.cell_m, beside_path = 2.0 * (scene.numerics.ring_cells + 2.0), beside_interface = 6.5;
+  double length = scene.stop.tip_y_m.value_or(scene.domain.height_m), refined = 0.0;
+  for (const auto& x : scene.fracture->path_m) length = std::max(length, x[1]);
+  refined += beside_path * length / h;
+  for (const InterfacePlace& place : scene.strata.interfaces) {
+    if (scene.laws[place.law].kind == InterfaceLaw::Kind::perfect) continue;
+    refined += beside_interface * (scene.strata.along == Strata::Along::y ? cells.x : cells.y);
+  }
+  return std::min(refined, cells.x * cells.y);
+}
+
+// Without inertia.
+double bytes_a_point(const Scene& scene) {
+  if (!may_turn(scene)) return 330.0;
+  return refines_ahead(scene) ? 700.0 : 950.0;
+}
+
 }  // namespace
 
 double points_of(const Scene& scene) {
   const Cells cells = cells_of(scene);
-  return cells.x * cells.y * std::pow(points_across(scene), 2);
+  const double points = cells.x * cells.y * std::pow(points_across(scene), 2);
+  return refines_ahead(scene) ? points + 12.0 * refined_cells(scene, cells) : points;
 }
 
 double memory_need(const Scene& scene) {
@@ -83,7 +104,7 @@ double memory_need(const Scene& scene) {
   const double n = 2.0 * (0.5 * cells.x * (is_halved(scene) ? 1.0 : 2.0) + 1.0) * (cells.y + 1.0);
   // Factors by nested dissection fill up as n log n (George 1973): 83 MB are measured in Experiment 1 at 1 m cells,
   // 1232 MB at 0.25 m.
-  return process + points * (may_turn(scene) ? 950.0 : 330.0) + 660.0 * n * std::log2(n);
+  return process + points * bytes_a_point(scene) + 660.0 * n * std::log2(n);
 }
 
 std::optional<std::string> too_large(const Scene& scene, double available) {

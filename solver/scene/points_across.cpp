@@ -31,8 +31,8 @@ bool may_turn(const Scene& scene) {
          scene.fracture->direction == Fracture::Direction::max_hoop;
 }
 
-// Of a loaded in-situ state each point has a stress of its own, and a body force has a value at each: quarters would have
-// their parent's.
+// Of a loaded in-situ state each point has a stress of its own, and a body force has a value at each: quarters would
+// have their parent's.
 bool refines_ahead(const Scene& scene) {
   if (scene.numerics.mechanics != Numerics::Mechanics::quasistatic || !may_turn(scene)) return false;
   if (scene.numerics.particles_per_cell != 4 || points_across(scene) != 2) return false;

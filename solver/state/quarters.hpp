@@ -1,9 +1,9 @@
-// Particles that stand for their four quarters. Beside a fracture that turns cells need 4 x 4 points, elsewhere 2 x 2 are
-// enough; but without inertia the stiffness of the intact block is factored once and must not change as points become
-// finer. Where refines_ahead(scene) it is that of 4 x 4 points in every cell from the start: a particle of 2 x 2 a cell
-// stands for its four quarters in it, and is divided into them before anything else there would tell the difference.
-// Ids are those of the finest lattice, row by row from the lower left, and a particle has the one of its lower left
-// quarter: sums in the order of ids have the same digits whenever particles were divided.
+// Particles that stand for their four quarters. Beside a fracture that turns cells need 4 x 4 points, elsewhere 2 x 2
+// are enough; but without inertia the stiffness of the intact block is factored once and must not change as points
+// become finer. Where refines_ahead(scene) it is that of 4 x 4 points in every cell from the start: a particle of 2 x 2
+// a cell stands for its four quarters in it, and is divided into them before anything else there would tell the
+// difference. Ids are those of the finest lattice, row by row from the lower left, and a particle has the one of its
+// lower left quarter: sums in the order of ids have the same digits whenever particles were divided.
 #pragma once
 
 #include <array>
@@ -53,8 +53,8 @@ class Quarters {
   bool in_use_;
 };
 
-/// Divides particle q into its quarters, which continue its displacement linearly. The lower left one keeps its place in
-/// the arrays and its id; the upper right, upper left and lower right ones follow at the arrays' end with these ids.
+/// Divides particle q into its quarters, which continue its displacement linearly. The lower left one keeps its place
+/// in the arrays and its id; the upper right, upper left and lower right ones follow at the arrays' end with these ids.
 void split_in_four(Particles& p, std::size_t q, const std::array<std::int32_t, 3>& ids);
 
 }  // namespace strata

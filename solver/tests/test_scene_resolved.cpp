@@ -130,16 +130,21 @@ TEST_CASE("Memory needed grows with the particles, more so with a factor, and le
   CHECK(memory_need(scene) == Approx(half));
   scene.fracture->path_m = {{30.0, 0.0}, {30.0, 5.0}};
   CHECK(memory_need(scene) == Approx(whole));
-  scene.fracture->direction = Fracture::Direction::max_hoop;  // 16 points a cell from the start
-  CHECK(memory_need(scene) == Approx(whole + (950.0 * 4.0 - 330.0) * points));
   CHECK_FALSE(too_large(scene, memory_need(scene)).has_value());
   CHECK_THAT(too_large(scene, 0.5 * memory_need(scene)).value(),
-             Catch::Contains("need about 0.24 GB, and 0.12 GB are available"));
+             Catch::Contains("need about 0.151 GB, and 0.0755 GB are available"));
+  scene.fracture->direction = Fracture::Direction::max_hoop;
+  const double refined = (12.0 + 6.5) * 80.0;  // cells along the path and its rings, and beside the interface
+  CHECK(points_of(scene) == Approx(points + 12.0 * refined));
+  CHECK(memory_need(scene) == Approx(whole + 370.0 * points + 700.0 * 12.0 * refined));
+  scene.in_situ.initialise = InSitu::Initialise::loaded;  // 16 points a cell from the start
+  CHECK(memory_need(scene) == Approx(whole + (950.0 * 4.0 - 330.0) * points));
   CHECK(available_memory() > 1e6);
 }
 
 // Requires the estimate to count the points that a block is then filled with: those of paths that may turn, with 4 and
-// 9 a cell, of thin layers, and of neither. Mutations that fail: 16 for all paths that may turn, thin layers forgotten.
+// 9 a cell, of thin layers, and of neither; and at least those that a turning path comes to have. Mutations that fail:
+// 16 for all paths that may turn, thin layers forgotten, points beside the path or interfaces left out.
 TEST_CASE("Points are counted as blocks are filled with them") {
   Scene scene = good(layered);
   const auto check = [&](double per_cell) {
@@ -150,7 +155,16 @@ TEST_CASE("Points are counted as blocks are filled with them") {
   scene.fracture->direction = Fracture::Direction::max_hoop;
   check(4.0);  // with inertia along the path only
   scene.numerics.mechanics = Numerics::Mechanics::quasistatic;
+  const auto filled = [&] { return initialise(scene, make_elasticities(scene)).particles.size(); };
+  CHECK(points_of(scene) == 80.0 * 80.0 * 4.0 + 12.0 * (12.0 + 6.5) * 80.0);
+  const auto path = scene.fracture->path_m;
+  scene.fracture->path_m = {{40.0, 0.0}, {40.0, 39.0}, {44.0, 79.0}};
+  CHECK(static_cast<double>(filled()) < points_of(scene));
+  CHECK(static_cast<double>(filled()) > 0.75 * points_of(scene));  // rings only around the tip, not all the way
+  scene.fracture->path_m = path;
+  scene.in_situ.initialise = InSitu::Initialise::loaded;
   check(16.0);
+  scene.in_situ.initialise = InSitu::Initialise::uniform;
   scene.numerics.particles_per_cell = 9;
   check(9.0);
   scene.fracture->growth = Fracture::Growth::none;
