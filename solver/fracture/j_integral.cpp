@@ -159,6 +159,28 @@ ParticleFields particle_fields(const Scene& scene, const State& state, const Bin
   return f;
 }
 
+// What forces accelerate a particle by, and the derivative of its velocity along the fracture.
+struct ParticleMotion {
+  Vec2 a = Vec2::Zero(), v_1 = Vec2::Zero();
+};
+
+// Interpolated with B-splines whatever the scene's shape: they only enter here. Without inertia nothing moves.
+ParticleMotion motion_at(const Scene& scene, const State& state, const Frame& frame, const Bin& bin, std::size_t q) {
+  ParticleMotion m;
+  if (scene.numerics.mechanics == Numerics::Mechanics::quasistatic) return m;
+  const Particles& p = state.particles;
+  const Weights X = weights_x<QuadraticBspline>(state.grid, bin.i, p.x[q], 0.0),
+                Y = weights_y<QuadraticBspline>(state.grid, bin.j, p.y[q], 0.0);
+  for (std::size_t n = 0; n < 9; ++n) {
+    const NodeMotion& node = state.motion[static_cast<std::size_t>(bin.record[n])];
+    const double N = X.N[n % 3] * Y.N[n / 3];
+    const Vec2 grad = Vec2{X.dN[n % 3] * Y.N[n / 3], X.N[n % 3] * Y.dN[n / 3]} / state.grid.h;
+    m.a += N * Vec2{node.dv_x, node.dv_y} / state.dt;
+    m.v_1 += grad.dot(frame.e_1) * Vec2{node.v_x, node.v_y};
+  }
+  return m;
+}
+
 LocalFields fields_at(const Scene& scene, const State& state, const Elasticity& rock, const Frame& frame,
                       SideWord fracture_bit, const Bin& bin, std::size_t q) {
   const Particles& p = state.particles;
@@ -182,18 +204,7 @@ LocalFields fields_at(const Scene& scene, const State& state, const Elasticity& 
   f.s = stress_of(rock, f.H[0][0], f.H[0][1], f.H[1][0], f.H[1][1]);
   f.V = p.V[q];
   f.v = frame.local(own.v);
-  // Acceleration and velocity gradient are interpolated with B-splines whatever the scene's shape: they only enter
-  // here.
-  const Weights X = weights_x<QuadraticBspline>(state.grid, bin.i, p.x[q], 0.0),
-                Y = weights_y<QuadraticBspline>(state.grid, bin.j, p.y[q], 0.0);
-  Vec2 a = Vec2::Zero(), v_1 = Vec2::Zero();
-  for (std::size_t n = 0; n < 9; ++n) {
-    const NodeMotion& node = state.motion[static_cast<std::size_t>(bin.record[n])];
-    const double N = X.N[n % 3] * Y.N[n / 3];
-    const Vec2 grad = Vec2{X.dN[n % 3] * Y.N[n / 3], X.N[n % 3] * Y.dN[n / 3]} / state.grid.h;
-    a += N * Vec2{node.dv_x, node.dv_y} / state.dt;
-    v_1 += grad.dot(frame.e_1) * Vec2{node.v_x, node.v_y};
-  }
+  auto [a, v_1] = motion_at(scene, state, frame, bin, q);
   if (!state.body.empty()) a -= state.body[q];
   f.a = frame.local(a);
   f.v_1 = frame.local(v_1);

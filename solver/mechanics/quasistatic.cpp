@@ -13,14 +13,15 @@ namespace strata {
 namespace {
 
 // Fields of the particles of some bins; `which` empty: of all.
-void set_particles(const Scene& scene, const std::vector<Vec2>& u, const std::vector<char>& which, State& state) {
+template <class Shape>
+void set_particles(const std::vector<Vec2>& u, const std::vector<char>& which, State& state) {
   Particles& p = state.particles;
   for (std::size_t b = 0; b < state.bins.size(); ++b) {
     if (!which.empty() && which[b] == 0) continue;
     const Bin& bin = state.bins[b];
     for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
          q += static_cast<std::size_t>(bin.stride)) {
-      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
+      const Gradients g = gradients_of<Shape>(state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
       Vec2 u_p = Vec2::Zero(), d_x = Vec2::Zero(), d_y = Vec2::Zero();
       for (std::size_t n = 0; n < 9; ++n) {
         const Vec2& u_i = u[static_cast<std::size_t>(bin.record[n])];
@@ -32,24 +33,36 @@ void set_particles(const Scene& scene, const std::vector<Vec2>& u, const std::ve
   }
 }
 
+void set_particles(const Scene& scene, const std::vector<Vec2>& u, const std::vector<char>& which, State& state) {
+  with_shape(scene.numerics.shape, [&](auto shape) { set_particles<decltype(shape)>(u, which, state); });
+}
+
+// Whether J's widest ring around a tip weighs a bin: a node of it lies inside.
+bool weighed(const Scene& scene, const State& state, const Bin& bin) {
+  const Grid& g = state.grid;
+  const double reach = scene.numerics.ring_cells * g.h;
+  return std::ranges::any_of(state.tips, [&](const Tip& tip) {
+    const Vec2 at = tip_position(state, tip);
+    for (int n = 0; n < 9; ++n) {
+      const Vec2 off = Vec2{g.x(bin.i + n % 3 - 1), g.y(bin.j + n / 3 - 1)} - at;
+      if (off.norm() < reach) return true;
+    }
+    return false;
+  });
+}
+
 std::vector<char> watched_bins(const Scene& scene, const State& state, const Bonds& bonds) {
   if (scene.body.acceleration_m_s2) return std::vector<char>(state.bins.size(), 1);  // its work needs them all
-  const double around_tip_cells =
-      scene.numerics.ring_cells + 2.0;  // J's widest ring, and what its weight reaches beyond
-  const Particles& p = state.particles;
-  std::vector<char> particle(p.size(), 0);
+  std::vector<char> particle(state.particles.size(), 0);
   for (const BondSample& sample : bonds.samples) {
     for (const BondSample::Share& share : sample.particles) particle[share.index] = 1;
   }
   std::vector<char> watched(state.bins.size(), 0);
   for (std::size_t b = 0; b < watched.size(); ++b) {
     const Bin& bin = state.bins[b];
+    if (weighed(scene, state, bin)) watched[b] = 1;
     for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
          q += static_cast<std::size_t>(bin.stride)) {
-      for (const Tip& tip : state.tips) {
-        const Vec2 off = Vec2{p.x[q], p.y[q]} - tip_position(state, tip);
-        if (off.lpNorm<Eigen::Infinity>() < around_tip_cells * state.grid.h) particle[q] = 1;
-      }
       if (particle[q] != 0) watched[b] = 1;
     }
   }

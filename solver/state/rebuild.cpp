@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <tuple>
+#include <type_traits>
 
 #include "state/blocks.hpp"
 #include "state/light_copies.hpp"
@@ -224,11 +225,15 @@ std::vector<SortKey> sorted(const Grid& g, std::vector<SortKey> keys) {
 }
 
 void sort_particles(Particles& particles, const std::vector<std::size_t>& order) {
-  if (std::is_sorted(order.begin(), order.end())) return;
+  std::vector<std::size_t> moved;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    if (order[k] != k) moved.push_back(k);
+  }
+  if (moved.empty()) return;
   for_each_array(particles, [&](auto& array) {
-    auto sorted = array;
-    for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = array[order[k]];
-    array.swap(sorted);
+    std::remove_reference_t<decltype(array)> taken(moved.size());
+    for (std::size_t k = 0; k < moved.size(); ++k) taken[k] = array[order[moved[k]]];
+    for (std::size_t k = 0; k < moved.size(); ++k) array[moved[k]] = taken[k];
   });
 }
 
