@@ -29,11 +29,17 @@ Projection project(const Surface& surface, const Vec2& x, double reach) {
   const std::size_t n = v.size() - 1;
   std::size_t best = 0;
   Foot foot{std::numeric_limits<double>::max(), 0.0};
-  for (std::size_t k = 0; k < n; ++k) {
-    const Foot f = foot_on_segment(v[k].x, v[k + 1].x, x, k == 0 ? reach : 0.0, k + 1 == n ? reach : 0.0);
-    if (f.distance2 < foot.distance2) {
+  double distance = std::numeric_limits<double>::infinity();
+  // The first of the nearest, though from the last one on: places are most often beside the newest segments.
+  for (std::size_t k = n; k-- > 0;) {
+    const double before = k == 0 ? reach : 0.0, after = k + 1 == n ? reach : 0.0;
+    const double farthest = distance + (surface.points[k].A + before + after) * (1.0 + 1e-9);
+    if ((x - v[k].x).squaredNorm() > farthest * farthest) continue;
+    const Foot f = foot_on_segment(v[k].x, v[k + 1].x, x, before, after);
+    if (f.distance2 <= foot.distance2) {
       foot = f;
       best = k;
+      distance = std::sqrt(f.distance2) * (1.0 + 1e-9);
     }
   }
   const Vec2 d = (v[best + 1].x - v[best].x).normalized();
