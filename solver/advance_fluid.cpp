@@ -21,26 +21,55 @@ void set_point_pressures(const Eigen::VectorXd& P, State& state) {
   for (std::size_t k = 0; k < points.size(); ++k) points[k].P = P[static_cast<Eigen::Index>(k)];
 }
 
-// The study's law in equal steps, none longer than some of what its diffusion takes across a segment: the trapezoidal
-// rule would ring otherwise. Openings are the state's.
-void diffuse_in_steps(const Scene& scene, const State& state, double time, double dt, FluidLine& line) {
+// Openings (m) of the fracture's points in an equilibrium that the state does not hold yet.
+std::vector<double> openings(const State& state, const QuasistaticModel& model, const Equilibrium& at) {
+  std::vector<double> w = openings_of(state.fracture());
+  for (std::size_t k = 0; k < model.places.size(); ++k) {
+    const ContactPlace& place = model.places[k];
+    if (place.tie < 0 && place.surface == 0) w[place.point] = std::max(0.0, at.w[k].dot(place.n));
+  }
+  return w;
+}
+
+// The study's law at openings w (m), in equal steps, none longer than some of what its diffusion takes across a
+// segment: the trapezoidal rule would ring otherwise.
+void diffuse_in_steps(const Scene& scene, const State& state, const std::vector<double>& w, double time, double dt,
+                      FluidLine& line) {
   // In ds^2/kappa: the trapezoidal rule hardly rings, the explicit one is stable.
   const double longest = scene.fluid.time_rule == Fluid::TimeRule::explicit_euler ? 0.5 : 2.0;
   constexpr int most = 1000;  // then the rule's own stability has to do
+  const Fluid& fluid = scene.fluid;
+  const double mobility = fluid.bulk_modulus_Pa / fluid.viscosity_Pa_s;
+  const Channel channel = channel_of(scene, state, w);
   double shortest = dt;
-  for (const SurfacePoint& s : state.fracture().points) {
-    const double w = std::max(s.opening(), scene.fluid.minimum_opening_m);
-    const double kappa = scene.fluid.bulk_modulus_Pa * w * w / (12.0 * scene.fluid.viscosity_Pa_s);
-    if (kappa > 0.0) shortest = std::min(shortest, longest * s.A * s.A / kappa);
+  for (std::size_t k = 0; k < w.size(); ++k) {
+    const double kappa = mobility * channel.permeability[k];
+    if (kappa > 0.0) shortest = std::min(shortest, longest * channel.length[k] * channel.length[k] / kappa);
   }
   const int steps = std::clamp(static_cast<int>(std::ceil(std::min(dt / shortest, 1.0 * most))), 1, most);
   const double step = dt / steps;
-  const Fluid& fluid = scene.fluid;
-  Diffusion flow(channel_of(scene, state), fluid.bulk_modulus_Pa / fluid.viscosity_Pa_s, fluid.time_rule, step);
+  Diffusion flow(channel, mobility, fluid.time_rule, step);
   for (int k = 1; k <= steps; ++k) {
     line.inlet_Pa = fluid.start_Pa + fluid.rate_Pa_s * (time + k * step);
     flow.step(line.inlet_Pa, line.P);
   }
+}
+
+// The openings midway through a step dt: those of its start with half of what they change by at the rate of the step
+// before or, after an event, by the step taken at the openings of its start (Heun's rule).
+std::vector<double> openings_midway(const Scene& scene, double dt, State& state, QuasistaticModel& model) {
+  std::vector<double> w = openings_of(state.fracture());
+  if (state.fluid.w_rate.size() == w.size()) {
+    for (std::size_t k = 0; k < w.size(); ++k) w[k] = std::max(0.0, w[k] + 0.5 * dt * state.fluid.w_rate[k]);
+    return w;
+  }
+  const FluidLine before = state.fluid;
+  diffuse_in_steps(scene, state, w, state.time, dt, state.fluid);
+  pass_to_points(state);
+  const std::vector<double> end = openings(state, model, find_equilibrium(scene, state.time + dt, state, model));
+  for (std::size_t k = 0; k < w.size(); ++k) w[k] = 0.5 * (w[k] + end[k]);
+  state.fluid = before;
+  return w;
 }
 
 // What rough faces hold between them when they just touch (m), 1e-4 of the study's openings. Under load they hold less,
@@ -124,15 +153,24 @@ void fill_fracture(const Scene& scene, State& state, QuasistaticModel& model) {
   state.fluid.inlet_Pa = P;
 }
 
-double lag_error(const Scene& scene, const FluidLine& before, double time, const State& state) {
+double lag_error(const Scene& scene, const FluidLine& before, std::span<const double> w_before, double time,
+                 const State& state) {
   double net = 0.0;
   for (const SurfacePoint& s : state.fracture().points) net = std::max(net, std::abs(s.P - s.closing_stress()));
   if (net == 0.0) return 0.0;
+  std::vector<double> w = openings_of(state.fracture());
+  for (std::size_t k = 0; k < w.size(); ++k) w[k] = 0.5 * (w[k] + w_before[k]);
   FluidLine again = before;
-  diffuse_in_steps(scene, state, time, state.time - time, again);
+  diffuse_in_steps(scene, state, w, time, state.time - time, again);
   double change = 0.0;
   for (std::size_t k = 0; k < again.P.size(); ++k) change = std::max(change, std::abs(again.P[k] - state.fluid.P[k]));
   return 0.5 * change / net;
+}
+
+void note_rates(std::span<const double> w_before, double dt, State& state) {
+  const std::vector<double> w = openings_of(state.fracture());
+  state.fluid.w_rate.resize(w.size());
+  for (std::size_t k = 0; k < w.size(); ++k) state.fluid.w_rate[k] = (w[k] - w_before[k]) / dt;
 }
 
 void add_fluid_cells(const Scene& scene, bool at_back, std::size_t added, State& state) {
@@ -151,7 +189,8 @@ FluidStep advance_fluid(const Scene& scene, double dt, State& state, Quasistatic
   }
   if (scene.fluid.law == Fluid::Law::reynolds) return couple(scene, dt, state, model);
   if (dt > 0.0) {
-    if (scene.fluid.law == Fluid::Law::paper) diffuse_in_steps(scene, state, state.time, dt, state.fluid);
+    if (scene.fluid.law == Fluid::Law::paper)
+      diffuse_in_steps(scene, state, openings_midway(scene, dt, state, model), state.time, dt, state.fluid);
     state.dt = dt;
     if (scene.fluid.law == Fluid::Law::uniform) advance_pressure(scene, state);
     state.time += dt;

@@ -369,6 +369,7 @@ void let_happen(const Scene& scene, const std::vector<Elasticity>& rocks, State&
   equilibrate(scene, rocks, state, run);
   accept(scene, before, growing.empty() ? Change::failure : Change::growth, state, run);
   state.dt = first_flow_step;
+  state.fluid.w_rate.clear();
 }
 
 void stop_at_edges(const Scene& scene, State& state) {
@@ -395,8 +396,14 @@ FluidStep try_step(const Scene& scene, const std::vector<Elasticity>& rocks, con
   }
 }
 
+// An error that goes by the third power of its step as if it went by the second, as the steps' control takes it.
+double error_of_second_order(double error) {
+  return std::cbrt(error * error);
+}
+
 // The step at whose end the margin is 1 or hardly more, no longer than `high`, at which it is larger: regula falsi,
-// which weighs the end that stays half as much each time (Illinois), and bisection where the margin has no size.
+// which turns the end that stays onto the slope of the parabola through the last three (Anderson and Bjorck, BIT 13,
+// 1973), and bisection where the margin has no size.
 void locate_event(const Scene& scene, const std::vector<Elasticity>& rocks, const LoadPoint& from, double margin_low,
                   double high, State& state, Quasistatic& run) {
   const double aim = 1.0 + 0.5 * event_tolerance;
@@ -409,9 +416,13 @@ void locate_event(const Scene& scene, const std::vector<Elasticity>& rocks, cons
     const double margin = found ? run.margin : HUGE_VAL;  // what has no solution lies beyond the event
     if (margin >= 1.0 && margin <= 1.0 + event_tolerance) return;
     const bool beyond = margin > aim;
+    double &f_same = beyond ? f_high : f_low, &f_other = beyond ? f_low : f_high;
+    if (side == (beyond ? 1 : -1)) {
+      const double less = 1.0 - (margin - aim) / f_same;
+      f_other *= less > 0.0 ? less : 0.5;
+    }
     (beyond ? high : low) = middle;
-    (beyond ? f_high : f_low) = margin - aim;
-    if (side == (beyond ? 1 : -1)) (beyond ? f_low : f_high) *= 0.5;
+    f_same = margin - aim;
     side = beyond ? 1 : -1;
   }
   const FluidStep last = try_step(scene, rocks, from, high, state, run);
@@ -458,15 +469,16 @@ void advance_quasistatic(const Scene& scene, const std::vector<Elasticity>& rock
   const LoadPoint from = load_point(state);
   const double margin = run.margin, left = until - from.time, aim = scene.numerics.flow_change;
   const bool flows = scene.fluid.law != Fluid::Law::uniform && state.has_fracture;
-  // Where nothing grows the margin says nothing of the flow.
-  const bool lags =
-      scene.fluid.law == Fluid::Law::paper && state.has_fracture && scene.fracture->growth == Fracture::Growth::none;
+  const bool foresees = flows && scene.fluid.law == Fluid::Law::paper;
+  const std::vector<double> w = foresees ? openings_of(state.fracture()) : std::vector<double>{};
   double dt = flows ? std::min(state.dt, left) : left;
   double change = 0.0;
   FluidStep fluid;
   for (bool good = false; !good; dt *= good ? 1.0 : 0.5) {
     fluid = try_step(scene, rocks, from, dt, state, run);
-    if (lags && fluid.found) fluid.error = lag_error(scene, from.fluid, from.time, state) / scene.numerics.flow_error;
+    if (foresees && fluid.found)
+      fluid.error =
+          error_of_second_order(lag_error(scene, from.fluid, w, from.time, state) / scene.numerics.flow_error);
     change = fluid.found ? std::abs(run.margin - margin) : 0.0;
     if (!fluid.found && dt < shortest_trial) no_way_on("in any step", from.time, fluid.reason);
     const bool event = run.margin >= 1.0;
@@ -474,6 +486,7 @@ void advance_quasistatic(const Scene& scene, const std::vector<Elasticity>& rock
     good = good || (fluid.found && dt < shortest_trial);
   }
   if (run.margin > 1.0 + event_tolerance) locate_event(scene, rocks, from, margin, dt, state, run);
+  if (foresees) note_rates(w, state.time - from.time, state);
   accept(scene, from, Change::load, state, run);
   const double by_margin = change > 0.0 ? aim / change : 2.0;
   const double by_error = fluid.error > 0.0 ? 0.8 / std::sqrt(fluid.error) : 2.0;

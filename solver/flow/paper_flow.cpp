@@ -66,15 +66,22 @@ void diffuse(const Channel& channel, double mobility, Fluid::TimeRule rule, doub
   Diffusion(channel, mobility, rule, dt).step(inlet_Pa, P);
 }
 
-Channel channel_of(const Scene& scene, const State& state) {
+Channel channel_of(const Scene& scene, const State& state, std::span<const double> openings) {
   Channel channel;
   channel.inlet = state.fluid.inlet;
-  for (const SurfacePoint& s : state.fracture().points) {
-    const double w = std::max(s.opening(), scene.fluid.minimum_opening_m);
-    channel.length.push_back(s.A);
+  const auto& points = state.fracture().points;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const double w = std::max(openings[k], scene.fluid.minimum_opening_m);
+    channel.length.push_back(points[k].A);
     channel.permeability.push_back(w * w / 12.0);
   }
   return channel;
+}
+
+std::vector<double> openings_of(const Surface& fracture) {
+  std::vector<double> w;
+  for (const SurfacePoint& s : fracture.points) w.push_back(s.opening());
+  return w;
 }
 
 double inflow(const Scene& scene, const State& state) {
@@ -100,8 +107,8 @@ void advance_pressure(const Scene& scene, State& state) {
   if (fluid.law == Fluid::Law::uniform) {
     std::fill(line.P.begin(), line.P.end(), line.inlet_Pa);
   } else {
-    diffuse(channel_of(scene, state), fluid.bulk_modulus_Pa / fluid.viscosity_Pa_s, fluid.time_rule, state.dt,
-            line.inlet_Pa, line.P);
+    diffuse(channel_of(scene, state, openings_of(fracture)), fluid.bulk_modulus_Pa / fluid.viscosity_Pa_s,
+            fluid.time_rule, state.dt, line.inlet_Pa, line.P);
   }
   for (std::size_t k = 0; k < fracture.points.size(); ++k) fracture.points[k].P = 0.5 * (line.P[k] + line.P[k + 1]);
   state.monitors.delivered_m2 += state.dt * inflow(scene, state);

@@ -2,6 +2,7 @@
 // 4).
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "scene/scene.hpp"
@@ -22,8 +23,11 @@ struct Channel {
 void diffuse(const Channel& channel, double mobility, Fluid::TimeRule rule, double dt, double inlet_Pa,
              std::vector<double>& P);
 
-/// The channel of a state's fracture with its present openings, at least minimum_opening_m. Throws nothing.
-Channel channel_of(const Scene& scene, const State& state);
+/// The channel of a state's fracture with these openings (m, one a point), at least minimum_opening_m. Throws nothing.
+Channel channel_of(const Scene& scene, const State& state, std::span<const double> openings);
+
+/// Openings (m) of a fracture's points, at least 0. Throws nothing.
+std::vector<double> openings_of(const Surface& fracture);
 
 // diffuse() for many steps of one length through one channel: the matrix of its implicit part is factored once.
 class Diffusion {

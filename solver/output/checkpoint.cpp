@@ -15,7 +15,7 @@ namespace strata {
 namespace {
 
 constexpr std::string_view magic = "strata-checkpoint\n";
-constexpr std::uint32_t format_version = 7;  // to be raised with every change of what is saved
+constexpr std::uint32_t format_version = 8;  // to be raised with every change of what is saved
 constexpr std::uint32_t byte_order = 0x01020304;
 
 // Values that are saved as the bytes they are.
@@ -53,8 +53,8 @@ void fields(Archive& ar, Is<Surface> auto& surface) {
 
 template <class Archive>
 void fields(Archive& ar, Is<FluidLine> auto& fluid) {
-  auto& [P, inlet, inlet_Pa] = fluid;
-  ar(P, inlet, inlet_Pa);
+  auto& [P, inlet, inlet_Pa, w_rate] = fluid;
+  ar(P, inlet, inlet_Pa, w_rate);
 }
 
 template <class Archive>

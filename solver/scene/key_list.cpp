@@ -378,9 +378,10 @@ std::vector<Key> numerics_keys() {
       number(
           "numerics.flow_error", "", {0.0, 1.0, true, false},
           +[](Scene& s, std::size_t) -> double& { return s.numerics.flow_error; },
-          "Under fluid.law = \"reynolds\": error of the largest opening aimed at in a step; quasi-static under "
-          "\"paper\" "
-          "where nothing grows: of the pressure that the lag of the permeability makes, over the largest net pressure. "
+          "Quasi-static, error aimed at in a step of the flow: under fluid.law = \"reynolds\" of the largest opening, "
+          "under "
+          "\"paper\" a fiftieth of what the openings of the step's end change of any pressure over the largest net "
+          "one. "
           "Steps with four times as much are tried again with half the length."),
   };
 }

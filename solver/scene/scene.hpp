@@ -170,10 +170,10 @@ struct Numerics {
   Transfer transfer = Transfer::flip;
   double courant = 0.5;  // c_P dt / h
   double damping_1_s = 0.0;
-  int tip_steps = 4;          // explicit: steps from one look at the tips to the next
-  double ring_cells = 4.0;    // outer radius of the widest ring around a tip, in cells
-  double flow_change = 0.15;  // of the nearest event's margin in a step of the flow
-  double flow_error = 1e-3;   // of the largest opening in a step of flow and rock
+  int tip_steps = 4;         // explicit: steps from one look at the tips to the next
+  double ring_cells = 4.0;   // outer radius of the widest ring around a tip, in cells
+  double flow_change = 0.3;  // of the nearest event's margin in a step of the flow
+  double flow_error = 1e-3;  // of the largest opening (reynolds) or net pressure (paper) in a step of the flow
 
   // Whether particles and surfaces stay in their reference places while displacements advance.
   bool keeps_places() const { return mechanics == Mechanics::quasistatic || kinematics == Kinematics::total; }

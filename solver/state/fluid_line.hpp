@@ -11,6 +11,7 @@ struct FluidLine {
   std::vector<double> P;
   std::size_t inlet = 0;  // the vertex at which the pressure is prescribed
   double inlet_Pa = 0.0;
+  std::vector<double> w_rate;  // of the opening (m/s), a value a point, over the last step without inertia; or none
 };
 
 // The fluid in the fracture, a value a cell from the first vertex to the last.

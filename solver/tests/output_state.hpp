@@ -145,7 +145,7 @@ inline State made_state() {
     for (SurfacePoint& s : surface.vertices) fill_point(s, number);
     for (SurfacePoint& s : surface.points) fill_point(s, number);
   }
-  state.fluid = {{16.1e6, 15.3e6 / 0.9, 0.0}, 1, 16.7e6 / 0.9};
+  state.fluid = {{16.1e6, 15.3e6 / 0.9, 0.0}, 1, 16.7e6 / 0.9, {1e-3 / 3.0, -2e-4}};
   state.tips = {made_tip(true, number)};
   state.ties = {{44, 101, 102, number.next(), {}}};
   fill_point(state.ties[0].s, number);

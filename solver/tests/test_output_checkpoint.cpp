@@ -133,6 +133,7 @@ void require_same(const State& a, const State& b) {
   CHECK(a.fluid.P == b.fluid.P);
   CHECK(a.fluid.inlet == b.fluid.inlet);
   CHECK(a.fluid.inlet_Pa == b.fluid.inlet_Pa);
+  CHECK(a.fluid.w_rate == b.fluid.w_rate);
   REQUIRE(a.tips.size() == b.tips.size());
   for (std::size_t k = 0; k < a.tips.size(); ++k) require_same(a.tips[k], b.tips[k]);
   REQUIRE(a.ties.size() == b.ties.size());

@@ -10,8 +10,8 @@ from verification.harness.quantities import turns
 # Radii of the widest J ring, in cells, beside the default of 4.
 RINGS = (3.0, 5.0)
 
-# numerics.flow_change by default: what a step of the flow may change of an event's margin.
-FLOW_CHANGE = 0.15
+# numerics.flow_change and flow_error by default: what a step of the flow may change of an event's margin, and its error.
+FLOW_CHANGE, FLOW_ERROR = 0.3, 1e-3
 
 # Beyond the fine cells a straight fracture's larger block is graded up to so many cells, which leaves results as they are.
 FAR_CELLS = 4.0
@@ -88,8 +88,10 @@ def _step(content: dict[str, Any], mechanics: str) -> Factor:
         return Factor("step", "time step", "numerical", (_one("half", f"Courant number {half:g}", f"numerics.courant={half!r}"),))
     if content.get("fluid", {}).get("law", "paper") == "uniform":
         return Factor("step", "flow step", "numerical", (), "no flow")
-    half = float(content["numerics"].get("flow_change", FLOW_CHANGE)) / 2.0
-    return Factor("step", "flow step", "numerical", (_one("half", f"flow change {half:g}", f"numerics.flow_change={half!r}"),))
+    change = float(content["numerics"].get("flow_change", FLOW_CHANGE)) / 2.0
+    error = float(content["numerics"].get("flow_error", FLOW_ERROR)) / 8.0  # goes by the third power of the step
+    half = _one("half", f"flow change {change:g}, flow error {error:g}", f"numerics.flow_change={change!r}", f"numerics.flow_error={error!r}")
+    return Factor("step", "flow step", "numerical", (half,))
 
 
 def _particles(content: dict[str, Any]) -> Factor:

@@ -27,7 +27,7 @@ EXP1, EXP5 = (EXPERIMENTS / f"{name}.toml" for name in ("exp1_single_interface",
 KEYS = {
     "mesh": {"numerics.cell_m"},
     "mesh_increment": {"numerics.cell_m", "fracture.increment_m"},
-    "step": {"numerics.flow_change", "numerics.courant"},
+    "step": {"numerics.flow_change", "numerics.flow_error", "numerics.courant"},
     "ring": {"numerics.ring_cells"},
     "particles": {"numerics.particles_per_cell"},
     "increment": {"fracture.increment_m"},
