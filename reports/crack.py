@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from reports.layout import Layout, layout_of
 from reports.runs import Arrays, NotAvailable, Run, fracture_at, interfaces_at, output_times, particles_at
 from reports.words import metres, mpa, number, plain
 
+REACH_OF_LONG = 1.5  # half the diagonal of a particle eight times as long as wide, over the root of its area
 WINDOW_CELLS = 9  # width of Fig 1's panels: few enough for single nodes and particles to be told apart
 REACH: dict[str, float] = {"bspline2": 1.5, "linear": 1.0, "gimp": 1.25}  # half support of a node, cells
 
@@ -251,7 +253,10 @@ def _arc(fracture: Arrays) -> np.ndarray:
 
 
 def raster(points: Arrays, values: np.ndarray, layout: Layout) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Particle values averaged over squares of one particle's spacing; NaN where there is none."""
+    """Particle values averaged over squares of one particle's spacing; NaN where there is none.
+
+    Particles of long cells, on a graded grid, count for the squares around them as well.
+    """
     spacing = float(np.sqrt(np.median(points["volume_m2"]))) if "volume_m2" in points else layout.cell_m / 2.0
     count_x, count_y = max(1, round(layout.width_m / spacing)), max(1, round(layout.height_m / spacing))
     edges_x, edges_y = np.linspace(0, layout.width_m, count_x + 1), np.linspace(0, layout.height_m, count_y + 1)
@@ -259,7 +264,21 @@ def raster(points: Arrays, values: np.ndarray, layout: Layout) -> tuple[np.ndarr
     total, _, _ = np.histogram2d(*where, bins=(edges_x, edges_y), weights=values)
     hits, _, _ = np.histogram2d(*where, bins=(edges_x, edges_y))
     mean = np.divide(total, hits, out=np.full_like(total, np.nan), where=hits > 0)
+    if "volume_m2" in points:
+        _spread(mean, (edges_x, edges_y), points, values)
     return edges_x, edges_y, mean.T
+
+
+def _spread(mean: np.ndarray, edges: tuple[np.ndarray, np.ndarray], points: Arrays, values: np.ndarray) -> None:
+    """Give empty squares the value of the nearest particle that is larger than most, and no farther than its own cell may reach."""
+    large = points["volume_m2"] > 1.01 * np.median(points["volume_m2"])
+    empty = np.argwhere(np.isnan(mean))
+    if not large.any() or not len(empty):
+        return
+    centres = np.column_stack([0.5 * (edge[:-1] + edge[1:])[empty[:, axis]] for axis, edge in enumerate(edges)])
+    away_m, nearest = cKDTree(np.column_stack([points["x_m"][large], points["y_m"][large]])).query(centres)
+    within = away_m <= REACH_OF_LONG * np.sqrt(points["volume_m2"][large][nearest])
+    mean[tuple(empty[within].T)] = values[large][nearest[within]]
 
 
 def index_when_tip_passes(run: Run, height_m: float) -> int:

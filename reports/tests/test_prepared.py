@@ -122,6 +122,15 @@ def test_a_raster_averages_particles(tmp_path: Path) -> None:
     assert field.shape == (4, 4) and field[0, 0] == 2.0 and np.isnan(field[1:, :]).all()
 
 
+def test_a_raster_has_no_gaps_between_particles_of_long_cells(tmp_path: Path) -> None:
+    """Squares of 20 m: a particle 80 m long and 20 m high fills its four; nothing fills a row where there is none."""
+    layout = layout_of(load_run(write_run(tmp_path, 1, Plan("perfect"))))
+    places = [(40.0, 10.0), *((10.0 + 20.0 * k, 30.0) for k in range(4))]
+    points = {"x_m": np.array([x for x, _ in places]), "y_m": np.array([y for _, y in places]), "volume_m2": np.array([1600.0] + [400.0] * 4)}
+    _, _, field = raster(points, np.array([7.0, 1.0, 2.0, 3.0, 4.0]), layout)
+    assert (field[0] == 7.0).all() and list(field[1]) == [1.0, 2.0, 3.0, 4.0] and np.isnan(field[3]).all()
+
+
 def test_a_variant_is_told_by_what_differs(tmp_path: Path) -> None:
     """A variant is compared with the interface type it shares most settings with."""
     write_run(tmp_path, 1, Plan("perfect"))

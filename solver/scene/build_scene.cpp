@@ -139,18 +139,15 @@ void choose_inlet(const Positions& positions, Scene& scene, Faults& faults) {
   }
 }
 
-// The criterion of crossing left out of a quasi-static scene is energy. It, which no other can use, and cells far away,
-// chosen for statics, which waves may not pass, fall back on their defaults where a variant or --set above them has
-// chosen mechanics = "explicit".
+// The criterion of crossing left out of a quasi-static scene is energy. It, which no other can use, falls back on its
+// default where a variant or --set above it has chosen mechanics = "explicit".
 void follow_mechanics(const Positions& positions, Scene& scene) {
+  if (!scene.fracture) return;
   if (scene.numerics.mechanics == Numerics::Mechanics::quasistatic) {
-    if (scene.fracture && !positions.given("fracture.crossing")) scene.fracture->crossing = Fracture::Crossing::energy;
-    return;
-  }
-  const int chosen = rank_of(positions, "numerics.mechanics");
-  if (chosen > rank_of(positions, "numerics.far_cell_m")) scene.numerics.far_cell_m.reset();
-  if (scene.fracture && chosen > rank_of(positions, "fracture.crossing"))
+    if (!positions.given("fracture.crossing")) scene.fracture->crossing = Fracture::Crossing::energy;
+  } else if (rank_of(positions, "numerics.mechanics") > rank_of(positions, "fracture.crossing")) {
     scene.fracture->crossing = Fracture::Crossing::J;
+  }
 }
 
 // Keys that must be there: those of every scene, of every rock and interface named, and of a fracture if there is one.

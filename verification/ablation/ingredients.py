@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from verification.harness.factors import toml
+from verification.harness.factors import is_graded, toml
 from verification.harness.load import Run
 
 MODELLED, RESOLVED, LEFT_OUT = "modelled", "resolved", "left_out"
@@ -212,12 +212,9 @@ def _resolution(content: dict[str, Any]) -> list[Ingredient]:
     """What is resolved, coarser."""
     numerics = content["numerics"]
     cell, courant = float(numerics["cell_m"]), float(numerics.get("courant", 0.5))
-    graded = Ingredient("far_cells", "fine cells far away", RESOLVED, f"{GRADED * cell:g} m there", (f"numerics.far_cell_m={GRADED * cell!r}",))
-    if content["fracture"].get("direction", "straight") != "straight":
-        graded = replace(graded, settings=(), done="", why_not="the path may turn into coarse cells")
     return [
         Ingredient("cells", f"cells of {cell:g} m", RESOLVED, f"{2.0 * cell:g} m", (f"numerics.cell_m={2.0 * cell!r}",)),
-        graded,
+        *([] if is_graded(content) else [_far_cells(content, cell)]),
         Ingredient("step", f"Courant number {courant:g}", RESOLVED, f"{2.0 * courant:g}", (f"numerics.courant={2.0 * courant!r}",)),
         Ingredient("looks", "looks at the tips every 4 steps", RESOLVED, "every 8", ("numerics.tip_steps=8",)),
         Ingredient("ring", "J rings of up to 4 cells", RESOLVED, "3 cells", ("numerics.ring_cells=3.0",)),
@@ -225,11 +222,21 @@ def _resolution(content: dict[str, Any]) -> list[Ingredient]:
     ]
 
 
+def _far_cells(content: dict[str, Any], cell: float) -> Ingredient:
+    """Fine cells far away, of a uniform grid."""
+    label = "fine cells far away"
+    if content["fracture"].get("direction", "straight") != "straight":
+        return Ingredient("far_cells", label, RESOLVED, "", why_not="the path may turn into coarse cells")
+    return Ingredient("far_cells", label, RESOLVED, f"{GRADED * cell:g} m there", (f"numerics.far_cell_m={GRADED * cell!r}",))
+
+
 def _left_out(content: dict[str, Any]) -> list[Ingredient]:
-    """What the scene goes without: finer cells, more points, points that move."""
+    """What the scene goes without: finer cells, such ones far away, more points, points that move."""
     numerics = content["numerics"]
     cell, points = float(numerics["cell_m"]), int(numerics.get("particles_per_cell", 4))
     found = [Ingredient("finer", f"cells of {cell / 2.0:g} m", LEFT_OUT, "modelled", (f"numerics.cell_m={cell / 2.0!r}",))]
+    if is_graded(content):
+        found.append(Ingredient("far_cells", "fine cells far away", LEFT_OUT, "modelled", (f"numerics.far_cell_m={cell!r}",)))
     if points < 16:
         found.append(Ingredient("points", "16 points a cell", LEFT_OUT, "modelled", ("numerics.particles_per_cell=16",)))
     if numerics.get("kinematics", "updated") == "total":

@@ -57,13 +57,15 @@ def steps_of(content: dict[str, Any], mechanics: str) -> float:
 def cost_of(content: dict[str, Any], mechanics: str, like: Summary | None = None, like_cell_m: float = 1.0) -> Cost:
     """The cost of a scene (its keys as they will be used); `like` is a run of the same experiment at another cell size.
 
-    Particles of a uniform grid. Steps are those of `like`, times the ratio of cell sizes where a wave limits the step.
+    Particles are those of a uniform grid, or of `like` times the square of the ratio of cell sizes, which a graded grid falls short of. Steps are
+    those of `like`, times the ratio of cell sizes where a wave limits the step.
     """
     numerics, domain = content["numerics"], content["domain"]
     cell = float(numerics["cell_m"])
     particles = float(domain["width_m"]) * float(domain["height_m"]) / cell**2 * float(numerics.get("particles_per_cell", 4))
     steps, speed = steps_of(content, mechanics), SPEED[mechanics]
     if like is not None and like.steps > 0 and like.particle_steps_per_s > 0.0:
+        particles = like.particles * (like_cell_m / cell) ** 2
         steps = like.steps * (like_cell_m / cell if mechanics == "explicit" else 1.0)
         speed = like.particle_steps_per_s
     return Cost(particles, steps, particles * steps / speed, like is not None)

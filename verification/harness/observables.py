@@ -218,10 +218,18 @@ def final_angle_deg(run: Run, _: Run | None, parameters: Parameters) -> Measured
 
 
 def failed_length_m(arrays: dict[str, Array], number: int) -> float:
-    """Length of interface `number` (from 1) that has two separate sides at an output time, m."""
+    """Length of interface `number` (from 1) that has two separate sides at an output time, m.
+
+    Each of its places stands for half of the way to its neighbours, those at the ends for as much outwards as inwards.
+    """
     place = str(number - 1)
     x, split = arrays[f"{place}/x_m"], arrays[f"{place}/split"]
-    return float(np.sum(split > 0)) * (float(x.max() - x.min()) / (len(x) - 1) if len(x) > 1 else 0.0)
+    if len(x) < 2:
+        return 0.0
+    order = np.argsort(x)
+    ways = np.diff(x[order])
+    lengths = 0.5 * (np.append(ways[0], ways) + np.append(ways, ways[-1]))
+    return float(np.sum(lengths[split[order] > 0]))
 
 
 def interface_failure_excess_Pa(run: Run, _: Run | None, parameters: Parameters) -> Measured:

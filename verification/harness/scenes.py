@@ -59,6 +59,4 @@ def mechanics_of(scene: Path, variant: str) -> tuple[str, ...]:
     content = resolved(scene, variant)
     if any(content.get(table, {}).get(key) == value for table, key, value in QUASISTATIC_ONLY):
         named = "quasistatic"
-    if "far_cell_m" in content.get("numerics", {}):
-        named = "quasistatic"
     return (str(named),) if named else MECHANICS

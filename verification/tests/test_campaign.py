@@ -38,7 +38,7 @@ def scene(tmp_path: Path) -> Path:
 
 @pytest.mark.parametrize(
     "variant, expected",
-    [("plain", MECHANICS), ("flow", ("quasistatic",)), ("energy", ("quasistatic",)), ("graded", ("quasistatic",)), ("undamped", ("explicit",))],
+    [("plain", MECHANICS), ("flow", ("quasistatic",)), ("energy", ("quasistatic",)), ("graded", MECHANICS), ("undamped", ("explicit",))],
 )
 def test_what_a_variant_can_run_in(scene: Path, variant: str, expected: tuple[str, ...]) -> None:
     assert mechanics_of(scene, variant) == expected

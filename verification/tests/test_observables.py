@@ -7,10 +7,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from verification.harness.load import Run, load
-from verification.harness.observables import Measured, measure
+from verification.harness.observables import Measured, failed_length_m, measure
 from verification.tests.fake_run import Step, climb, write_run
 
 MPA = 1.0e6
@@ -127,6 +128,14 @@ def test_interface_failure_and_energy(tmp_path: Path) -> None:
     assert measure("interface_failure_excess_Pa", {"interface": 1}, other, None).holds(None, 0.1 * MPA) is False
     assert measure("interface_energy_difference_J", {"height_m": 22}, fails, other).value == pytest.approx(17.0)
     assert measure("interface_energy_difference_J", {"height_m": 22}, other, fails).value == pytest.approx(-17.0)
+
+
+def test_a_failed_length_counts_each_place_by_the_way_to_its_neighbours() -> None:
+    """On a graded grid places are unlike: two of 0.5 m and one of 1.25 m, whatever their order."""
+    x, split = np.array([0.25, 0.75, 1.25, 2.25, 3.75]), np.array([1, 1, 0, 1, 0])
+    for order in (np.arange(5), np.array([3, 0, 4, 2, 1])):
+        assert failed_length_m({"0/x_m": x[order], "0/split": split[order]}, 1) == pytest.approx(2.25)
+    assert failed_length_m({"0/x_m": x[:1], "0/split": split[:1]}, 1) == 0.0
 
 
 def test_bounds_are_judged_by_both_ends() -> None:

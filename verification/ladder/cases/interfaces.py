@@ -207,8 +207,7 @@ SMALL = "it is the block's edges that cost a per cent"
 
 def small_levels(variant: str) -> tuple[Level, ...]:
     """Levels of a crack 5 m from the interface in the middle of a block of 160 m, with cells of one size."""
-    keys = ("cell_m",) if variant.endswith("settling") else ("cell_m", "far_cell_m")
-    return tuple(Level(f"{n} cells", 5.0 / n, tuple(f"numerics.{key}={5.0 / n!r}" for key in keys), variant) for n in (2, 4))
+    return tuple(Level(f"{n} cells", 5.0 / n, tuple(f"numerics.{key}={5.0 / n!r}" for key in ("cell_m", "far_cell_m")), variant) for n in (2, 4))
 
 
 CASES = (

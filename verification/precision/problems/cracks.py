@@ -92,9 +92,9 @@ def near(layers: tuple[str, str], laws: tuple[str, ...] = ()):  # type: ignore[n
                 interfaces.path_setting(DISTANCE_M, False, middle), *laws]  # fmt: skip
         if setting.mechanics == "explicit":
             keys += [f"stop.time_s={NEAR_SETTLED_S!r}", f"output.fields_every_s={NEAR_SETTLED_S!r}"]
-        elif setting.graded == 0.0:  # the scene's grid is graded
+        if setting.graded == 0.0:  # the scene's grid is graded
             keys.append(f"numerics.far_cell_m={cell_m!r}")
-        else:
+        elif setting.mechanics == "quasistatic":
             keys.append(f"numerics.far_cell_m={FAR_CELL_M!r}")
         return "", tuple(keys)
 
