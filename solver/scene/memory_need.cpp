@@ -97,14 +97,13 @@ double points_of(const Scene& scene) {
 }
 
 double memory_need(const Scene& scene) {
-  constexpr double process = 24e6;
   const double points = points_of(scene);
-  if (scene.numerics.mechanics != Numerics::Mechanics::quasistatic) return process + 1250.0 * points;
+  if (scene.numerics.mechanics != Numerics::Mechanics::quasistatic) return 24e6 + 1250.0 * points;
   const Cells cells = cells_of(scene);
   const double n = 2.0 * (0.5 * cells.x * (is_halved(scene) ? 1.0 : 2.0) + 1.0) * (cells.y + 1.0);
-  // Factors by nested dissection fill up as n log n (George 1973): 83 MB are measured in Experiment 1 at 1 m cells,
-  // 1232 MB at 0.25 m.
-  return process + points * bytes_a_point(scene) + 660.0 * n * std::log2(n);
+  // Factors by nested dissection fill up as n log n (George 1973): in Experiment 1 83 MB are measured at 1 m cells and
+  // 1232 MB at 0.25 m on uniform grids, 53 to 60 MB at 1 m and 207 to 229 MB at 0.25 m on graded ones.
+  return 28e6 + points * bytes_a_point(scene) + 700.0 * n * std::log2(n);
 }
 
 std::optional<std::string> too_large(const Scene& scene, double available) {

@@ -14,7 +14,7 @@ import pytest
 
 from verification.ablation import store
 from verification.ablation.effects import CHANGES, NEEDED, NOTHING, SPARED, Tried, effects_of, free, missing, needs, not_needed, tried
-from verification.ablation.ingredients import LEFT_OUT, MODELLED, Ingredient, View, ingredients_of, mirrored, named
+from verification.ablation.ingredients import LEFT_OUT, MODELLED, RESOLVED, Ingredient, View, ingredients_of, mirrored, named
 from verification.ablation.measure import INTERFACES, OWN, NoBase, table_of
 from verification.ablation.reasons import reasons, unexplained
 from verification.harness.budget import Effect
@@ -49,6 +49,21 @@ def test_every_experiment_has_its_ingredients(scene: Path) -> None:
         acting = [one.id for one in found if one.id.startswith("interface_")]
         both = ["interface_1", "interface_2"]
         assert acting == {"soft": both if scene.stem.startswith("exp4") else both[:1], "weak_soft": both, "perfect": []}[variant]
+
+
+@pytest.mark.parametrize("scene", scenes_of(EXPERIMENTS), ids=lambda path: path.stem[:4])
+def test_cells_far_away_are_what_a_straight_fracture_goes_without_and_a_turning_one_must_not(scene: Path) -> None:
+    """A graded scene is tried with the uniform grid, a uniform one with a graded grid, but for a path that would meet it."""
+    own = content_of(scene, "perfect", ())
+    turning = own["fracture"]["direction"] != "straight"
+    uniform = content_of(scene, "perfect", ("numerics.far_cell_m=1.0",))
+    found, other = (next(one for one in ingredients_of(content) if one.id == "far_cells") for content in (own, uniform))
+    assert ("far_cell_m" in own["numerics"]) != turning
+    if turning:
+        assert found.why_not and other.why_not
+    else:
+        assert (found.group, found.settings) == (LEFT_OUT, ("numerics.far_cell_m=1.0",))
+        assert (other.group, other.settings) == (RESOLVED, ("numerics.far_cell_m=4.0",))
 
 
 def test_layers_are_mirrored() -> None:
