@@ -92,7 +92,8 @@ void check_far_cell(const Scene& scene, const Positions& positions, Faults& faul
   const Numerics& numerics = scene.numerics;
   if (!numerics.far_cell_m || !usable(positions, "numerics.far_cell_m") || !usable(positions, "numerics.cell_m"))
     return;
-  check_nine_points(scene, positions, "numerics.far_cell_m", *numerics.far_cell_m, faults);
+  if (*numerics.far_cell_m > numerics.cell_m)
+    check_nine_points(scene, positions, "numerics.far_cell_m", *numerics.far_cell_m, faults);
   if (*numerics.far_cell_m >= numerics.cell_m) return;
   faults.add(where_is(positions, "numerics.far_cell_m"),
              fmt::format("numerics.far_cell_m = {} is below numerics.cell_m = {}: cells grow away from the fracture. "

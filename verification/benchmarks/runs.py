@@ -21,6 +21,8 @@ VARIANTS: dict[str, tuple[str, ...]] = {
     "exp3_two_interfaces": ("perfect", "weak_soft", "soft_weak"),
 }  # fmt: skip
 
+SHIPPED_M = 1.0  # cells of the experiments, m
+
 # Runs side by side in a batch: two, as the marks are for two cores.
 JOBS = min(2, os.cpu_count() or 1)
 
@@ -52,6 +54,8 @@ LONG = (Batch("quasistatic", 1.0, 5, 120.0), Batch("explicit", 1.0, 3, 3600.0), 
 def settings_of(batch: Batch) -> list[Setting]:
     """The runs of a batch, those that take longest first."""
     keys = (f"numerics.mechanics={batch.mechanics}", f"numerics.cell_m={batch.cell_m:g}")
+    if batch.cell_m != SHIPPED_M:
+        keys += (f"numerics.far_cell_m={batch.cell_m:g}",)  # uniform, as ci/reproduce --cell
     runs = [Setting(EXPERIMENTS / f"{name}.toml", variant, keys) for name, variants in VARIANTS.items()
             if name.startswith(batch.only) for variant in variants]  # fmt: skip
     return sorted(runs, key=lambda run: run.scene.stem not in ("exp5_parallel_interface", "exp6_stress_reversal"))
@@ -164,7 +168,7 @@ def growth_figures(repetitions: int, quick: bool, rates: Rates, tell: Tell) -> l
     """A whole run without inertia, Experiment 1 with a soft interface, at several cell sizes."""
     figures = []
     for cell in (4.0, 2.0) if quick else (2.0, 1.0, 0.5, 0.25):
-        keys = ("numerics.mechanics=quasistatic", f"numerics.cell_m={cell:g}", "fracture.increment_m=2")
+        keys = ("numerics.mechanics=quasistatic", f"numerics.cell_m={cell:g}", f"numerics.far_cell_m={cell:g}", "fracture.increment_m=2")
         name = f"whole/quasistatic/exp1_soft/cell{cell:g}m"
         reps = repetitions if cell >= 0.5 else 1
         figure, last = repeated(name, "run", Setting(EXPERIMENTS / "exp1_single_interface.toml", "soft", keys), reps, rates)

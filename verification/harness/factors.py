@@ -103,8 +103,7 @@ def _step(content: dict[str, Any], mechanics: str) -> Factor:
 def _particles(content: dict[str, Any]) -> Factor:
     """More particles a cell."""
     own = int(content["numerics"].get("particles_per_cell", 4))
-    numbers = (4, 16) if is_graded(content) else (4, 9, 16)  # the solver refuses 9 on a graded grid
-    more = tuple(_one(str(n), f"{n} a cell", f"numerics.particles_per_cell={n}") for n in numbers if n > own)
+    more = tuple(_one(str(n), f"{n} a cell", f"numerics.particles_per_cell={n}") for n in (4, 9, 16) if n > own)
     return Factor("particles", "particles", "numerical", more, "" if more else "as many as there may be")
 
 
@@ -133,7 +132,7 @@ def _block(content: dict[str, Any], mechanics: str) -> Factor:
 def _larger(content: dict[str, Any], mechanics: str, factor: float) -> Alternative:
     """A block wider on both sides and higher at the top; the fracture and the layers beside it stay in its middle.
 
-    Where the path is straight and there is no inertia the cells beyond are graded, if they are not already; a path that turns would meet them.
+    Where the path is straight and there is no inertia the cells beyond are graded; a path that turns would meet them.
     """
     domain, strata = content["domain"], content["strata"]
     width, height = (factor * float(domain[key]) for key in ("width_m", "height_m"))
@@ -148,6 +147,6 @@ def _larger(content: dict[str, Any], mechanics: str, factor: float) -> Alternati
         layers[-1].pop("thickness_m")  # takes what remains
     if layers != list(strata["layers"]):
         settings.append(f"strata.layers={toml(layers)}")
-    if mechanics == "quasistatic" and not turns(content) and not is_graded(content):
+    if mechanics == "quasistatic" and not turns(content):
         settings.append(f"numerics.far_cell_m={FAR_CELLS * float(content['numerics']['cell_m'])!r}")
     return _one(f"{factor:g}", f"{width:g} m x {height:g} m", *settings)

@@ -112,10 +112,15 @@ def increment_of(content: dict[str, Any]) -> float:
 
 
 def job_of(scene: Path, mechanics: str, variant: str, cell_m: float, settings: Sequence[str] = (), root: Path = REFINE_RUNS) -> Job:
-    """The run at a cell size (m), the increment fixed to what scene, variant and settings say."""
-    increment = increment_of(content_of(scene, variant, settings))
-    own = (f"numerics.mechanics={mechanics}", f"numerics.cell_m={cell_m!r}", f"fracture.increment_m={increment!r}", *settings)
-    return Job(scene, variant, root / scene.stem / mechanics / variant / f"{cell_m:g}m", own)
+    """The run at a cell size (m), the increment fixed to what scene, variant and settings say.
+
+    Its grid is uniform unless settings say otherwise: with its cells the fine part of a graded one would shrink, too.
+    """
+    content = content_of(scene, variant, settings)
+    own = [f"numerics.mechanics={mechanics}", f"numerics.cell_m={cell_m!r}", f"fracture.increment_m={increment_of(content)!r}", *settings]
+    if "far_cell_m" in content["numerics"] and not any(setting.startswith("numerics.far_cell_m=") for setting in settings):
+        own.append(f"numerics.far_cell_m={cell_m!r}")
+    return Job(scene, variant, root / scene.stem / mechanics / variant / f"{cell_m:g}m", tuple(own))
 
 
 def cost_lines(jobs: Sequence[Job]) -> tuple[list[str], float]:

@@ -169,7 +169,7 @@ def test_a_small_budget_from_the_command_line(tmp_path: Path, capsys: pytest.Cap
     found = content["budgets"][0]
     assert found["status"] == "completed" and {"start_Pa", "restart_1_Pa", "pressure_at_10_Pa"} <= set(found["base"])
     effects = {(one["id"], k): ran["effects"] for one in found["lines"] for k, ran in enumerate(one["tried"])}
-    assert len(effects) == 11  # 9 particles a cell are for uniform grids
+    assert len(effects) == 12
     assert all(math.isfinite(one["start_Pa"]["value"]) for one in effects.values())
     # The first growth knows nothing of the increment, and a slower ramp starts it at a lower pressure, a faster one at a higher.
     assert effects["increment", 0]["start_Pa"]["value"] == effects["increment", 1]["start_Pa"]["value"] == 0.0
@@ -177,4 +177,4 @@ def test_a_small_budget_from_the_command_line(tmp_path: Path, capsys: pytest.Cap
     assert abs(effects["mesh", 0]["start_Pa"]["value"]) > 1e4
     capsys.readouterr()
     assert main(arguments) == 0
-    assert capsys.readouterr().out.count("done before") == 12
+    assert capsys.readouterr().out.count("done before") == 13

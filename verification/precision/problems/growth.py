@@ -26,13 +26,12 @@ DRIVEN_ON_M = 12.0  # the interface is at 10 m; past it the tip is held at 11 m
 PASSED_M = 13.0
 WEAK_M = (1.0, 0.5, 0.25, 0.125)  # increments of 1 m are whole cells, the first tip and the interface on grid lines
 WEAK_DAMPING_1_S = 20.0  # the experiment's
-WEAK_FAR_M = 4.0  # too
 
 
 def weak(setting: Setting, cell_m: float) -> tuple[str, tuple[str, ...]]:
-    """The experiment as it is, until the fracture is through the interface; its own cells far away where the grid is graded."""
-    far_m = WEAK_FAR_M if setting.graded > 0.0 else cell_m
-    return "weak", (f"stop.tip_y_m={PASSED_M!r}", f"numerics.far_cell_m={far_m!r}")
+    """The experiment as it is, until the fracture is through the interface; its scene's grid is graded."""
+    uniform = () if setting.graded > 0.0 else (f"numerics.far_cell_m={cell_m!r}",)
+    return "weak", (f"stop.tip_y_m={PASSED_M!r}", *uniform)
 
 
 def only(value: float) -> Sample:
