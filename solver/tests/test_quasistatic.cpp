@@ -125,6 +125,38 @@ TEST_CASE("what the in-situ state carried is supplied once") {
   }
 }
 
+// Requires J and K of a step to have the digits that they have when all particles are given their fields: with rings of
+// 4 and 8 cells, with both kinds of functions, one tip and two that lean, points divided ahead of them or not, and
+// beside a bonded interface. Mutations that fail: bins watched a cell or two less around tips, or none.
+TEST_CASE("a step looks at all particles that J's rings weigh") {
+  std::vector<Scene> scenes{rising(), rising(), rising(), rising()};
+  scenes[1].numerics.shape = Numerics::Shape::linear;
+  scenes[2].numerics.ring_cells = 8.0;
+  add_interface(scenes[3], weak_law(1e9, 1e9), 14.0);
+  scenes[3].fracture->direction = Fracture::Direction::max_hoop;
+  scenes[3].fracture->path_m = {{9.3, 5.2}, {13.8, 9.7}};
+  scenes[3].in_situ = {2e6, 2e6};
+  for (const Scene& scene : scenes) {
+    Steps s(scene);
+    s.until(0.02, 3);
+    s.until(0.05, 3);
+    State& state = s.run.state;
+    REQUIRE(state.time > 0.0);
+    const std::vector<Tip> tips = state.tips;
+    const auto strained = state.particles.g_yy;
+    set_all_particles(s.run.scene, state, s.statics.model);
+    CHECK(state.particles.g_yy != strained);
+    measure_tips(s.run.scene, s.run.rocks, state);
+    for (std::size_t k = 0; k < tips.size(); ++k) {
+      REQUIRE(tips[k].J != 0.0);
+      CHECK(state.tips[k].J == tips[k].J);
+      CHECK(state.tips[k].J_spread == tips[k].J_spread);
+      CHECK(state.tips[k].K_I == tips[k].K_I);
+      CHECK(state.tips[k].K_II == tips[k].K_II);
+    }
+  }
+}
+
 // Requires that points of an interface know when they let go, and no others do: under a body force 50 t m/s^2 from the
 // held top to the held bottom of 16 m the stress rises from the middle by 2500 kg/m^3 times it a metre, so that an
 // interface 4 m above bears its strength of 250 kPa at 0.5 s (found to 1e-4), and one 2 m above never does. Mutations
