@@ -1,6 +1,14 @@
 #include "state/quarters.hpp"
 
+#include "state/make_grid.hpp"
+
 namespace strata {
+
+Quarters::Quarters(const Scene& scene, const Grid& grid) : grid_(grid), in_use_(refines_ahead(scene)) {
+  if (!in_use_) return;
+  for (const GridPoint& column : points_along_x(grid, 4)) x_.push_back(column.at);
+  for (const GridPoint& row : points_along_y(grid, 4)) y_.push_back(row.at);
+}
 
 std::size_t Quarters::points(const Particles& p) const {
   std::size_t n = p.size();
@@ -9,8 +17,13 @@ std::size_t Quarters::points(const Particles& p) const {
 }
 
 void Quarters::divide(Particles& p, std::size_t q) const {
-  const std::int32_t first = p.id[q], row = 4 * grid_.nx;
-  split_in_four(p, q, {first + row + 1, first + row, first + 1});
+  const std::array<std::int32_t, 4> all = ids(p.id[q]);
+  const std::size_t further = p.size();
+  split_in_four(p, q, {all[3], all[2], all[1]});
+  for (const std::size_t k : {q, further, further + 1, further + 2}) {
+    const Vec2 x = place(p.id[k]);
+    p.x[k] = x.x(), p.y[k] = x.y();
+  }
 }
 
 void Quarters::divide_all(Particles& p) const {

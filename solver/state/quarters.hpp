@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "scene/points_across.hpp"
 #include "state/grid.hpp"
@@ -17,7 +18,7 @@ namespace strata {
 // Tells which particles stand for four.
 class Quarters {
  public:
-  Quarters(const Scene& scene, const Grid& grid) : grid_(grid), in_use_(refines_ahead(scene)) {}
+  Quarters(const Scene& scene, const Grid& grid);
 
   /// Whether any may.
   bool in_use() const { return in_use_; }
@@ -30,13 +31,8 @@ class Quarters {
   /// Calls visit(place (m), half its sides (m), area (m^2)) for each point of the stiffness that particle q stands for.
   template <class Visit>
   void for_each_point(const Particles& p, std::size_t q, Visit visit) const {
-    const Vec2 x{p.x[q], p.y[q]};
-    if (!whole(p, q)) return visit(x, p.half(q), p.V[q]);
-    const Vec2 quarter = 0.5 * p.half(q);
-    for (const double y : {-1.0, 1.0}) {
-      for (const double side : {-1.0, 1.0})
-        visit(Vec2{x.x() + side * quarter.x(), x.y() + y * quarter.y()}, quarter, 0.25 * p.V[q]);
-    }
+    if (!whole(p, q)) return visit(Vec2{p.x[q], p.y[q]}, p.half(q), p.V[q]);
+    for (const std::int32_t id : ids(p.id[q])) visit(place(id), Vec2{0.5 * p.half(q)}, 0.25 * p.V[q]);
   }
 
   /// How many points of the stiffness particles stand for.
@@ -49,8 +45,18 @@ class Quarters {
   void divide_all(Particles& p) const;
 
  private:
+  // Ids of the quarters of the particle of this id, row by row from the lower left, and where they are (m).
+  std::array<std::int32_t, 4> ids(std::int32_t first) const {
+    const auto row = static_cast<std::int32_t>(x_.size());
+    return {first, first + 1, first + row, first + row + 1};
+  }
+  Vec2 place(std::int32_t id) const {
+    return {x_[static_cast<std::size_t>(id) % x_.size()], y_[static_cast<std::size_t>(id) / x_.size()]};
+  }
+
   const Grid& grid_;
   bool in_use_;
+  std::vector<double> x_, y_;  // of the finest lattice's columns and rows (m)
 };
 
 /// Divides particle q into its quarters, which continue its displacement linearly. The lower left one keeps its place
