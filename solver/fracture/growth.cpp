@@ -267,7 +267,10 @@ std::string what_stops(const Scene& scene, const State& state, const Tip& tip) {
   if (tip.has_grown && near_edge(scene, at, tip_direction(state.fracture(), tip.at_back), h))
     return "within 3 cells of an edge of the block";
   if (!state.grid.fine_around(at.x(), at.y(), fine_cells(scene) * h))
-    return fmt::format("within {} cells of coarser ones; leave out numerics.far_cell_m", fine_cells(scene));
+    return fmt::format(
+        "within {} cells of coarser ones; move numerics.fine_left_m, fine_right_m, fine_bottom_m or fine_top_m, or "
+        "leave out far_cell_m",
+        fine_cells(scene));
   return "";
 }
 

@@ -101,6 +101,37 @@ void check_far_cell(const Scene& scene, const Positions& positions, Faults& faul
                          number_text(*numerics.far_cell_m), number_text(numerics.cell_m)));
 }
 
+// Ends of the fine cells: on the far side of the initial fracture, and of a graded grid.
+void check_fine_ends(const Scene& scene, const Positions& positions, Faults& faults) {
+  if (!scene.fracture || !positions.sound("fracture.path_m")) return;
+  const Numerics& n = scene.numerics;
+  struct End {
+    std::string_view key;
+    const std::optional<double>& at;
+    std::size_t axis;
+    bool is_least;
+  };
+  for (const End& end :
+       {End{"numerics.fine_left_m", n.fine_left_m, 0, true}, End{"numerics.fine_right_m", n.fine_right_m, 0, false},
+        End{"numerics.fine_bottom_m", n.fine_bottom_m, 1, true}, End{"numerics.fine_top_m", n.fine_top_m, 1, false}}) {
+    if (!end.at || !usable(positions, end.key)) continue;
+    if (!positions.given("numerics.far_cell_m")) {
+      faults.add(
+          where_is(positions, end.key),
+          fmt::format("{} = {} says where a graded grid is fine, but numerics.far_cell_m is missing: all cells are "
+                      "of cell_m. Give it, or leave {} out.",
+                      end.key, number_text(*end.at), end.key.substr(end.key.find('.') + 1)));
+    }
+    const auto [low, high] =
+        std::ranges::minmax_element(scene.fracture->path_m, {}, [&](const auto& x) { return x[end.axis]; });
+    const double fracture = (end.is_least ? *low : *high)[end.axis];
+    if (end.is_least ? *end.at <= fracture : *end.at >= fracture) continue;
+    faults.add(where_is(positions, end.key),
+               fmt::format("{} = {} lies within the initial fracture, which reaches to {}. Give at {} that.", end.key,
+                           number_text(*end.at), number_text(fracture), end.is_least ? "most" : "least"));
+  }
+}
+
 void check_fluid(const Scene& scene, const Positions& positions, Faults& faults) {
   const Fluid& fluid = scene.fluid;
   if (!positions.sound("fluid.law")) return;
@@ -148,6 +179,7 @@ void check_combinations(const Scene& scene, const Positions& positions, Faults& 
     check_shape_functions(scene, positions, faults);
   }
   check_far_cell(scene, positions, faults);
+  check_fine_ends(scene, positions, faults);
   check_beyond(scene, positions, faults);
   if (scene.fracture) check_fluid(scene, positions, faults);
   check_numbers(scene, positions, faults);

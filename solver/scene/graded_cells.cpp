@@ -138,7 +138,11 @@ std::vector<Stretch> fine_stretches(const Scene& scene, int axis) {
     std::vector<Point> places = scene.fracture->path_m;
     for (const Point& end : ends_of_growth(scene)) places.push_back(end);
     const auto [low, high] = std::ranges::minmax_element(places, {}, [k](const Point& x) { return x[k]; });
-    fine.push_back({(*low)[k] - fine_cells_at_fracture * h, (*high)[k] + fine_cells_at_fracture * h});
+    const Numerics& numerics = scene.numerics;
+    const auto& from = axis == 0 ? numerics.fine_left_m : numerics.fine_bottom_m;
+    const auto& to = axis == 0 ? numerics.fine_right_m : numerics.fine_top_m;
+    fine.push_back(
+        {from.value_or((*low)[k] - fine_cells_at_fracture * h), to.value_or((*high)[k] + fine_cells_at_fracture * h)});
   }
   const bool across = (scene.strata.along == Strata::Along::x) == (axis == 0);
   for (std::size_t n = 0; across && n < scene.strata.interfaces.size(); ++n) {

@@ -22,8 +22,9 @@ constexpr double fine_cells_at_fracture = 10.0;
 constexpr double fine_cells_at_interface = 4.0;
 
 /// Stretches along x (axis 0) or y (1) on which all cells are of cell_m: around the fracture and the straight way of
-/// its tips, which ends at stop.tip_y_m or else at the block's edge, and around the places where rocks or interfaces
-/// meet. In order, cut at the block's edges, none touching the next. Throws nothing.
+/// its tips, which ends at stop.tip_y_m or else at the block's edge (or up to where the scene says,
+/// numerics.fine_left_m and its like), and around the places where rocks or interfaces meet. In order, cut at the
+/// block's edges, none touching the next. Throws nothing.
 std::vector<Stretch> fine_stretches(const Scene& scene, int axis);
 
 // What an axis of a graded grid is to have (m).

@@ -334,6 +334,26 @@ std::vector<Key> numerics_keys() {
           "Side of the cells far away: cells are of cell_m within 10 of "
           "them around the initial fracture and its straight way up to stop.tip_y_m, and within 4 of them around "
           "interfaces and borders of rocks elsewhere; then coarser by at most 1.2 a cell. Left out: uniform."),
+      number(
+          "numerics.fine_left_m", "m", finite,
+          +[](Scene& s, std::size_t) -> std::optional<double>& { return s.numerics.fine_left_m; },
+          "With far_cell_m, for a path that turns: lowest x at which the fine cells around it end. Left out: 10 cells "
+          "from the initial fracture and its straight way."),
+      number(
+          "numerics.fine_right_m", "m", finite,
+          +[](Scene& s, std::size_t) -> std::optional<double>& { return s.numerics.fine_right_m; },
+          "With far_cell_m, for a path that turns: largest x at which the fine cells around it end. Left out: 10 cells "
+          "from the initial fracture and its straight way."),
+      number(
+          "numerics.fine_bottom_m", "m", finite,
+          +[](Scene& s, std::size_t) -> std::optional<double>& { return s.numerics.fine_bottom_m; },
+          "With far_cell_m, for a path that turns: lowest y at which the fine cells around it end. Left out: 10 cells "
+          "from the initial fracture and its straight way."),
+      number(
+          "numerics.fine_top_m", "m", finite,
+          +[](Scene& s, std::size_t) -> std::optional<double>& { return s.numerics.fine_top_m; },
+          "With far_cell_m, for a path that turns: largest y at which the fine cells around it end. Left out: 10 cells "
+          "from the initial fracture and its straight way."),
       particles,
       word(
           "numerics.shape", {as("bspline2", Shape::bspline2), as("linear", Shape::linear), as("gimp", Shape::gimp)},

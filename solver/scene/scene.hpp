@@ -165,7 +165,9 @@ struct Numerics {
   Kernels kernels = Kernels::fast;
   double cell_m = 0.0;
   std::optional<double> far_cell_m;  // absent: the grid is uniform
-  int particles_per_cell = 4;        // 4, 9 or 16
+  // Where the fine cells around the fracture end (m); absent: 10 cells from it and its straight way.
+  std::optional<double> fine_left_m, fine_right_m, fine_bottom_m, fine_top_m;
+  int particles_per_cell = 4;  // 4, 9 or 16
   Shape shape = Shape::bspline2;
   Transfer transfer = Transfer::flip;
   double courant = 0.5;  // c_P dt / h

@@ -140,16 +140,19 @@ TEST_CASE("cells become as long as asked for") {
   CHECK(*std::max_element(s.begin(), s.end()) > 4.5);
 }
 
+using Ends = std::vector<double>;
+
+// Both ends of each fine stretch (m).
+Ends stretches(const Scene& scene, int axis) {
+  Ends ends;
+  for (const Stretch& s : fine_stretches(scene, axis)) ends.insert(ends.end(), {s.from, s.to});
+  return ends;
+}
+
 // Requires where the fine cells are: 10 cells around the fracture and its straight way to stop.tip_y_m, with every
 // interface on it; to the edge without one; the initial fracture alone where nothing grows; mirrored for two tips; 4
 // cells around interfaces and borders elsewhere, none where neither law nor rock changes.
 TEST_CASE("fine cells where the scene needs them") {
-  const auto stretches = [](const Scene& scene, int axis) {
-    std::vector<double> ends;
-    for (const Stretch& s : fine_stretches(scene, axis)) ends.insert(ends.end(), {s.from, s.to});
-    return ends;
-  };
-  using Ends = std::vector<double>;
   Scene scene = block(200, 200, 0.5);
   scene.domain.bottom = Edge::symmetry;
   add_fracture(scene, {{40.0, 0.0}, {40.0, 5.0}});
@@ -177,6 +180,29 @@ TEST_CASE("fine cells where the scene needs them") {
   scene.fracture->path_m = {{40.0, 38.0}, {40.0, 42.0}};
   scene.stop.tip_y_m = 48.0;
   CHECK(stretches(scene, 1) == Ends{13.0, 17.0, 27.0, 53.0, 58.0, 62.0});
+}
+
+// Requires that a scene's own ends of the fine cells around its fracture take the place of those by its straight way,
+// each alone, and leave those of interfaces. Mutations that fail: an end of the other axis, or of the other side.
+TEST_CASE("a scene says itself where fine cells end") {
+  Scene scene = block(80, 80);
+  scene.domain.bottom = Edge::symmetry;
+  add_fracture(scene, {{40.0, 0.0}, {40.0, 5.0}}, 2.4e6);
+  scene.fracture->growth = Fracture::Growth::J;
+  scene.stop.tip_y_m = 60.0;
+  const Ends x = stretches(scene, 0), y = stretches(scene, 1);
+  REQUIRE(x == Ends{30.0, 50.0});
+  REQUIRE(y == Ends{0.0, 70.0});
+  scene.numerics.fine_right_m = 80.0;
+  scene.numerics.fine_top_m = 40.0;
+  CHECK(stretches(scene, 0) == Ends{30.0, 80.0});
+  CHECK(stretches(scene, 1) == Ends{0.0, 40.0});
+  scene.numerics.fine_left_m = 20.0;
+  scene.numerics.fine_bottom_m = 3.0;
+  CHECK(stretches(scene, 0) == Ends{20.0, 80.0});
+  CHECK(stretches(scene, 1) == Ends{3.0, 40.0});
+  add_interface(scene, friction_law(0.6), 60.0);
+  CHECK(stretches(scene, 1) == Ends{3.0, 40.0, 56.0, 64.0});
 }
 
 // Requires that a scene without far_cell_m, or with one of cell_m, has today's uniform grid, and that a grid graded
