@@ -1,5 +1,6 @@
 #include "mechanics/quarter_forces.hpp"
 
+#include <cmath>
 #include <map>
 
 #include "mechanics/stiffness.hpp"
@@ -28,11 +29,21 @@ LocalStiffness stiffness_of_quarters(const Scene& scene, const std::vector<Elast
   return more;
 }
 
-// The rock of a bin that is like all others of that rock: four particles that stand for four, on a uniform grid; else
-// -1.
+// Whether the spans of a bin's nodes are all h, but for round-off.
+bool is_uniform(const Grid& g, const Bin& bin) {
+  constexpr double round_off = 1e-9;
+  for (int k = -1; k <= 1; ++k) {
+    if (std::abs(g.span_x(bin.i + k) - g.h) > round_off * g.h) return false;
+    if (std::abs(g.span_y(bin.j + k) - g.h) > round_off * g.h) return false;
+  }
+  return true;
+}
+
+// The rock of a bin that is like all others of that rock: four particles that stand for four, among cells of one size;
+// else -1.
 int rock_of_alike(const State& state, const Quarters& quarters, const Bin& bin) {
   const Particles& p = state.particles;
-  if (!state.grid.x_knots.empty() || bin.last - bin.first != 4 * bin.stride) return -1;
+  if (bin.last - bin.first != 4 * bin.stride || !is_uniform(state.grid, bin)) return -1;
   const auto first = static_cast<std::size_t>(bin.first);
   for (auto q = first; q < static_cast<std::size_t>(bin.last); q += static_cast<std::size_t>(bin.stride)) {
     if (!quarters.whole(p, q) || p.rock[q] != p.rock[first]) return -1;
