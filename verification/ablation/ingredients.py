@@ -225,7 +225,8 @@ def _resolution(content: dict[str, Any]) -> list[Ingredient]:
 def _far_cells(content: dict[str, Any], cell: float) -> Ingredient:
     """Fine cells far away, of a uniform grid."""
     label = "fine cells far away"
-    if content["fracture"].get("direction", "straight") != "straight":
+    ends = any(key in content["numerics"] for key in ("fine_left_m", "fine_right_m", "fine_bottom_m", "fine_top_m"))
+    if content["fracture"].get("direction", "straight") != "straight" and not ends:
         return Ingredient("far_cells", label, RESOLVED, "", why_not="the path may turn into coarse cells")
     return Ingredient("far_cells", label, RESOLVED, f"{GRADED * cell:g} m there", (f"numerics.far_cell_m={GRADED * cell!r}",))
 
