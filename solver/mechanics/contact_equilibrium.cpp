@@ -252,13 +252,13 @@ bool iterate(const State& state, const Condensed& condensed, const std::vector<C
   return false;
 }
 
-// Friction by bounds that are held while the jumps are found, and renewed from the normal reactions.
+// Friction by bounds that are held while the jumps are found, from `start` on, and renewed from the normal reactions.
 Equilibrium solve_with_fixed_bounds(const State& state, const Condensed& condensed, std::vector<ContactPlace> places,
-                                    TangentFactor& factor) {
+                                    const Eigen::VectorXd& start, TangentFactor& factor) {
   constexpr int most_rounds = 400;
   constexpr double renewed = 1e-10;  // change of a bound against the largest
   Equilibrium at;
-  at.j = Eigen::VectorXd::Zero(condensed.size());
+  at.j = start;
   evaluate(state, condensed, places, at);
   factor.pieces.clear();
   double change = 0.0;
@@ -334,9 +334,11 @@ std::vector<ContactPlace> contact_places(const Scene& scene, const std::vector<E
 Equilibrium solve_equilibrium(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
                               const Eigen::VectorXd& start, TangentFactor& factor) {
   Equilibrium at;
-  at.j = start.size() == condensed.size() ? start : Eigen::VectorXd::Zero(condensed.size());
+  const Eigen::VectorXd first =
+      start.size() == condensed.size() ? start : Eigen::VectorXd(Eigen::VectorXd::Zero(condensed.size()));
+  at.j = first;
   if (iterate(state, condensed, places, factor, false, at)) return at;
-  return solve_with_fixed_bounds(state, condensed, places, factor);
+  return solve_with_fixed_bounds(state, condensed, places, first, factor);
 }
 
 Eigen::MatrixXd opening_per_pressure(const State& state, const Condensed& condensed,
