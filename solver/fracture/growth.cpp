@@ -15,6 +15,7 @@ namespace strata {
 namespace {
 
 constexpr double edge_cells = 3.0;      // a tip nearer than this to an edge has no ring left to measure J in
+constexpr double sliver_cells = 1.5;    // rock that an increment leaves before an edge: thinner, it moves freely
 constexpr double arrest_rise_Pa = 5e4;  // the inlet's rise over which a tip that stays counts as arrested
 constexpr double sliver = 0.25;         // no growth step is shorter than this fraction of an increment
 
@@ -56,9 +57,8 @@ double increment_to_interface(const Scene& scene, const Vec2& tip, const Vec2& d
   return meets ? length : da;
 }
 
-// True where a tip at x is too near to an edge that it heads for.
-bool near_edge(const Scene& scene, const Vec2& x, const Vec2& direction, double h) {
-  const double keep = edge_cells * h;
+// True where a tip at x is nearer than `keep` m to an edge that it heads for.
+bool near_edge(const Scene& scene, const Vec2& x, const Vec2& direction, double keep) {
   const Stretch along_x = scene.domain.along_x(), along_y = scene.domain.along_y();
   const bool left = x.x() < along_x.from + keep && direction.x() < 0.0;
   const bool right = x.x() > along_x.to - keep && direction.x() > 0.0;
@@ -264,8 +264,10 @@ std::size_t rock_ahead(const Scene& scene, const State& state, const Tip& tip) {
 std::string what_stops(const Scene& scene, const State& state, const Tip& tip) {
   const Vec2 at = tip_position(state, tip);
   const double h = state.grid.h;
-  if (tip.has_grown && near_edge(scene, at, tip_direction(state.fracture(), tip.at_back), h))
-    return "within 3 cells of an edge of the block";
+  const Vec2 direction = tip_direction(state.fracture(), tip.at_back);
+  if (tip.has_grown && near_edge(scene, at, direction, edge_cells * h)) return "within 3 cells of an edge of the block";
+  if (tip.has_grown && near_edge(scene, at, direction, scene.fracture->increment_m + sliver_cells * h))
+    return fmt::format("an increment more would end within {} cells of an edge of the block", sliver_cells);
   if (!state.grid.fine_around(at.x(), at.y(), fine_cells(scene) * h))
     return fmt::format(
         "within {} cells of coarser ones; move numerics.fine_left_m, fine_right_m, fine_bottom_m or fine_top_m, or "

@@ -333,6 +333,27 @@ TEST_CASE("a tip near an edge stops and says so") {
   CHECK(tip_y(run) == Approx(18.0));
 }
 
+// Requires that a tip does not grow into the last cell and a half before an edge by an increment longer than 3 cells:
+// with one of 4 m in a block 20 m high it goes from 10 to 14 m, whence it would come to 18 m, within 2, and from there
+// no further; in one 19 m high it stays at 14 m. Mutations that fail: no such rule, twice the increment.
+TEST_CASE("a long increment leaves more than a sliver before an edge") {
+  for (const double height : {20.0, 19.0}) {
+    Scene scene = growing({{7.0, 0.0}, {7.0, 10.0}});
+    scene.domain.height_m = height;
+    scene.fracture->increment_m = 4.0;
+    scene.strata.layers.back().to_m = height;
+    Run run(scene);
+    REQUIRE(grow_once(run));
+    CHECK(tip_y(run) == Approx(14.0));
+    CHECK(grow_once(run) == (height == 20.0));
+    CHECK(tip_y(run) == Approx(height == 20.0 ? 18.0 : 14.0));
+    CHECK_FALSE(grow_once(run));
+    const std::string words =
+        height == 20.0 ? "within 3 cells of an edge" : "an increment more would end within 1.5 cells";
+    CHECK(run.state.tips[0].stopped_by.starts_with(words));
+  }
+}
+
 // Requires the events: reach_interface once, where the tip stands on one; an arrest once the inlet has risen by 0.05
 // MPa since the last growth, dated back to it; a restart with the next growth.
 TEST_CASE("what is told about a tip") {
