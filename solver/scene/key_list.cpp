@@ -399,9 +399,8 @@ std::vector<Key> numerics_keys() {
           "numerics.flow_error", "", {0.0, 1.0, true, false},
           +[](Scene& s, std::size_t) -> double& { return s.numerics.flow_error; },
           "Quasi-static, error aimed at in a step of the flow: under fluid.law = \"reynolds\" of the largest opening, "
-          "under "
-          "\"paper\" a fiftieth of what the openings of the step's end change of any pressure over the largest net "
-          "one. "
+          "under \"paper\" half of what the mean of the openings at both ends would have changed of any pressure, over "
+          "the largest net one. "
           "Steps with four times as much are tried again with half the length."),
   };
 }
