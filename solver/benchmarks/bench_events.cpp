@@ -130,7 +130,9 @@ void add_reynolds(Shop& shop, int cells) {
 // A folder of this process for what is written, removed at the end.
 class ScratchFolder {
  public:
-  ScratchFolder() : path_(std::filesystem::temp_directory_path() / fmt::format("strata_bench_{}", getpid())) {}
+  ScratchFolder() : path_(std::filesystem::temp_directory_path() / fmt::format("strata_bench_{}", getpid())) {
+    std::filesystem::create_directories(path_);
+  }
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
   ~ScratchFolder() {

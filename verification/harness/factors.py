@@ -132,7 +132,7 @@ def _block(content: dict[str, Any], mechanics: str) -> Factor:
 def _larger(content: dict[str, Any], mechanics: str, factor: float) -> Alternative:
     """A block wider on both sides and higher at the top; the fracture and the layers beside it stay in its middle.
 
-    Where the path is straight and there is no inertia the cells beyond are graded; a path that turns would meet them.
+    Where the path is straight and there is no inertia the cells beyond are graded; a path that turns would meet them, and its grid is uniform.
     """
     domain, strata = content["domain"], content["strata"]
     width, height = (factor * float(domain[key]) for key in ("width_m", "height_m"))
@@ -147,6 +147,9 @@ def _larger(content: dict[str, Any], mechanics: str, factor: float) -> Alternati
         layers[-1].pop("thickness_m")  # takes what remains
     if layers != list(strata["layers"]):
         settings.append(f"strata.layers={toml(layers)}")
-    if mechanics == "quasistatic" and not turns(content):
-        settings.append(f"numerics.far_cell_m={FAR_CELLS * float(content['numerics']['cell_m'])!r}")
+    cell = float(content["numerics"]["cell_m"])
+    if turns(content):
+        settings.append(f"numerics.far_cell_m={cell!r}")
+    elif mechanics == "quasistatic":
+        settings.append(f"numerics.far_cell_m={FAR_CELLS * cell!r}")
     return _one(f"{factor:g}", f"{width:g} m x {height:g} m", *settings)

@@ -64,7 +64,7 @@ def test_a_larger_block_keeps_fracture_and_layers_in_its_middle() -> None:
         assert (content["domain"]["width_m"], content["domain"]["height_m"]) == (width, width)
         assert [x for x, _ in content["fracture"]["path_m"]] == [width / 2.0] * 2
         assert content["strata"]["layers"] == [{"rock": "soft", "thickness_m": width / 2.0 + 5.0}, {"rock": "stiff"}]
-        assert "far_cell_m" not in content["numerics"]  # a path that turns would meet the coarse cells
+        assert content["numerics"]["far_cell_m"] == content["numerics"]["cell_m"]  # a path that turns would meet the coarse cells
     straight = content_of(EXP1, "soft", factor(EXP1, "soft", "block").alternatives[1].settings)
     assert straight["strata"]["layers"] == resolved(EXP1, "soft")["strata"]["layers"]
     assert straight["numerics"]["far_cell_m"] == 4.0
