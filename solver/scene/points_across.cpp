@@ -31,17 +31,16 @@ bool may_turn(const Scene& scene) {
          scene.fracture->direction == Fracture::Direction::max_hoop;
 }
 
-// Of a loaded in-situ state each point has a stress of its own, and a body force has a value at each: quarters would
-// have their parent's.
 bool refines_ahead(const Scene& scene) {
-  if (scene.numerics.mechanics != Numerics::Mechanics::quasistatic || !may_turn(scene)) return false;
-  if (scene.numerics.particles_per_cell != 4 || points_across(scene) != 2) return false;
-  return true;
+  return scene.numerics.mechanics == Numerics::Mechanics::quasistatic && may_turn(scene) &&
+         scene.numerics.particles_per_cell == 4 && points_across(scene) == 2;
 }
 
 int points_across(const Scene& scene) {
   const int across = static_cast<int>(std::lround(std::sqrt(scene.numerics.particles_per_cell)));
   const bool turns = scene.numerics.mechanics == Numerics::Mechanics::quasistatic && may_turn(scene);
+  // Of a loaded in-situ state each point has a stress of its own, and a body force has a value at each: quarters would
+  // have their parent's.
   const bool own_values =
       scene.in_situ.initialise == InSitu::Initialise::loaded || scene.body.acceleration_m_s2.has_value();
   const bool spline = scene.numerics.shape == Numerics::Shape::bspline2;
