@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "advance_fluid.hpp"
+#include "advance_load.hpp"
 #include "advance_monitors.hpp"
 #include "flow/paper_flow.hpp"
 #include "fracture/growth.hpp"
@@ -23,40 +24,6 @@ constexpr double first_flow_step = 1e-3;  // s, after each event; steps then gro
 // A trial step shorter than this (s) that is not found ends the run, and one that is found is taken however rough it
 // is. Of flow and rock in one system a step is of shortest_coupled_step at least, whatever is tried.
 constexpr double shortest_trial = 1e-7;
-
-// What a trial step changes and a rejected one takes back. Particles only hold what follows from it.
-struct LoadPoint {
-  double time = 0.0;
-  FluidLine fluid;
-  ReynoldsLine reynolds;
-  FluidBalance balance;
-  std::vector<Surface> surfaces;
-  std::vector<Tip> tips;
-  std::vector<Vec2> u, body;  // displacement (m) and body force per mass (m/s^2) of particles by id; none without that
-};
-
-LoadPoint load_point(const State& state) {
-  LoadPoint point{state.time, state.fluid, state.reynolds, state.balance, state.surfaces, state.tips, {}, {}};
-  if (state.body.empty()) return point;
-  const Particles& p = state.particles;
-  point.u.resize(static_cast<std::size_t>(p.next_id), Vec2::Zero());
-  point.body = point.u;
-  for (std::size_t q = 0; q < p.size(); ++q) {
-    const auto id = static_cast<std::size_t>(p.id[q]);
-    point.u[id] = {p.u_x[q], p.u_y[q]};
-    point.body[id] = state.body[q];
-  }
-  return point;
-}
-
-void return_to(const LoadPoint& from, State& state) {
-  state.time = from.time;
-  state.fluid = from.fluid;
-  state.reynolds = from.reynolds;
-  state.balance = from.balance;
-  state.surfaces = from.surfaces;
-  state.tips = from.tips;
-}
 
 bool by_energy(const Scene& scene, const State& state, const Tip& tip) {
   if (scene.fracture->growth == Fracture::Growth::energy) return true;
@@ -192,41 +159,6 @@ void equilibrate(const Scene& scene, const std::vector<Elasticity>& rocks, State
 
 // Energy bookkeeping of an accepted change of load or geometry.
 enum class Change { load, growth, failure };
-
-// Work of the fluid from one state to the next, as if its pressure and what surfaces have released of the in-situ
-// traction had changed with the jumps (J/m); the latter's in `in_situ`.
-double work_of_loads(const State& state, const LoadPoint& before, double& in_situ) {
-  double fluid = 0.0;
-  in_situ = 0.0;
-  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
-    const auto &now = state.surfaces[k].points, &then = before.surfaces[k].points;
-    // The fracture may have become longer at its front; its older points stay where they were.
-    const auto same =
-        std::find_if(now.begin(), now.end(), [&](const SurfacePoint& s) { return s.x == then.front().x; });
-    const auto shift = static_cast<std::size_t>(same - now.begin());
-    for (std::size_t q = 0; q < now.size(); ++q) {
-      const SurfacePoint& s = now[q];
-      if (!s.split) continue;
-      const bool is_new = q < shift || q - shift >= then.size();
-      const SurfacePoint& old = is_new ? s : then[q - shift];
-      const Vec2 dw = is_new || !old.split ? s.w : Vec2{s.w - old.w};
-      fluid += s.A * 0.5 * (s.P + old.P) * s.n.dot(dw);
-      in_situ -= s.A * (0.5 * (s.in_situ + old.in_situ)).dot(dw);
-    }
-  }
-  return fluid;
-}
-
-// Work of the body force from one state to the next, as if it had changed with the displacements (J/m).
-double work_of_body(const State& state, const LoadPoint& before) {
-  const Particles& p = state.particles;
-  double work = 0.0;
-  for (std::size_t q = 0; q < state.body.size(); ++q) {
-    const auto id = static_cast<std::size_t>(p.id[q]);
-    work += p.m[q] * 0.5 * (before.body[id] + state.body[q]).dot(Vec2{p.u_x[q], p.u_y[q]} - before.u[id]);
-  }
-  return work;
-}
 
 void close_ledger(const Quasistatic& run, const LoadPoint& before, Change change, State& state) {
   Ledger& ledger = state.ledger;
@@ -457,6 +389,15 @@ void start_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks,
     return point;
   }();
   close_ledger(run, unloaded, Change::load, state);
+}
+
+void restart_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+  forget_solution(scene, rocks, state, run.model);
+  const bool as_made = std::all_of(run.trials.begin(), run.trials.end(),
+                                   [&](const GrowthTrial& trial) { return trial.turn == state.tips[trial.tip].turn; });
+  if (!as_made) make_trials(scene, rocks, state, run);
+  for (GrowthTrial& trial : run.trials) forget_solution(scene, rocks, trial.state, trial.model);
+  equilibrate(scene, rocks, state, run);
 }
 
 void advance_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, double until, State& state,

@@ -30,6 +30,10 @@ struct Quasistatic {
 /// there is none.
 void start_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run);
 
+/// The same of a state that `run` was built for and has been at since: what a resumed run finds there, digit by digit,
+/// without building anew what has not changed. Throws as start_quasistatic() does.
+void restart_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run);
+
 /// One step. Where something is due at the present load (the worst bonded column fails, a tip grows) it happens, and
 /// the load stays. Else time goes on, at most to `until` (s), and no further than to the load at which the next thing
 /// happens: growth where J or the energy released over a finite increment reaches J_c of the rock ahead, failure where

@@ -1,6 +1,7 @@
 #include "mechanics/quasistatic.hpp"
 
 #include <cmath>
+#include <memory>
 
 #include "mechanics/body_load.hpp"
 #include "mechanics/stiffness.hpp"
@@ -117,11 +118,17 @@ void update_model(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
     model.body = std::make_shared<const IntactBody>(scene, rocks, state, halved);
   }
   model.condensed = condense(scene, rocks, state, *model.body, same_body ? &model.condensed : nullptr);
-  model.places = contact_places(scene, rocks, state, model.condensed);
-  model.factor = TangentFactor{};
+  forget_solution(scene, rocks, state, model);
   model.bonds = find_bonds(scene, state);
   model.watched = watched_bins(scene, state, model.bonds);
   model.asked = ask_for(scene, state, *model.body, records_of(state, model.watched));
+}
+
+void forget_solution(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
+                     QuasistaticModel& model) {
+  model.places = contact_places(scene, rocks, state, model.condensed);
+  std::destroy_at(&model.factor);
+  std::construct_at(&model.factor);
   model.j.resize(0);
 }
 

@@ -30,6 +30,10 @@ struct QuasistaticModel {
 void update_model(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, QuasistaticModel& model,
                   bool halve = true);
 
+/// Takes back what a model has of former solutions: first guess and factor; friction's memory is that of the state.
+void forget_solution(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
+                     QuasistaticModel& model);
+
 /// Equilibrium under the pressures that the state's points hold and the body force at a time (s); see
 /// solve_equilibrium() and load_body(), and what they throw. Sets state.body.
 Equilibrium find_equilibrium(const Scene& scene, double time, State& state, QuasistaticModel& model);
