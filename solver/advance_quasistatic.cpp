@@ -144,12 +144,20 @@ void make_trials(const Scene& scene, const std::vector<Elasticity>& rocks, State
   }
 }
 
+void look_at_tips(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, const Quasistatic& run) {
+  if (scene.body.acceleration_m_s2) {
+    measure_tips(scene, rocks, state);
+  } else {
+    measure_tips(scene, run.rules, state);
+  }
+}
+
 // Equilibrium at the state's pressures, its fields, and how near the next event is.
 void equilibrate(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
   run.equilibrium = find_equilibrium(scene, state.time, state, run.model);
   set_fields(scene, state, run.model, run.equilibrium);
   if (state.dt <= 0.0) state.dt = 1.0;  // J's inertia divides by it; there is none
-  measure_tips(scene, rocks, state);
+  look_at_tips(scene, rocks, state, run);
   const bool turned = std::any_of(run.trials.begin(), run.trials.end(), [&](const GrowthTrial& trial) {
     return std::abs(trial.turn - state.tips[trial.tip].turn) > 1e-12;
   });
@@ -196,6 +204,7 @@ void rebuild_all(const Scene& scene, const std::vector<Elasticity>& rocks, State
   const double fracture = state.ledger.fracture;
   run.trials.clear();  // which hold the body, too
   update_model(scene, rocks, state, run.model);
+  run.rules = make_tip_rules(scene, rocks, state);
   state.ledger.fracture = fracture;  // what springs of tips give back is in the difference of stored energy already
   make_trials(scene, rocks, state, run);
 }
@@ -263,7 +272,7 @@ void measure_release(const Scene& scene, const std::vector<Elasticity>& rocks, d
                      const std::vector<Growing>& growing, State& state, Quasistatic& run) {
   run.equilibrium = find_equilibrium(scene, state.time, state, run.model);
   set_fields(scene, state, run.model, run.equilibrium);
-  measure_tips(scene, rocks, state);
+  look_at_tips(scene, rocks, state, run);
   const double energy = run.equilibrium.energy + dissipated_by_friction(run.model, run.equilibrium);
   double length = 0.0;
   for (const Growing& g : growing) length += g.increment;

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "fracture/tip_rules.hpp"
 #include "mechanics/quasistatic.hpp"
 #include "state/elasticity.hpp"
 #include "state/state.hpp"
@@ -22,6 +23,7 @@ struct GrowthTrial {
 struct Quasistatic {
   QuasistaticModel model;
   Equilibrium equilibrium;
+  std::vector<TipRule> rules;       // of all tips; none under a body force
   std::vector<GrowthTrial> trials;  // of the tips that energy decides about
   double margin = 0.0;              // the nearest event: it happens at 1
 };

@@ -125,7 +125,8 @@ TEST_CASE("what the in-situ state carried is supplied once") {
   }
 }
 
-// Requires J and K of a step to have the digits that they have when all particles are given their fields: with rings of
+// Requires J and K of a step to have the digits that they have when all particles are given their fields, and to be
+// what is measured without the rules that were made for the tips' places: with rings of
 // 4 and 8 cells, with both kinds of functions, one tip and two that lean, points divided ahead of them or not, and
 // beside a bonded interface. Mutations that fail: bins watched a cell or two less around tips, or none.
 TEST_CASE("a step looks at all particles that J's rings weigh") {
@@ -146,9 +147,13 @@ TEST_CASE("a step looks at all particles that J's rings weigh") {
     const auto strained = state.particles.g_yy;
     set_all_particles(s.run.scene, state, s.statics.model);
     CHECK(state.particles.g_yy != strained);
-    measure_tips(s.run.scene, s.run.rocks, state);
+    measure_tips(s.run.scene, s.statics.rules, state);
+    State anew = state;
+    measure_tips(s.run.scene, s.run.rocks, anew);
     for (std::size_t k = 0; k < tips.size(); ++k) {
       REQUIRE(tips[k].J != 0.0);
+      CHECK(anew.tips[k].J == Approx(tips[k].J).epsilon(1e-12));
+      CHECK(anew.tips[k].K_I == Approx(tips[k].K_I).epsilon(1e-12));
       CHECK(state.tips[k].J == tips[k].J);
       CHECK(state.tips[k].J_spread == tips[k].J_spread);
       CHECK(state.tips[k].K_I == tips[k].K_I);

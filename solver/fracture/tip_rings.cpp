@@ -1,0 +1,239 @@
+#include "fracture/tip_rings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "fracture/j_integral.hpp"
+#include "state/shape_functions.hpp"
+
+namespace strata {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+// numerics.ring_cells is 4 by default: rings of 3.2 to 4 cells are wide enough to leave the tip's own error inside.
+// None is smaller than this, since the tip's own error would fill it. An interface that would ask for less flags the K;
+// an edge nearer than 3.5 cells, or a second tip nearer than 7, does not: the ring then reaches over it.
+constexpr double narrowest_ring_cells = 2.5;
+constexpr double trusted_cells = 4.0;   // distance to an interface below which K is flagged
+constexpr double inner_fraction = 0.6;  // q is 1 inside this fraction of a ring's radius: 0.3 costs 1 % in J
+
+// Whether all nodes around a bin lie outside the square around a ring: then q is 0 at them.
+bool out_of_reach(const Grid& g, const Vec2& tip, const Ring& ring, const Bin& bin) {
+  return g.x(bin.i + 1) < tip.x() - ring.outer || g.x(bin.i - 1) > tip.x() + ring.outer ||
+         g.y(bin.j + 1) < tip.y() - ring.outer || g.y(bin.j - 1) > tip.y() + ring.outer;
+}
+
+// The farthest a ring may reach from the tip, and whether an interface limits it.
+double ring_radius(const Scene& scene, const State& state, const Tip& tip, const Vec2& at, bool& near_interface) {
+  const double h = state.grid.h;
+  double radius = scene.numerics.ring_cells * h;
+  const auto keep_off = [&](double distance) {
+    radius = std::min(radius, distance - h);
+  };  // a node's function reaches on
+  const Stretch along_x = scene.domain.along_x(), along_y = scene.domain.along_y();
+  keep_off(at.x() - along_x.from), keep_off(along_x.to - at.x());
+  keep_off(at.y() - along_y.from), keep_off(along_y.to - at.y());
+  for (const Tip& other : state.tips) {
+    if (other.at_back != tip.at_back) keep_off(0.5 * state.fracture().length());
+  }
+  near_interface = false;
+  for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
+    const InterfacePlace& place = scene.strata.interfaces[k];
+    const bool nothing_there = scene.laws[place.law].kind == InterfaceLaw::Kind::perfect &&
+                               scene.strata.layers[k].rock == scene.strata.layers[k + 1].rock;
+    if (nothing_there) continue;
+    const double distance = std::abs((scene.strata.along == Strata::Along::y ? at.y() : at.x()) - place.at_m);
+    near_interface = near_interface || distance < (trusted_cells - 1e-3) * h;
+    keep_off(distance);
+  }
+  // Too near to an edge, the symmetry line or the other tip: the ring reaches over it, so K is flagged as well.
+  near_interface = near_interface || radius < narrowest_ring_cells * h;
+  return std::max(radius, narrowest_ring_cells * h);
+}
+
+// The share of the maximum-hoop kink that one increment turns by. A kink over less than about three cells is not
+// resolved: particles beside it keep their sides, and K_II is read off a fracture that has hardly turned. K_II/K_I
+// answers a turn with about 0.9 of it, and the kink is twice K_II/K_I: a path that takes the whole of it overshoots by
+// 0.8 and comes to rest slowly; where the new point is dry it zigzags ever more. About half of the kink ends with K_II
+// = 0 at once. The path of local symmetry does not depend on the share (Cotterell & Rice 1980); the length in which it
+// is reached does.
+double turn_taken(const Scene& scene) {
+  constexpr double resolved_cells = 3.0;
+  return std::min(scene.fracture->turn_share, scene.fracture->increment_m / (resolved_cells * scene.numerics.cell_m));
+}
+
+// Direction from the place a distance `back` (m) behind the tip to the tip. K is a property of the fracture as the
+// rings see it: measured in the frame of the last increment alone, a kink of the size of a ring's inner part comes back
+// twice too large with the opposite sign, and a path that follows it zigzags ever more.
+Vec2 mean_direction(const Surface& fracture, bool at_back, double back) {
+  const auto& v = fracture.vertices;
+  const Vec2 tip = at_back ? v.back().x : v.front().x;
+  const double arc = std::clamp(at_back ? fracture.length() - back : back, 0.0, fracture.length());
+  const auto after =
+      std::find_if(v.begin() + 1, v.end() - 1, [arc](const SurfacePoint& vertex) { return vertex.arc >= arc; });
+  const SurfacePoint &a = *(after - 1), &b = *after;
+  const Vec2 from = a.x + (b.x - a.x) * ((arc - a.arc) / (b.arc - a.arc));
+  return (tip - from).normalized();
+}
+
+}  // namespace
+
+double Ring::at_node(double r) const {
+  if (r <= inner) return 1.0;
+  if (r >= outer) return 0.0;
+  return 0.5 + 0.5 * std::cos(pi * (r - inner) / (outer - inner));
+}
+
+TipGeometry tip_geometry(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Tip& tip) {
+  const Surface& fracture = state.fracture();
+  TipGeometry at;
+  at.frame.tip = tip.at_back ? fracture.vertices.back().x : fracture.vertices.front().x;
+  at.frame.sign = tip.at_back ? 1.0 : -1.0;
+  const double radius = ring_radius(scene, state, tip, at.frame.tip, at.near_interface);
+  at.frame.e_1 = mean_direction(fracture, tip.at_back, radius);
+  at.frame.e_2 = {-at.frame.e_1.y(), at.frame.e_1.x()};
+  for (std::size_t k = 0; k < at.rings.size(); ++k)
+    at.rings[k] = {inner_fraction * ring_fractions[k] * radius, ring_fractions[k] * radius};
+  at.rock = rocks[rock_at(scene, at.frame.tip + ahead_cells * state.grid.h * at.frame.e_1)];
+  const Vec2 last = tip_direction(fracture, tip.at_back);
+  at.lag = std::atan2(cross(last, at.frame.e_1), last.dot(at.frame.e_1));
+  return at;
+}
+
+NodalWeights nodal_weights(const Grid& g, const Vec2& tip, const Ring& ring, int i, int j) {
+  NodalWeights q{};
+  for (int n = 0; n < 9; ++n) {
+    const Vec2 x{g.x(i + n % 3 - 1), g.y(j + n / 3 - 1)};
+    q[static_cast<std::size_t>(n)] = ring.at_node((x - tip).norm());
+  }
+  return q;
+}
+
+// Spans are h where q is not 0: rings lie among fine cells.
+Weight weight_at(const Grid& g, const Frame& frame, const NodalWeights& nodes, int i, int j, const Vec2& x) {
+  const Weights X = weights_x<QuadraticBspline>(g, i, x.x(), 0.0), Y = weights_y<QuadraticBspline>(g, j, x.y(), 0.0);
+  double q = 0.0;
+  Vec2 grad = Vec2::Zero();
+  for (std::size_t n = 0; n < 9; ++n) {
+    q += X.N[n % 3] * Y.N[n / 3] * nodes[n];
+    grad += nodes[n] / g.h * Vec2{X.dN[n % 3] * Y.N[n / 3], X.N[n % 3] * Y.dN[n / 3]};
+  }
+  return {q, frame.local(grad)};
+}
+
+bool weigh_bin(const Grid& g, const TipGeometry& at, const Bin& bin,
+               std::array<NodalWeights, ring_fractions.size()>& nodes) {
+  if (out_of_reach(g, at.frame.tip, at.rings.back(), bin)) return false;
+  bool any = false;
+  for (std::size_t k = 0; k < at.rings.size(); ++k) {
+    nodes[k] = nodal_weights(g, at.frame.tip, at.rings[k], bin.i, bin.j);
+    any = any || *std::max_element(nodes[k].begin(), nodes[k].end()) > 0.0;
+  }
+  return any;
+}
+
+double angle_at(const Vec2& local, bool above) {
+  const double theta = std::atan2(local.y(), local.x());
+  if (local.x() < 0.0 && above && theta < 0.0) return theta + 2.0 * pi;
+  if (local.x() < 0.0 && !above && theta > 0.0) return theta - 2.0 * pi;
+  return theta;
+}
+
+AuxiliaryFields williams(const Elasticity& rock, int mode, double r, double theta) {
+  const double kappa = 3.0 - 4.0 * rock.nu;
+  const double c = std::cos(0.5 * theta), s = std::sin(0.5 * theta), c3 = std::cos(1.5 * theta),
+               s3 = std::sin(1.5 * theta);
+  const double root = 1.0 / std::sqrt(2.0 * pi * r), cos_t = std::cos(theta), sin_t = std::sin(theta);
+  double g_1 = 0.0, g_2 = 0.0, d_1 = 0.0, d_2 = 0.0;  // angular parts of u and their derivatives
+  AuxiliaryFields aux;
+  if (mode == 0) {
+    aux.s = {root * c * (1.0 - s * s3), root * c * (1.0 + s * s3), root * s * c * c3};
+    g_1 = c * (kappa - cos_t), g_2 = s * (kappa - cos_t);
+    d_1 = -0.5 * s * (kappa - cos_t) + c * sin_t, d_2 = 0.5 * c * (kappa - cos_t) + s * sin_t;
+  } else {
+    aux.s = {-root * s * (2.0 + c * c3), root * s * c * c3, root * c * (1.0 - s * s3)};
+    g_1 = s * (kappa + 2.0 + cos_t), g_2 = -c * (kappa - 2.0 + cos_t);
+    d_1 = 0.5 * c * (kappa + 2.0 + cos_t) - s * sin_t, d_2 = 0.5 * s * (kappa - 2.0 + cos_t) + c * sin_t;
+  }
+  const double scale = root / (2.0 * rock.mu);
+  aux.u_1 = scale * Vec2{0.5 * g_1 * cos_t - d_1 * sin_t, 0.5 * g_2 * cos_t - d_2 * sin_t};
+  return aux;
+}
+
+std::vector<FacePlace> face_places(const State& state, const TipGeometry& at, bool at_back) {
+  const Grid& grid = state.grid;
+  const Surface& fracture = state.fracture();
+  const auto& points = fracture.points;
+  const auto n = static_cast<std::ptrdiff_t>(points.size());
+  std::vector<FacePlace> places;
+  for (std::ptrdiff_t k = 0; k < n; ++k) {
+    const SurfacePoint& s = points[static_cast<std::size_t>(k)];
+    const double from_tip = at_back ? fracture.length() - s.arc : s.arc;
+    if (from_tip > 1.5 * at.rings.back().outer + 2.0 * grid.h) continue;
+    FacePlace place;
+    place.point = static_cast<std::size_t>(k);
+    place.ahead = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k + (at_back ? 1 : -1), 0, n - 1));
+    place.behind = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k + (at_back ? -1 : 1), 0, n - 1));
+    place.span = std::abs(points[place.ahead].arc - points[place.behind].arc);
+    const double near = from_tip - 0.5 * s.A, far = from_tip + 0.5 * s.A;
+    place.root = 4.0 / at.rock.E_prime * 2.0 * (std::sqrt(far) - std::sqrt(std::max(near, 0.0))) / std::sqrt(2.0 * pi);
+    const Vec2 forward = at.frame.local(at_back ? Vec2{s.n.y(), -s.n.x()} : Vec2{-s.n.y(), s.n.x()});
+    const int i = grid.column_at(s.x.x()), j = grid.row_at(s.x.y());
+    for (std::size_t r = 0; r < at.rings.size(); ++r) {
+      const Weight weight = weight_at(grid, at.frame, nodal_weights(grid, at.frame.tip, at.rings[r], i, j), i, j, s.x);
+      place.q[r] = weight.q, place.dq_ds[r] = weight.grad.dot(forward);
+    }
+    places.push_back(place);
+  }
+  return places;
+}
+
+void add_faces(const Surface& fracture, const Frame& frame, const std::vector<FacePlace>& places, RingSums& sums) {
+  const auto net = [&](std::size_t k) -> Vec2 {
+    const SurfacePoint& s = fracture.points[k];
+    return frame.sign * frame.local(s.P * s.n - s.in_situ + s.reaction);
+  };
+  for (const FacePlace& place : places) {
+    const SurfacePoint& s = fracture.points[place.point];
+    const Vec2 w = frame.sign * frame.local(s.w), t = net(place.point);
+    const Vec2 dt_ds =
+        place.span > 0.0 ? Vec2{(net(place.ahead) - net(place.behind)) / place.span} : Vec2{Vec2::Zero()};
+    for (std::size_t j = 0; j < sums.size(); ++j) {
+      sums[j].J += s.A * (w.dot(t) * place.dq_ds[j] + place.q[j] * w.dot(dt_ds));
+      sums[j].I[0] += t.y() * place.q[j] * place.root;
+      sums[j].I[1] += t.x() * place.q[j] * place.root;
+    }
+  }
+}
+
+void finish_tip(const Scene& scene, const TipGeometry& at, const State& state, const RingSums& sums, Tip& tip) {
+  double mean = 0.0, K_I = 0.0, K_II = 0.0, least = sums[0].J, most = sums[0].J;
+  for (const RingSum& sum : sums) {
+    mean += sum.J / static_cast<double>(sums.size());
+    K_I += 0.5 * at.rock.E_prime * sum.I[0] / static_cast<double>(sums.size());
+    K_II += 0.5 * at.rock.E_prime * sum.I[1] / static_cast<double>(sums.size());
+    least = std::min(least, sum.J), most = std::max(most, sum.J);
+  }
+  if (!std::isfinite(mean) || !std::isfinite(K_I) || !std::isfinite(K_II)) {
+    throw NumericalFailure(
+        "step " + std::to_string(state.step) +
+        ": J or K is not finite at a tip; the motion has become unstable. Lower numerics.courant (now " +
+        std::to_string(scene.numerics.courant) + ")");
+  }
+  tip.J = mean;
+  tip.J_spread = mean != 0.0 ? (most - least) / std::abs(mean) : 0.0;
+  const SurfacePoint& last = tip.at_back ? state.fracture().points.back() : state.fracture().points.front();
+  const bool closed = last.reaction.dot(last.n) > 0.0;
+  tip.K_I = closed ? 0.0 : K_I;
+  tip.K_II = K_II;
+  tip.kink = kink_angle(tip.K_I, tip.K_II);
+  tip.turn = at.lag + turn_taken(scene) * tip.kink;
+  tip.kink += at.lag;
+  tip.ring_m = at.rings.back().outer;
+  tip.at_interface = at.near_interface;
+}
+
+}  // namespace strata

@@ -1,0 +1,97 @@
+// Where J and K of a tip are taken: its frame, its rings and their weights, and the fields they are held against.
+#pragma once
+
+#include <array>
+
+#include "state/elasticity.hpp"
+#include "state/state.hpp"
+
+namespace strata {
+
+constexpr std::array<double, 3> ring_fractions{0.8, 0.9, 1.0};
+
+struct Frame {
+  Vec2 tip, e_1, e_2;
+  double sign = 1.0;  // + side of the fracture above (1) or below (-1) as the tip looks ahead
+  Vec2 local(const Vec2& a) const { return {a.dot(e_1), a.dot(e_2)}; }
+};
+
+// The weight q: 1 at nodes inside the inner radius, 0 beyond the outer one, a cosine between, and between nodes the
+// same B-splines as the fields. An analytic q on the same particles scatters J by 3 % from ring to ring, since their
+// stress is in equilibrium in the sense of the grid's functions only.
+struct Ring {
+  double inner = 0.0, outer = 0.0;
+  double at_node(double r) const;
+};
+
+using Rings = std::array<Ring, ring_fractions.size()>;
+
+// q and its gradient in the tip's frame at a place.
+struct Weight {
+  double q = 0.0;
+  Vec2 grad = Vec2::Zero();
+};
+
+// q at the nine nodes around a place.
+using NodalWeights = std::array<double, 9>;
+
+struct AuxiliaryFields {
+  Stress s;  // stress for unit K
+  Vec2 u_1;  // derivative of displacement along the fracture
+};
+
+// What follows from where surfaces and tips are.
+struct TipGeometry {
+  Frame frame;
+  Rings rings;                  // the widest last
+  bool near_interface = false;  // J and K are not to be trusted
+  Elasticity rock;              // ahead of the tip
+  double lag = 0.0;             // of the last increment behind the frame (rad)
+};
+
+/// Frame, rings and rock of a tip. Throws nothing.
+TipGeometry tip_geometry(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Tip& tip);
+
+/// Weights of a ring around a tip (m) at the nodes around the grid's node (i, j). Throws nothing.
+NodalWeights nodal_weights(const Grid& g, const Vec2& tip, const Ring& ring, int i, int j);
+
+/// Weight at a place x (m) near that node. Throws nothing.
+Weight weight_at(const Grid& g, const Frame& frame, const NodalWeights& nodes, int i, int j, const Vec2& x);
+
+/// The weights of all rings at the nodes around a bin; false where none weighs it. Throws nothing.
+bool weigh_bin(const Grid& g, const TipGeometry& at, const Bin& bin,
+               std::array<NodalWeights, ring_fractions.size()>& nodes);
+
+/// Angle of a place from the tip (rad), in the tip's frame (m), on the side of the fracture that the particle belongs
+/// to: behind a kink the straight extension and the fracture differ, and the side, not the angle, tells the face.
+double angle_at(const Vec2& local, bool above);
+
+/// Williams' field of mode I (mode = 0) or II (1) for unit K, plane strain, in the tip's frame at r (m), theta (rad).
+AuxiliaryFields williams(const Elasticity& rock, int mode, double r, double theta);
+
+// The place of a point of the fracture among a tip's faces.
+struct FacePlace {
+  std::size_t point = 0, ahead = 0, behind = 0;            // its neighbours towards the tip and away
+  double span = 0.0;                                       // between these (m)
+  double root = 0.0;                                       // 4/E' int dr/sqrt(2 pi r) over its piece (sqrt(m)/Pa)
+  std::array<double, ring_fractions.size()> q{}, dq_ds{};  // weights and their slope towards the tip (1/m)
+};
+
+/// Points of the fracture that rings around a tip may weigh. Throws nothing.
+std::vector<FacePlace> face_places(const State& state, const TipGeometry& at, bool at_back);
+
+// J (N/m) and what the interaction with unit K_I and K_II gives, of one ring.
+struct RingSum {
+  double J = 0.0;
+  std::array<double, 2> I{};
+};
+using RingSums = std::array<RingSum, ring_fractions.size()>;
+
+/// Adds the face terms: w . d(t q)/ds of J, and of the interaction integral + t 4/E' q/sqrt(2 pi r) dr, exact for t
+/// constant on a piece. Throws nothing.
+void add_faces(const Surface& fracture, const Frame& frame, const std::vector<FacePlace>& places, RingSums& sums);
+
+/// J, K and the next direction of growth from the sums of all rings. Throws NumericalFailure where they are not finite.
+void finish_tip(const Scene& scene, const TipGeometry& at, const State& state, const RingSums& sums, Tip& tip);
+
+}  // namespace strata
