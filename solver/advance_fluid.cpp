@@ -48,11 +48,9 @@ void diffuse_in_steps(const Scene& scene, const State& state, const std::vector<
   }
   const int steps = std::clamp(static_cast<int>(std::ceil(std::min(dt / shortest, 1.0 * most))), 1, most);
   const double step = dt / steps;
-  Diffusion flow(channel, mobility, fluid.time_rule, step);
-  for (int k = 1; k <= steps; ++k) {
-    line.inlet_Pa = fluid.start_Pa + fluid.rate_Pa_s * (time + k * step);
-    flow.step(line.inlet_Pa, line.P);
-  }
+  const auto inlet_Pa = [&](int k) { return fluid.start_Pa + fluid.rate_Pa_s * (time + k * step); };
+  Diffusion(channel, mobility, fluid.time_rule, step).steps(steps, inlet_Pa, line.P);
+  line.inlet_Pa = inlet_Pa(steps);
 }
 
 // The openings midway through a step dt: those of its start with half of what they change by at the rate of the step

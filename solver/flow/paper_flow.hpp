@@ -2,6 +2,8 @@
 // 4).
 #pragma once
 
+#include <Eigen/Core>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -29,20 +31,31 @@ Channel channel_of(const Scene& scene, const State& state, std::span<const doubl
 /// Openings (m) of a fracture's points, at least 0. Throws nothing.
 std::vector<double> openings_of(const Surface& fracture);
 
-// diffuse() for many steps of one length through one channel: the matrix of its implicit part is factored once.
+// diffuse() for many steps of one length through one channel: the matrix of its implicit part is factored once. With M
+// the diffusion over a step and theta the rule's weight of its end, z = theta P_new + (1 - theta) P_old solves
+// (1 + theta M) z = P_old. Elimination goes from both ends to the middle and back: the two sides wait for themselves
+// alone.
 class Diffusion {
  public:
   /// As diffuse(), and throws as that.
   Diffusion(const Channel& channel, double mobility, Fluid::TimeRule rule, double dt);
 
-  /// One step of P (Pa, one a vertex); P[inlet] becomes inlet_Pa.
-  void step(double inlet_Pa, std::vector<double>& P);
+  /// `count` steps of P (Pa, one a vertex); P[inlet] becomes inlet_Pa(k) at the end of the k-th, from 1.
+  void steps(int count, const std::function<double(int)>& inlet_Pa, std::vector<double>& P);
 
  private:
-  std::size_t inlet_ = 0;
-  std::vector<double> conductance_;  // of each segment, k/length (m)
-  std::vector<double> share_;        // of a vertex's net inflow in its pressure after an explicit step (1/m)
-  std::vector<double> factor_, inverse_, upper_;  // of elimination; upper over its pivot
+  // Two vertices, one as far from the first as the other is from the last; an even number gets a closed one behind it.
+  using Two = Eigen::Array2d;
+  double& at(std::size_t vertex);
+  void step_explicitly(double inlet_Pa, std::vector<double>& P) const;
+  void step_implicitly(double inlet_Pa);
+
+  std::size_t inlet_ = 0, middle_ = 0;
+  double theta_ = 0.0;
+  std::vector<double> before_,
+      after_;  // parts of the differences to its neighbours that a vertex takes in an explicit step
+  std::vector<Two> factor_, inverse_, upper_, rhs_, P_;  // of elimination (upper over its pivot), and the pressures
+  double inverse_middle_ = 1.0, P_middle_ = 0.0;
 };
 
 /// What the pressure's slope beside the inlet drives into the fracture by the flow that (3) balances, q = -(w^3/(12

@@ -9,8 +9,6 @@
 #include <type_traits>
 #include <vector>
 
-#include "output/packing.hpp"
-
 #include "output/run_folder.hpp"
 
 namespace strata::hdf5 {
@@ -113,7 +111,7 @@ Handle make_dataset(Id parent, const std::string& name, hid_t type, std::size_t 
 }
 
 // Writes the chunks of a compressed data set, packed here: the filters' own search takes three times as long.
-void write_chunks(Id set, const std::string& name, std::span<const std::byte> values) {
+void write_chunks(Id set, const std::string& name, std::span<const std::byte> values, Packer& packer) {
   constexpr std::size_t width = 4;
   const std::size_t n = values.size() / width, chunk = chunk_of(n);
   for (std::size_t from = 0; from < n; from += chunk) {
@@ -125,8 +123,7 @@ void write_chunks(Id set, const std::string& name, std::span<const std::byte> va
       whole.resize(width * chunk);
       part = whole;
     }
-    const std::vector<unsigned char> packed = shuffled_and_deflated(part);
-    if (packed.empty()) throw std::runtime_error(fmt::format("{}: cannot be compressed", name));
+    const std::vector<unsigned char> packed = packer.shuffled_and_deflated(part);
     const hsize_t offset = from;
     checked(H5Dwrite_chunk(set, H5P_DEFAULT, 0, &offset, packed.size(), packed.data()), name, "be written");
   }
@@ -134,12 +131,12 @@ void write_chunks(Id set, const std::string& name, std::span<const std::byte> va
 
 template <class T>
 void write_dataset(Id parent, const std::string& name, hid_t type, std::span<const T> values, const std::string& unit,
-                   Storage storage) {
+                   Storage storage, Packer* packer = nullptr) {
   const Silence silence;
   {
     const Handle set = make_dataset(parent, name, type, values.size(), storage);
-    if (sizeof(T) == 4 && storage == Storage::compressed && !values.empty() && deflates())
-      write_chunks(set.id(), name, std::as_bytes(values));
+    if (packer != nullptr && !values.empty() && deflates())
+      write_chunks(set.id(), name, std::as_bytes(values), *packer);
     else
       checked(H5Dwrite(set.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), name, "be written");
   }
@@ -234,13 +231,19 @@ void write(Id parent, const std::string& name, std::span<const std::int32_t> val
   write_dataset(parent, name, H5T_NATIVE_INT32, values, unit, Storage::contiguous);
 }
 
-void write_compressed(Id parent, const std::string& name, std::span<const float> values, const std::string& unit) {
-  write_dataset(parent, name, H5T_NATIVE_FLOAT, values, unit, Storage::compressed);
+void write_compressed(Id parent, const std::string& name, std::span<const float> values, const std::string& unit,
+                      Packer& packer) {
+  write_dataset(parent, name, H5T_NATIVE_FLOAT, values, unit, Storage::compressed, &packer);
 }
 
-void write_compressed(Id parent, const std::string& name, std::span<const std::int32_t> values,
-                      const std::string& unit) {
-  write_dataset(parent, name, H5T_NATIVE_INT32, values, unit, Storage::compressed);
+void write_compressed(Id parent, const std::string& name, std::span<const std::int32_t> values, const std::string& unit,
+                      Packer& packer) {
+  write_dataset(parent, name, H5T_NATIVE_INT32, values, unit, Storage::compressed, &packer);
+}
+
+void link(Id parent, const std::string& name, const std::string& path) {
+  const Silence silence;
+  checked(H5Lcreate_hard(parent, path.c_str(), parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT), name, "be linked");
 }
 
 void rewrite(Id parent, const std::string& name, std::span<const double> values, const std::string& unit) {

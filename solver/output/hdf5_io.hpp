@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "output/packing.hpp"
+
 namespace strata::hdf5 {
 
 using Id = std::int64_t;  // the library's hid_t, without its header
@@ -53,9 +55,13 @@ void remove(Id parent, const std::string& name);
 /// Writes a new 1-D data set with its attribute `unit`; compressed ones are for large fields.
 void write(Id parent, const std::string& name, std::span<const double> values, const std::string& unit);
 void write(Id parent, const std::string& name, std::span<const std::int32_t> values, const std::string& unit);
-void write_compressed(Id parent, const std::string& name, std::span<const float> values, const std::string& unit);
-void write_compressed(Id parent, const std::string& name, std::span<const std::int32_t> values,
-                      const std::string& unit);
+void write_compressed(Id parent, const std::string& name, std::span<const float> values, const std::string& unit,
+                      Packer& packer);
+void write_compressed(Id parent, const std::string& name, std::span<const std::int32_t> values, const std::string& unit,
+                      Packer& packer);
+
+/// Gives the data set at `path`, from the root ("/..."), the further name `name` below `parent`.
+void link(Id parent, const std::string& name, const std::string& path);
 
 /// Writes a 1-D data set that may have another length the next time, made where it is missing.
 void rewrite(Id parent, const std::string& name, std::span<const double> values, const std::string& unit);

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -94,15 +96,33 @@ std::vector<std::size_t> by_id(const Particles& particles) {
   return order;
 }
 
-void write_particles(hdf5::Id group, const Scene& scene, const State& state) {
+bool same_bytes(std::span<const std::byte> a, std::span<const std::byte> b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size()) == 0);
+}
+
+// Writes the particles' fields into `group` and returns them; those that are as in `last`, of the group at the path
+// `before`, are linked to.
+ParticleFields write_particles(hdf5::Id group, const Scene& scene, const State& state, const ParticleFields& last,
+                               const std::string& before, Packer& packer) {
   const Particles& particles = state.particles;
   const std::vector<Elasticity> rocks = make_elasticities(scene);
   const std::vector<std::size_t> order = by_id(particles);
 
+  ParticleFields written;
+  const auto write = [&](const std::string& name, const char* unit, const auto& values) {
+    const auto bytes = std::as_bytes(std::span(values));
+    const auto old = last.find(name);
+    if (old != last.end() && same_bytes(old->second, bytes)) {
+      hdf5::link(group, name, before + "/" + name);
+    } else {
+      hdf5::write_compressed(group, name, values, unit, packer);
+    }
+    written.emplace(name, std::vector<std::byte>(bytes.begin(), bytes.end()));
+  };
   std::vector<float> field(order.size());
   const auto put = [&](const char* name, const char* unit, auto value) {
     std::transform(order.begin(), order.end(), field.begin(), [&](auto p) { return static_cast<float>(value(p)); });
-    hdf5::write_compressed(group, name, field, unit);
+    write(name, unit, field);
   };
   const auto put_array = [&](const char* name, const char* unit, const std::vector<double>& values) {
     put(name, unit, [&](std::size_t p) { return values[p]; });
@@ -121,10 +141,11 @@ void write_particles(hdf5::Id group, const Scene& scene, const State& state) {
 
   std::vector<std::int32_t> label(order.size());
   std::transform(order.begin(), order.end(), label.begin(), [&](auto p) { return particles.id[p]; });
-  hdf5::write_compressed(group, "id", label, "1");
+  write("id", "1", label);
   std::transform(order.begin(), order.end(), label.begin(), [&](auto p) { return particles.rock[p]; });
-  hdf5::write_compressed(group, "rock", label, "1");
+  write("rock", "1", label);
   hdf5::set_attribute(group, ".", "time_s", state.time);
+  return written;
 }
 
 template <class Outputs>
@@ -222,8 +243,10 @@ void ResultFile::write_output(const Scene& scene, const State& state) {
   std::vector<OutputSize> outputs = outputs_;
   outputs.push_back(
       {state.time, state.particles.size(), state.has_fracture ? state.fracture().vertices.size() : std::size_t{0}});
+  ParticleFields fields;
   change_file(file_, [&](hdf5::Id root) {
-    write_particles(hdf5::group(root, "particles/" + number).id(), scene, state);
+    const std::string before = outputs_.empty() ? "" : "/particles/" + number_of(outputs_.size() - 1);
+    fields = write_particles(hdf5::group(root, "particles/" + number).id(), scene, state, last_, before, packer_);
     if (state.has_fracture) write_fracture(hdf5::group(root, "fracture/" + number).id(), scene, state);
     for (const Surface& surface : state.surfaces) {
       if (surface.kind != Surface::Kind::interface) continue;
@@ -233,6 +256,7 @@ void ResultFile::write_output(const Scene& scene, const State& state) {
     hdf5::rewrite(root, "times", times_of(outputs), "s");
   });
   outputs_ = std::move(outputs);
+  last_ = std::move(fields);
   write_xdmf();
 }
 

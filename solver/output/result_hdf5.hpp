@@ -11,14 +11,18 @@
 //
 // Every data set has an attribute `unit`. The number of particles may differ from one output time to the next. The
 // normal points from the - to the + side, which is on the left of the path; the tangent runs along the path. Fields of
-// particles are stored in single precision, all else in double.
+// particles are stored in single precision, all else in double; one that has not changed since the output time before
+// is that one's data set under a further name.
 #pragma once
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "output/history.hpp"
+#include "output/packing.hpp"
 #include "scene/scene.hpp"
 #include "state/elasticity.hpp"
 #include "state/state.hpp"
@@ -28,6 +32,9 @@ namespace strata {
 /// Total stress of particle p (Pa, tension positive): in-situ stress and, in plane strain, that of the displacement
 /// gradient; rocks: in the order of the scene. Throws nothing.
 Stress total_stress(const std::vector<Elasticity>& rocks, const Particles& particles, std::size_t p);
+
+// The bytes of fields of particles by their names.
+using ParticleFields = std::map<std::string, std::vector<std::byte>>;
 
 // The file is open only while something is written, so that others may read it during the run; each writing changes it
 // as a whole or not at all, also where the process is killed meanwhile (file_change.hpp).
@@ -61,6 +68,8 @@ class ResultFile {
   void write_xdmf() const;
   std::filesystem::path file_;
   std::vector<OutputSize> outputs_;
+  ParticleFields last_;  // of the last output time, where it was written here
+  Packer packer_;
 };
 
 }  // namespace strata

@@ -89,12 +89,13 @@ TEST_CASE("the fracture's fields are those of its vertices") {
 
 // Requires that large fields come back bit for bit, noise and smooth ones, of one value, one chunk and more, in less
 // room than they take and no more than a hundredth above it where nothing shrinks. Mutations that fail: two planes
-// exchanged, the first plane's level kept, the last chunk not filled up.
+// exchanged, no plane stored, all planes stored, a stored block's last one not marked, the last chunk not filled up.
 TEST_CASE("large fields are packed without loss") {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder.path / "fields.h5";
   hdf5::make_file(path);
   const hdf5::Handle file = hdf5::open_file(path, true);
+  Packer packer;
   std::mt19937 random(7);
   for (const std::size_t n : {std::size_t{1}, std::size_t{5000}, std::size_t{600001}}) {
     std::vector<float> smooth(n), noise(n);
@@ -106,9 +107,9 @@ TEST_CASE("large fields are packed without loss") {
       label[k] = static_cast<std::int32_t>(k);
     }
     const std::string of = std::to_string(n);
-    hdf5::write_compressed(file.id(), "smooth" + of, smooth, "Pa");
-    hdf5::write_compressed(file.id(), "noise" + of, noise, "Pa");
-    hdf5::write_compressed(file.id(), "label" + of, label, "1");
+    hdf5::write_compressed(file.id(), "smooth" + of, smooth, "Pa", packer);
+    hdf5::write_compressed(file.id(), "noise" + of, noise, "Pa", packer);
+    hdf5::write_compressed(file.id(), "label" + of, label, "1", packer);
     const auto same = [&](const std::string& name, const auto& values) {
       const std::vector<double> read = hdf5::read(file.id(), name);
       return std::equal(read.begin(), read.end(), values.begin(), values.end(),
@@ -117,8 +118,8 @@ TEST_CASE("large fields are packed without loss") {
     CHECK(same("smooth" + of, smooth));
     CHECK(same("noise" + of, noise));
     CHECK(same("label" + of, label));
-    const auto packed = [](const auto& values) {
-      return static_cast<double>(shuffled_and_deflated(std::as_bytes(std::span(values))).size());
+    const auto packed = [&](const auto& values) {
+      return static_cast<double>(packer.shuffled_and_deflated(std::as_bytes(std::span(values))).size());
     };
     if (n == 1) continue;
     CHECK(packed(label) < 0.4 * 4.0 * static_cast<double>(n));
@@ -209,6 +210,38 @@ TEST_CASE("particles are written in the order of their id, and their number may 
       CHECK(s_xy[at] == stored(total_stress(rocks, p, q).xy));
     }
   }
+}
+
+// Mutations that fail: every field linked, none linked, a link to the output time's own number.
+TEST_CASE("a field that has not changed is there twice and stored once") {
+  const TemporaryFolder folder;
+  const auto path = folder.path / "result.h5";
+  State state = made_state();
+  Numbers number{5};
+  state.particles = made_particles(20000, number);
+  ResultFile result(path);
+  std::vector<std::uintmax_t> added;
+  const auto write = [&] {
+    const std::uintmax_t before = std::filesystem::file_size(path);
+    result.write_output(made_scene(), state);
+    added.push_back(std::filesystem::file_size(path) - before);
+  };
+  write();
+  write();
+  state.particles.V[7] *= 2.0;
+  write();
+  CHECK(added[0] > 20000 * 4 * 6);
+  CHECK(added[1] < 20000);  // the groups and the fracture
+  CHECK(added[2] > added[1] + 20000);
+  CHECK(added[2] < added[1] + 20000 * 4 + 10000);
+  const auto file = hdf5::open_file(path, false);
+  const auto values = [&](int output) {
+    return dump(hdf5::group(file.id(), fmt::format("particles/{:05}", output)).id(), "");
+  };
+  CHECK(values(1) == values(0));
+  CHECK(values(2) != values(1));
+  CHECK(hdf5::read(file.id(), "particles/00002/volume_m2")[static_cast<std::size_t>(state.particles.id[7])] ==
+        stored(state.particles.V[7]));
 }
 
 TEST_CASE("/history holds the columns of history.csv, however often it is written") {
