@@ -100,8 +100,14 @@ bool same_bytes(std::span<const std::byte> a, std::span<const std::byte> b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size()) == 0);
 }
 
-// Writes the particles' fields into `group` and returns them; those that are as in `last`, of the group at the path
-// `before`, are linked to.
+// Fields that seldom change, so that it pays to keep them for the next output time.
+bool is_steady(const Scene& scene, const std::string& field) {
+  const bool at_rest = scene.numerics.mechanics == Numerics::Mechanics::quasistatic;
+  return field == "id" || field == "rock" || field == "volume_m2" || (at_rest && field.starts_with("v_"));
+}
+
+// Writes the particles' fields into `group` and returns the steady ones; those that are as in `last`, of the group at
+// the path `before`, are linked to.
 ParticleFields write_particles(hdf5::Id group, const Scene& scene, const State& state, const ParticleFields& last,
                                const std::string& before, Packer& packer) {
   const Particles& particles = state.particles;
@@ -117,7 +123,7 @@ ParticleFields write_particles(hdf5::Id group, const Scene& scene, const State& 
     } else {
       hdf5::write_compressed(group, name, values, unit, packer);
     }
-    written.emplace(name, std::vector<std::byte>(bytes.begin(), bytes.end()));
+    if (is_steady(scene, name)) written.emplace(name, std::vector<std::byte>(bytes.begin(), bytes.end()));
   };
   std::vector<float> field(order.size());
   const auto put = [&](const char* name, const char* unit, auto value) {

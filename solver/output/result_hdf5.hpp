@@ -11,8 +11,8 @@
 //
 // Every data set has an attribute `unit`. The number of particles may differ from one output time to the next. The
 // normal points from the - to the + side, which is on the left of the path; the tangent runs along the path. Fields of
-// particles are stored in single precision, all else in double; one that has not changed since the output time before
-// is that one's data set under a further name.
+// particles are stored in single precision, all else in double; id, rock, volume and, without inertia, velocity
+// that have not changed since the output time before are the same data sets under further names.
 #pragma once
 
 #include <cstddef>
@@ -33,7 +33,7 @@ namespace strata {
 /// gradient; rocks: in the order of the scene. Throws nothing.
 Stress total_stress(const std::vector<Elasticity>& rocks, const Particles& particles, std::size_t p);
 
-// The bytes of fields of particles by their names.
+// The bytes of fields of particles that seldom change, by their names.
 using ParticleFields = std::map<std::string, std::vector<std::byte>>;
 
 // The file is open only while something is written, so that others may read it during the run; each writing changes it

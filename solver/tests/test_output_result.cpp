@@ -89,7 +89,7 @@ TEST_CASE("the fracture's fields are those of its vertices") {
 
 // Requires that large fields come back bit for bit, noise and smooth ones, of one value, one chunk and more, in less
 // room than they take and no more than a hundredth above it where nothing shrinks. Mutations that fail: two planes
-// exchanged, no plane stored, all planes stored, a stored block's last one not marked, the last chunk not filled up.
+// exchanged, all planes stored, a stored block's last one not marked, the last chunk not filled up.
 TEST_CASE("large fields are packed without loss") {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder.path / "fields.h5";
@@ -230,10 +230,10 @@ TEST_CASE("a field that has not changed is there twice and stored once") {
   write();
   state.particles.V[7] *= 2.0;
   write();
-  CHECK(added[0] > 20000 * 4 * 6);
-  CHECK(added[1] < 20000);  // the groups and the fracture
-  CHECK(added[2] > added[1] + 20000);
-  CHECK(added[2] < added[1] + 20000 * 4 + 10000);
+  constexpr std::uintmax_t volumes = 20000 * 4, room = 20000;  // room: of the groups and the fracture
+  CHECK(added[0] > added[1] + volumes / 2);
+  CHECK(added[2] > added[1] + volumes / 2);
+  CHECK(added[2] < added[1] + volumes + room);
   const auto file = hdf5::open_file(path, false);
   const auto values = [&](int output) {
     return dump(hdf5::group(file.id(), fmt::format("particles/{:05}", output)).id(), "");

@@ -9,6 +9,8 @@ from typing import Any
 import h5py
 import numpy as np
 
+from verification.harness.load import items_below
+
 # What a process says of itself: it may differ between equal runs.
 OF_THE_PROCESS = ("wall_s", "particle_steps_per_s", "peak_memory_MB", "threads")
 
@@ -28,7 +30,8 @@ def stored(file: Path) -> Content:
 
     with h5py.File(file, "r") as store:
         visit("/", store)
-        store.visititems(visit)
+        for name, item in items_below(store):
+            visit(name, item)
     return found
 
 

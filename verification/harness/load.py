@@ -5,6 +5,7 @@ import csv
 import json
 import math
 import tomllib
+from collections.abc import Iterator
 from dataclasses import MISSING, dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
@@ -225,11 +226,12 @@ def frames(run: Run, group: str) -> list[tuple[float, dict[str, Array]]]:
 
 def arrays_of(group: h5py.Group) -> dict[str, Array]:
     """All data sets below a group, by their names from it."""
-    arrays: dict[str, Array] = {}
+    return {name: item[()] for name, item in items_below(group) if isinstance(item, h5py.Dataset)}
 
-    def visit(name: str, item: h5py.Group | h5py.Dataset) -> None:
-        if isinstance(item, h5py.Dataset):
-            arrays[name] = item[()]
 
-    group.visititems(visit)
-    return arrays
+def items_below(group: h5py.Group, path: str = "") -> Iterator[tuple[str, h5py.Group | h5py.Dataset]]:
+    """Everything below a group with its name from there; what has several names under each (visititems() takes one of them)."""
+    for name, item in group.items():
+        yield path + name, item
+        if isinstance(item, h5py.Group):
+            yield from items_below(item, f"{path}{name}/")

@@ -7,6 +7,7 @@ import h5py
 import numpy as np
 import pytest
 
+from verification.harness.load import arrays_of
 from verification.harness.paths import EXPERIMENTS
 from verification.harness.run import Job, run
 
@@ -16,10 +17,8 @@ SHORT = ("numerics.cell_m=2.0", "fracture.increment_m=2.0", "stop.time_s=0.6", "
 
 def arrays(path: Path) -> dict[str, np.ndarray]:
     """All data sets of a result.h5."""
-    found: dict[str, np.ndarray] = {}
     with h5py.File(path, "r") as store:
-        store.visititems(lambda name, item: found.update({name: item[()]}) if isinstance(item, h5py.Dataset) else None)
-    return found
+        return arrays_of(store)
 
 
 @pytest.mark.parametrize(
