@@ -10,9 +10,7 @@ namespace strata {
 
 namespace {
 
-using Row = std::vector<std::pair<int, double>>;
-
-void add_to_row(Row& row, const Unknown& unknown, double weight) {
+void add_to_row(SparseRow& row, const Unknown& unknown, double weight) {
   if (unknown.index < 0) return;
   for (auto& [index, value] : row) {
     if (index != unknown.index) continue;
@@ -22,12 +20,12 @@ void add_to_row(Row& row, const Unknown& unknown, double weight) {
   row.emplace_back(unknown.index, weight * unknown.factor);
 }
 
-std::array<Row, 2> jump_rows(const Condensed& condensed, const SurfaceStencil& stencil) {
-  std::array<Row, 2> rows;
+std::array<SparseRow, 2> jump_rows(const Condensed& condensed, const SurfaceStencil& stencil) {
+  std::array<SparseRow, 2> rows;
   for (std::size_t n = 0; n < 9; ++n) {
     if (stencil.plus[n] == stencil.minus[n]) continue;
     for (int component = 0; component < 2; ++component) {
-      Row& row = rows[static_cast<std::size_t>(component)];
+      SparseRow& row = rows[static_cast<std::size_t>(component)];
       add_to_row(row, jump_unknown(condensed, stencil.plus[n], component), stencil.N[n]);
       add_to_row(row, jump_unknown(condensed, stencil.minus[n], component), -stencil.N[n]);
     }
@@ -35,10 +33,15 @@ std::array<Row, 2> jump_rows(const Condensed& condensed, const SurfaceStencil& s
   return rows;
 }
 
-double times(const Row& row, const Eigen::VectorXd& j) {
+double times(const SparseRow& row, const Eigen::VectorXd& j) {
   double sum = 0.0;
   for (const auto& [index, value] : row) sum += value * j[index];
   return sum;
+}
+
+// D j of a place (m).
+Vec2 jump_of(const ContactPlace& place, const Eigen::VectorXd& j) {
+  return {times(place.D[0], j), times(place.D[1], j)};
 }
 
 double pressure(const State& state, const ContactPlace& place) {
@@ -67,26 +70,37 @@ Eigen::VectorXd body_load(const Condensed& condensed) {
   return condensed.load.empty() ? Eigen::VectorXd::Zero(condensed.size()) : condensed.load.jumps;
 }
 
-void evaluate(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
-              Equilibrium& at) {
+// Jumps and what the laws answer to them; returns their share of the energy less the work of the loads (J/m).
+double answer(const State& state, const std::vector<ContactPlace>& places, Equilibrium& at) {
   at.answers.resize(places.size());
   at.w.resize(places.size());
   at.pieces.resize(places.size());
+  double energy = 0.0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const ContactPlace& place = places[k];
+    at.w[k] = jump_of(place, at.j) - place.bonded;
+    const LawAnswer& r = at.answers[k] = answer_at(state, place, at.w[k]);
+    at.pieces[k] = r.piece;
+    energy += place.A * (r.energy - net_load(state, place).dot(at.w[k]));
+  }
+  return energy;
+}
+
+void evaluate(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
+              Equilibrium& at) {
+  const double of_laws = answer(state, places, at);
   Eigen::VectorXd load = body_load(condensed), reaction = Eigen::VectorXd::Zero(condensed.size());
   at.energy =
       -load.dot(at.j) - 2.0 * condensed.load.strain;  // strain of the intact block under the body force, less its work
   for (std::size_t k = 0; k < places.size(); ++k) {
     const ContactPlace& place = places[k];
-    at.w[k] = Vec2{times(place.D[0], at.j), times(place.D[1], at.j)} - place.bonded;
-    const LawAnswer& r = at.answers[k] = answer_at(state, place, at.w[k]);
-    at.pieces[k] = r.piece;
-    at.energy += place.A * (r.energy - net_load(state, place).dot(at.w[k]));
+    const LawAnswer& r = at.answers[k];
     add_force(place, net_load(state, place), load);
     add_force(place, r.n * place.n + r.t * tangent_of(place.n), reaction);
   }
-  const Eigen::VectorXd inner = condensed.S * at.j;
+  const Eigen::VectorXd inner = condensed.S.selfadjointView<Eigen::Lower>() * at.j;
   at.strain = 0.5 * at.j.dot(inner) + condensed.load.strain;
-  at.energy += at.strain;
+  at.energy += of_laws + at.strain;
   const double scale = std::max(load.lpNorm<Eigen::Infinity>(), inner.lpNorm<Eigen::Infinity>());
   at.unbalanced = load + reaction - inner;
   at.residual = scale > 0.0 ? at.unbalanced.lpNorm<Eigen::Infinity>() / scale : 0.0;
@@ -176,15 +190,16 @@ bool factor_tangent(const Condensed& condensed, const std::vector<ContactPlace>&
 // for ever.
 constexpr double balanced = 1e-9;
 
-// Slope of the energy along d at j (N): laws less the work of the loads on surfaces, and `strain`, that of the rest.
-double slope(const State& state, const std::vector<ContactPlace>& places, double strain, const Eigen::VectorXd& j,
-             const Eigen::VectorXd& d) {
-  double sum = strain;
-  for (const ContactPlace& place : places) {
-    const Vec2 w = Vec2{times(place.D[0], j), times(place.D[1], j)} - place.bonded;
-    const LawAnswer r = answer_at(state, place, w);
+// Slope (J/m) along a step of what the laws hold less the work of the loads on surfaces: at the jumps w (m) of places,
+// which change by dw (m) along it.
+double slope(const State& state, const std::vector<ContactPlace>& places, const std::vector<Vec2>& w,
+             const std::vector<Vec2>& dw, double length) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const ContactPlace& place = places[k];
+    const LawAnswer r = answer_at(state, place, w[k] + length * dw[k]);
     const Vec2 traction = net_load(state, place) + r.n * place.n + r.t * tangent_of(place.n);
-    sum -= place.A * traction.dot(Vec2{times(place.D[0], d), times(place.D[1], d)});
+    sum -= place.A * traction.dot(dw[k]);
   }
   return sum;
 }
@@ -194,10 +209,12 @@ double slope(const State& state, const std::vector<ContactPlace>& places, double
 double step_length(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
                    const Equilibrium& from, const Eigen::VectorXd& to) {
   constexpr double flat = 1e-3;  // of the slope at the start
-  const Eigen::VectorXd d = to - from.j, S_d = condensed.S * d;
+  const Eigen::VectorXd d = to - from.j, S_d = condensed.S.selfadjointView<Eigen::Lower>() * d;
   const double at_start = from.j.dot(S_d) - body_load(condensed).dot(d), rise = d.dot(S_d);
+  std::vector<Vec2> dw(places.size());
+  for (std::size_t k = 0; k < places.size(); ++k) dw[k] = jump_of(places[k], d);
   const auto slope_at = [&](double length) {
-    return slope(state, places, at_start + length * rise, from.j + length * d, d);
+    return at_start + length * rise + slope(state, places, from.w, dw, length);
   };
   const double first = slope_at(0.0);
   if (slope_at(1.0) <= flat * std::abs(first)) return 1.0;
@@ -209,6 +226,19 @@ double step_length(const State& state, const Condensed& condensed, const std::ve
   return high;
 }
 
+// Whether what is out of balance of the solution on `pieces` is what a factor that followed changes lost of the digits:
+// corrections by it then bring them back.
+bool refine(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
+            const TangentFactor& factor, const Pieces& pieces, Equilibrium& at) {
+  constexpr int corrections = 2;
+  for (int k = 0; k < corrections && at.pieces == pieces; ++k) {
+    at.j += factor.solve(at.unbalanced);
+    evaluate(state, condensed, places, at);
+    if (at.pieces == pieces && in_balance(condensed, at)) return true;
+  }
+  return false;
+}
+
 // Newton's method on the pieces from at.j; false where it does not end within its iterations. bounds_held: the problem
 // is convex and any state in balance its solution.
 bool iterate(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
@@ -218,8 +248,12 @@ bool iterate(const State& state, const Condensed& condensed, const std::vector<C
   constexpr int checked = 5;            // from this iteration on what is in balance has been found to be so
   bool singular = false, stays = false;
   std::set<Pieces> been;
-  evaluate(state, condensed, places, at);
-  if (bounds_held && at.residual < balanced) return true;
+  if (bounds_held) {
+    evaluate(state, condensed, places, at);
+    if (at.residual < balanced) return true;
+  } else {
+    answer(state, places, at);
+  }
   for (at.iterations = 1; at.iterations <= most_iterations; ++at.iterations) {
     const Pieces pieces = at.pieces;
     const bool sliding = slips(at.answers);
@@ -242,6 +276,7 @@ bool iterate(const State& state, const Condensed& condensed, const std::vector<C
     if (singular && !bounds_held) report_mechanism(state, places);
     if (in_balance(condensed, at)) return true;
     if (factor.changed()) {  // perhaps for the digits that it lost
+      if (refine(state, condensed, places, factor, pieces, at)) return true;
       factor = TangentFactor{};
       continue;
     }
@@ -293,7 +328,7 @@ Equilibrium solve_with_fixed_bounds(const State& state, const Condensed& condens
 }  // namespace
 
 Vec2 jump_at(const Condensed& condensed, const SurfaceStencil& stencil, const Eigen::VectorXd& j) {
-  const std::array<Row, 2> rows = jump_rows(condensed, stencil);
+  const std::array<SparseRow, 2> rows = jump_rows(condensed, stencil);
   return {times(rows[0], j), times(rows[1], j)};
 }
 

@@ -15,8 +15,9 @@ constexpr double smallest_eigenvalue = 1e-12;
 // A tangent that has followed changes has lost digits: what is as weak as this is factorised to be sure of it.
 constexpr double smallest_to_follow = 1e-9;
 
-// Columns of changed places over unknowns from which on a factorisation takes no longer.
-constexpr double most_changed = 0.125;
+// Columns of changed places over unknowns from which on a factorisation takes no longer: those to solve for, and all.
+constexpr double most_fresh = 0.15;
+constexpr double most_changed = 0.35;
 
 // The smallest eigenvalue of a scaled tangent in size, by two inverse iterations.
 template <class Solve>
@@ -94,12 +95,8 @@ std::vector<std::size_t> TangentFactor::places_that_differ(const std::vector<Eig
   return differ;
 }
 
-// Adds the columns of Z that some places do not have yet.
-void TangentFactor::solve_for(const std::vector<ContactPlace>& places, const std::vector<std::size_t>& which) {
-  std::vector<std::size_t> fresh;
-  for (const std::size_t k : which) {
-    if (known_[k] < 0) fresh.push_back(k);
-  }
+// Adds the columns of Z of places that do not have them yet.
+void TangentFactor::solve_for(const std::vector<ContactPlace>& places, const std::vector<std::size_t>& fresh) {
   if (fresh.empty()) return;
   Eigen::MatrixXd U = Eigen::MatrixXd::Zero(scale_.size(), 2 * static_cast<Eigen::Index>(fresh.size()));
   const Eigen::Index before = Z_all_.cols();
@@ -113,27 +110,47 @@ void TangentFactor::solve_for(const std::vector<ContactPlace>& places, const std
   Z_all_.rightCols(U.cols()) = solve_first(U);
 }
 
+// M U^T y.
+Eigen::MatrixXd TangentFactor::change_of(const Eigen::MatrixXd& y) const {
+  Eigen::MatrixXd out(static_cast<Eigen::Index>(U_.size()), y.cols());
+  for (Eigen::Index column = 0; column < y.cols(); ++column) {
+    for (std::size_t f = 0; f < M_.size(); ++f) {
+      Vec2 jump = Vec2::Zero();
+      for (std::size_t c = 0; c < 2; ++c) {
+        for (const auto& [row, value] : U_[2 * f + c]) jump[static_cast<Eigen::Index>(c)] += value * y(row, column);
+      }
+      out.col(column).segment<2>(2 * static_cast<Eigen::Index>(f)) = M_[f] * jump;
+    }
+  }
+  return out;
+}
+
 bool TangentFactor::follow(const std::vector<ContactPlace>& places, const std::vector<LawAnswer>& answers) {
   if (stiffened_ || scale_.size() == 0 || R_.size() != places.size()) return false;
   const std::vector<Eigen::Matrix2d> R = reaction_tangents(places, answers);
   std::vector<std::size_t> differ = places_that_differ(R);
-  const auto columns = 2 * static_cast<Eigen::Index>(differ.size());
-  if (static_cast<double>(columns) > most_changed * static_cast<double>(scale_.size())) return false;
-  solve_for(places, differ);
+  std::vector<std::size_t> fresh;
+  for (const std::size_t k : differ) {
+    if (known_[k] < 0) fresh.push_back(k);
+  }
+  const auto share = [&](const auto& of) {
+    return 2.0 * static_cast<double>(of.size()) / static_cast<double>(scale_.size());
+  };
+  if (share(differ) > most_changed || share(fresh) > most_fresh) return false;
+  solve_for(places, fresh);
   changed_ = std::move(differ);
   if (changed_.empty()) return true;
-  U_.setZero(scale_.size(), columns);
+  const auto columns = 2 * static_cast<Eigen::Index>(changed_.size());
+  U_.clear();
   Z_.resize(scale_.size(), columns);
-  M_.setZero(columns, columns);
-  for (Eigen::Index f = 0; 2 * f < columns; ++f) {
-    const std::size_t k = changed_[static_cast<std::size_t>(f)];
-    for (std::size_t c = 0; c < 2; ++c) {
-      for (const auto& [row, value] : places[k].D[c]) U_(row, 2 * f + static_cast<Eigen::Index>(c)) += value;
-    }
-    Z_.middleCols(2 * f, 2) = Z_all_.middleCols(known_[k], 2);
-    M_.block<2, 2>(2 * f, 2 * f) = R_[k] - R[k];
+  M_.clear();
+  for (std::size_t f = 0; f < changed_.size(); ++f) {
+    const std::size_t k = changed_[f];
+    U_.insert(U_.end(), places[k].D.begin(), places[k].D.end());
+    Z_.middleCols(2 * static_cast<Eigen::Index>(f), 2) = Z_all_.middleCols(known_[k], 2);
+    M_.push_back(R_[k] - R[k]);
   }
-  small_.compute(Eigen::MatrixXd::Identity(columns, columns) + M_ * (U_.transpose() * Z_));
+  small_.compute(Eigen::MatrixXd::Identity(columns, columns) + change_of(Z_));
   const auto solve_scaled = [&](const Eigen::VectorXd& x) {
     return Eigen::VectorXd(solve(x.cwiseQuotient(scale_)).cwiseQuotient(scale_));
   };
@@ -154,7 +171,7 @@ Eigen::MatrixXd TangentFactor::solve_first(const Eigen::MatrixXd& b) const {
 
 Eigen::MatrixXd TangentFactor::solve(const Eigen::MatrixXd& b) const {
   Eigen::MatrixXd y = solve_first(b);
-  if (!changed_.empty()) y -= Z_ * small_.solve(M_ * (U_.transpose() * y));
+  if (!changed_.empty()) y -= Z_ * small_.solve(change_of(y));
   return y;
 }
 

@@ -12,6 +12,9 @@
 
 namespace strata {
 
+// A row of a jump in terms of the jump unknowns: their indices and weights.
+using SparseRow = std::vector<std::pair<int, double>>;
+
 // A split place of a surface, or the spring behind a tip, in terms of the jump unknowns: its jump is D j - bonded.
 struct ContactPlace {
   std::size_t surface = 0, point = 0;  // of the state; a tip's spring has `tie` >= 0 instead
@@ -20,11 +23,11 @@ struct ContactPlace {
   double k = 0.0;  // stiffness of closed contact (Pa/m)
   double A = 0.0;  // length (m)
   Vec2 n = Vec2::Zero();
-  Vec2 in_situ = Vec2::Zero();                           // Pa
-  Vec2 bonded = Vec2::Zero();                            // jump when it split (m)
-  double bound = -1.0;                                   // friction's bound where it is held fixed (Pa)
-  double w_t_start = 0.0, r_t_start = 0.0;               // what friction remembers
-  std::array<std::vector<std::pair<int, double>>, 2> D;  // rows of the jump's x and y
+  Vec2 in_situ = Vec2::Zero();              // Pa
+  Vec2 bonded = Vec2::Zero();               // jump when it split (m)
+  double bound = -1.0;                      // friction's bound where it is held fixed (Pa)
+  double w_t_start = 0.0, r_t_start = 0.0;  // what friction remembers
+  std::array<SparseRow, 2> D;               // rows of the jump's x and y
 };
 
 using Pieces = std::vector<LawAnswer::Piece>;
@@ -65,7 +68,8 @@ class TangentFactor {
  private:
   Eigen::MatrixXd solve_first(const Eigen::MatrixXd& b) const;
   std::vector<std::size_t> places_that_differ(const std::vector<Eigen::Matrix2d>& R) const;
-  void solve_for(const std::vector<ContactPlace>& places, const std::vector<std::size_t>& which);
+  void solve_for(const std::vector<ContactPlace>& places, const std::vector<std::size_t>& fresh);
+  Eigen::MatrixXd change_of(const Eigen::MatrixXd& y) const;
 
   bool symmetric_ = true, stiffened_ = false;
   Eigen::VectorXd scale_;
@@ -75,7 +79,9 @@ class TangentFactor {
   std::vector<int> known_;          // where a place's two columns of Z stand in Z_all_; -1: not computed
   Eigen::MatrixXd Z_all_;
   std::vector<std::size_t> changed_;
-  Eigen::MatrixXd U_, Z_, M_;
+  std::vector<SparseRow> U_;                    // columns of U, of changed places alone
+  Eigen::MatrixXd Z_;                           // and of Z
+  std::vector<Eigen::Matrix2d> M_;              // blocks
   Eigen::PartialPivLU<Eigen::MatrixXd> small_;  // I + M U^T Z
 };
 
