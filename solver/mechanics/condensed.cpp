@@ -65,41 +65,64 @@ void number_jumps(const State& state, const IntactBody& body, Condensed& out) {
   }
 }
 
-// Takes columns and entries over from `before`; returns which unknowns are new.
-std::vector<char> take_over(const Condensed* before, Condensed& out) {
-  const Eigen::Index n = static_cast<Eigen::Index>(out.columns.size());
-  out.K_jj = Eigen::MatrixXd::Zero(n, n);
-  out.S = Eigen::MatrixXd::Zero(n, n);
-  std::vector<char> is_new(out.columns.size(), 1);
-  if (before == nullptr) return is_new;
+// Which unknown of `before` each of `now` is; -1: a new one.
+std::vector<Eigen::Index> origins(const Condensed& before, const Condensed& now) {
   const auto key = [](const JumpColumn& c) { return std::make_tuple(c.node, c.component, c.particles); };
   std::map<std::tuple<int, int, std::uint64_t>, Eigen::Index> known;
-  for (Eigen::Index k = 0; k < before->size(); ++k)
-    known.emplace(key(*before->columns[static_cast<std::size_t>(k)]), k);
-  std::vector<Eigen::Index> from(out.columns.size(), -1);
+  for (std::size_t k = 0; k < before.columns.size(); ++k)
+    known.emplace(key(*before.columns[k]), static_cast<Eigen::Index>(k));
+  std::vector<Eigen::Index> from(now.columns.size(), -1);
   for (std::size_t k = 0; k < from.size(); ++k) {
-    const auto found = known.find(key(*out.columns[k]));
-    if (found == known.end()) continue;
-    from[k] = found->second;
-    out.columns[k] = before->columns[static_cast<std::size_t>(found->second)];
-    is_new[k] = 0;
+    const auto found = known.find(key(*now.columns[k]));
+    if (found != known.end()) from[k] = found->second;
   }
-  for (Eigen::Index b = 0; b < n; ++b) {
-    const Eigen::Index c = from[static_cast<std::size_t>(b)];
-    if (c < 0) continue;
-    for (Eigen::Index a = 0; a < n; ++a) {
-      const Eigen::Index r = from[static_cast<std::size_t>(a)];
-      if (r >= 0) out.K_jj(a, b) = before->K_jj(r, c), out.S(a, b) = before->S(r, c);
+  return from;
+}
+
+// Takes columns and entries over from `before`, runs of unknowns that follow each other there too at once; returns the
+// place of each new unknown among these, -1 for others.
+std::vector<int> take_over(const Condensed* before, Condensed& out) {
+  const std::size_t n = out.columns.size();
+  out.S.resize(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
+  const std::vector<Eigen::Index> from = before == nullptr ? std::vector<Eigen::Index>(n, -1) : origins(*before, out);
+  struct Run {
+    Eigen::Index first, from, count;
+  };
+  std::vector<Run> runs;
+  std::vector<int> fresh(n, -1);
+  int next = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    if (from[k] < 0) {
+      fresh[k] = next++;
+      continue;
+    }
+    out.columns[k] = before->columns[static_cast<std::size_t>(from[k])];
+    if (k > 0 && from[k - 1] >= 0 && from[k] == from[k - 1] + 1) {
+      ++runs.back().count;
+    } else {
+      runs.push_back({static_cast<Eigen::Index>(k), from[k], 1});
     }
   }
-  return is_new;
+  for (std::size_t k = 0; k < n; ++k) {
+    if (from[k] < 0) continue;
+    for (const Run& run : runs) {
+      out.S.col(static_cast<Eigen::Index>(k)).segment(run.first, run.count) =
+          before->S.col(from[k]).segment(run.from, run.count);
+    }
+  }
+  return fresh;
 }
+
+// Columns of K_jj of new unknowns, one beside the other, and their rows, transposed: equal but for round-off.
+struct NewStiffness {
+  Eigen::MatrixXd columns, rows;
+};
 
 using Entries = std::vector<std::pair<int, double>>;
 
 // Adds what one particle contributes to the new columns and their entries of K_jj.
 void add_particle(const LocalStiffness& K, const Bin& bin, const IntactBody& body, const Condensed& condensed,
-                  const State& state, const std::vector<char>& is_new, Eigen::MatrixXd& K_jj, std::vector<Entries>& G) {
+                  const State& state, const std::vector<int>& fresh, NewStiffness& K_jj, std::vector<Entries>& G) {
   std::array<Unknown, 18> base, jump;
   for (int k = 0; k < 18; ++k) {
     const auto at = static_cast<std::size_t>(k);
@@ -110,13 +133,16 @@ void add_particle(const LocalStiffness& K, const Bin& bin, const IntactBody& bod
   for (int b = 0; b < 18; ++b) {
     const Unknown& column = jump[static_cast<std::size_t>(b)];
     if (column.index < 0) continue;
-    const bool fresh = is_new[static_cast<std::size_t>(column.index)] != 0;
+    const int column_of = fresh[static_cast<std::size_t>(column.index)];
     for (int a = 0; a < 18; ++a) {
       const Unknown &row = base[static_cast<std::size_t>(a)], &other = jump[static_cast<std::size_t>(a)];
-      if (fresh && row.index >= 0 && K(a, b) != 0.0)
+      if (column_of >= 0 && row.index >= 0 && K(a, b) != 0.0)
         G[static_cast<std::size_t>(column.index)].emplace_back(row.index, row.factor * column.factor * K(a, b));
-      if (other.index >= 0 && (fresh || is_new[static_cast<std::size_t>(other.index)] != 0))
-        K_jj(other.index, column.index) += other.factor * column.factor * K(a, b);
+      if (other.index < 0) continue;
+      const int row_of = fresh[static_cast<std::size_t>(other.index)];
+      const double k = other.factor * column.factor * K(a, b);
+      if (column_of >= 0) K_jj.columns(other.index, column_of) += k;
+      if (row_of >= 0) K_jj.rows(column.index, row_of) += k;
     }
   }
 }
@@ -124,14 +150,15 @@ void add_particle(const LocalStiffness& K, const Bin& bin, const IntactBody& bod
 // Assembles G and K_jj of the new unknowns. Particles come cell by cell in the order of their ids, so that sums do not
 // depend on how copies group them into bins.
 std::vector<Entries> assemble_jumps(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
-                                    const IntactBody& body, const std::vector<char>& is_new, Condensed& out) {
+                                    const IntactBody& body, const std::vector<int>& fresh, const Condensed& out,
+                                    NewStiffness& K_jj) {
   std::vector<Entries> G(out.columns.size());
   const Particles& p = state.particles;
   const auto touches_new = [&](const Bin& bin) {
     for (const int record : bin.record) {
       for (int component = 0; component < 2; ++component) {
         const int index = jump_unknown(out, record, component).index;
-        if (index >= 0 && is_new[static_cast<std::size_t>(index)] != 0) return true;
+        if (index >= 0 && fresh[static_cast<std::size_t>(index)] >= 0) return true;
       }
     }
     return false;
@@ -159,7 +186,7 @@ std::vector<Entries> assemble_jumps(const Scene& scene, const std::vector<Elasti
       LocalStiffness K = LocalStiffness::Zero();
       const Gradients g = gradients_at(scene, state.grid, m.bin->i, m.bin->j, {p.x[m.q], p.y[m.q]}, p.half(m.q));
       add_stiffness(rocks[p.rock[m.q]], g, body.halved() ? 2.0 * p.V[m.q] : p.V[m.q], K);
-      add_particle(K, *m.bin, body, out, state, is_new, out.K_jj, G);
+      add_particle(K, *m.bin, body, out, state, fresh, K_jj, G);
     }
   }
   return G;
@@ -196,10 +223,10 @@ Lanes products(const SparseVector& Y, const std::vector<Lanes>& dense) {
 
 // S = K_jj - Y^T Y for the new unknowns. Rows that only one of two columns has add 0 to their product, so that its
 // digits are the same whichever of them is the dense one.
-void condense_new(const std::vector<char>& is_new, int unknowns, Condensed& out) {
+void condense_new(const std::vector<int>& place, const NewStiffness& K_jj, int unknowns, Condensed& out) {
   std::vector<std::size_t> fresh;
-  for (std::size_t k = 0; k < is_new.size(); ++k) {
-    if (is_new[k] != 0) fresh.push_back(k);
+  for (std::size_t k = 0; k < place.size(); ++k) {
+    if (place[k] >= 0) fresh.push_back(k);
   }
   std::vector<Lanes> dense(fresh.empty() ? 0 : static_cast<std::size_t>(unknowns), Lanes{Eight::Zero(), Eight::Zero()});
   for (std::size_t from = 0; from < fresh.size(); from += lanes) {
@@ -209,14 +236,15 @@ void condense_new(const std::vector<char>& is_new, int unknowns, Condensed& out)
       for (std::size_t k = 0; k < Y.index.size(); ++k)
         dense[static_cast<std::size_t>(Y.index[k])][c / 8][static_cast<Eigen::Index>(c % 8)] = Y.value[k];
     }
-    for (std::size_t b = 0; b < is_new.size(); ++b) {
-      if (is_new[b] != 0 && b < fresh[from]) continue;  // done with b among the dense ones
+    for (std::size_t b = 0; b < place.size(); ++b) {
+      if (place[b] >= 0 && b < fresh[from]) continue;  // done with b among the dense ones
       const Lanes product = products(out.columns[b]->Y, dense);
       for (std::size_t c = 0; c < count; ++c) {
         const auto i = static_cast<Eigen::Index>(fresh[from + c]), j = static_cast<Eigen::Index>(b);
+        const auto f = static_cast<Eigen::Index>(from + c);
         // K_jj is symmetric but for round-off, and which of two unknowns is new depends on what came before.
         out.S(i, j) = out.S(j, i) =
-            0.5 * (out.K_jj(i, j) + out.K_jj(j, i)) - product[c / 8][static_cast<Eigen::Index>(c % 8)];
+            0.5 * (K_jj.rows(j, f) + K_jj.columns(j, f)) - product[c / 8][static_cast<Eigen::Index>(c % 8)];
       }
     }
     for (std::size_t c = 0; c < count; ++c) {
@@ -227,16 +255,16 @@ void condense_new(const std::vector<char>& is_new, int unknowns, Condensed& out)
 }
 
 // Y of the new unknowns, and the rows that all of them load.
-void factor_columns(const IntactBody& body, const std::vector<char>& is_new, std::vector<Entries> G, Condensed& out) {
+void factor_columns(const IntactBody& body, const std::vector<int>& place, std::vector<Entries> G, Condensed& out) {
   std::vector<SparseVector> fresh;
-  for (std::size_t k = 0; k < is_new.size(); ++k) {
-    if (is_new[k] != 0) fresh.push_back(summed(std::move(G[k])));
+  for (std::size_t k = 0; k < place.size(); ++k) {
+    if (place[k] >= 0) fresh.push_back(summed(std::move(G[k])));
   }
   std::vector<SparseVector> Y = body.factor().forward(fresh);
   std::size_t next = 0;
   std::vector<int> loaded;
-  for (std::size_t k = 0; k < is_new.size(); ++k) {
-    if (is_new[k] != 0) {
+  for (std::size_t k = 0; k < place.size(); ++k) {
+    if (place[k] >= 0) {
       auto column = std::make_shared<JumpColumn>(*out.columns[k]);
       column->G = std::move(fresh[next]);
       column->Y = std::move(Y[next++]);
@@ -303,9 +331,12 @@ Condensed condense(const Scene& scene, const std::vector<Elasticity>& rocks, con
   Condensed out;
   out.masters = body.halved() ? mirrored(state, state.masters) : state.masters;
   number_jumps(state, body, out);
-  const std::vector<char> is_new = take_over(before, out);
-  factor_columns(body, is_new, assemble_jumps(scene, rocks, state, body, is_new, out), out);
-  condense_new(is_new, body.unknowns(), out);
+  const std::vector<int> fresh = take_over(before, out);
+  const auto n = out.size(),
+             n_fresh = static_cast<Eigen::Index>(std::ranges::count_if(fresh, [](int f) { return f >= 0; }));
+  NewStiffness K_jj{Eigen::MatrixXd::Zero(n, n_fresh), Eigen::MatrixXd::Zero(n, n_fresh)};
+  factor_columns(body, fresh, assemble_jumps(scene, rocks, state, body, fresh, out, K_jj), out);
+  condense_new(fresh, K_jj, body.unknowns(), out);
   return out;
 }
 

@@ -45,8 +45,7 @@ struct Condensed {
   std::vector<Master> masters;                             // of the state's records, the mirror's ties included
   std::vector<std::array<int, 2>> jump_of_record;          // a master record's own jump unknowns; -1: none
   std::vector<std::shared_ptr<const JumpColumn>> columns;  // one a jump unknown
-  Eigen::MatrixXd K_jj;                                    // N/m per metre of thickness
-  Eigen::MatrixXd S;                                       // the same
+  Eigen::MatrixXd S;                                       // N/m per metre of thickness
   TreeFactor::Branches loaded;                             // what of the intact body's factor jumps load
   BodyLoad load;                                           // none until load_body()
   Eigen::Index size() const { return S.rows(); }
