@@ -140,7 +140,7 @@ void make_trials(const Scene& scene, const std::vector<Elasticity>& rocks, State
     trial.increment = extend_tip(scene, trial.state, trial.state.tips[k], increment_of(scene, tip));
     trial.model.body = run.model.body;
     trial.model.condensed = run.model.condensed;
-    update_model(scene, rocks, trial.state, trial.model);
+    update_equations(scene, rocks, trial.state, trial.model);
   }
 }
 

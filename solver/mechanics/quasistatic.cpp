@@ -1,5 +1,6 @@
 #include "mechanics/quasistatic.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -13,13 +14,11 @@ namespace strata {
 
 namespace {
 
-// Fields of the particles of some bins; `which` empty: of all.
+// Fields of all particles.
 template <class Shape>
-void set_particles(const std::vector<Vec2>& u, const std::vector<char>& which, State& state) {
+void set_particles(const std::vector<Vec2>& u, State& state) {
   Particles& p = state.particles;
-  for (std::size_t b = 0; b < state.bins.size(); ++b) {
-    if (!which.empty() && which[b] == 0) continue;
-    const Bin& bin = state.bins[b];
+  for (const Bin& bin : state.bins) {
     for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
          q += static_cast<std::size_t>(bin.stride)) {
       const Gradients g = gradients_of<Shape>(state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
@@ -34,8 +33,26 @@ void set_particles(const std::vector<Vec2>& u, const std::vector<char>& which, S
   }
 }
 
-void set_particles(const Scene& scene, const std::vector<Vec2>& u, const std::vector<char>& which, State& state) {
-  with_shape(scene.numerics.shape, [&](auto shape) { set_particles<decltype(shape)>(u, which, state); });
+void set_particles(const Scene& scene, const std::vector<Vec2>& u, State& state) {
+  with_shape(scene.numerics.shape, [&](auto shape) { set_particles<decltype(shape)>(u, state); });
+}
+
+// Displacement gradients of the particles that are watched.
+void set_watched(const QuasistaticModel& model, const std::vector<Vec2>& u, State& state) {
+  Particles& p = state.particles;
+  std::size_t at = 0;
+  for (const std::size_t b : model.watched) {
+    const Bin& bin = state.bins[b];
+    std::array<Vec2, 9> u_i;
+    for (std::size_t n = 0; n < 9; ++n) u_i[n] = u[static_cast<std::size_t>(bin.record[n])];
+    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+         q += static_cast<std::size_t>(bin.stride)) {
+      const std::array<double, 18>& N = model.slopes[at++];
+      Vec2 d_x = Vec2::Zero(), d_y = Vec2::Zero();
+      for (std::size_t n = 0; n < 9; ++n) d_x += N[n] * u_i[n], d_y += N[9 + n] * u_i[n];
+      p.g_xx[q] = d_x.x(), p.g_xy[q] = d_y.x(), p.g_yx[q] = d_x.y(), p.g_yy[q] = d_y.y();
+    }
+  }
 }
 
 // Whether J's widest ring around a tip weighs a bin: a node of it lies inside.
@@ -52,22 +69,63 @@ bool weighed(const Scene& scene, const State& state, const Bin& bin) {
   });
 }
 
-std::vector<char> watched_bins(const Scene& scene, const State& state, const Bonds& bonds) {
-  if (scene.body.acceleration_m_s2) return std::vector<char>(state.bins.size(), 1);  // its work needs them all
+std::vector<std::size_t> watched_bins(const Scene& scene, const State& state, const Bonds& bonds) {
+  const bool all = scene.body.acceleration_m_s2.has_value();  // its work needs them
   std::vector<char> particle(state.particles.size(), 0);
   for (const BondSample& sample : bonds.samples) {
     for (const BondSample::Share& share : sample.particles) particle[share.index] = 1;
   }
-  std::vector<char> watched(state.bins.size(), 0);
-  for (std::size_t b = 0; b < watched.size(); ++b) {
+  std::vector<std::size_t> watched;
+  for (std::size_t b = 0; b < state.bins.size(); ++b) {
     const Bin& bin = state.bins[b];
-    if (weighed(scene, state, bin)) watched[b] = 1;
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
-         q += static_cast<std::size_t>(bin.stride)) {
-      if (particle[q] != 0) watched[b] = 1;
-    }
+    bool watch = all || weighed(scene, state, bin);
+    for (auto q = static_cast<std::size_t>(bin.first); !watch && q < static_cast<std::size_t>(bin.last);
+         q += static_cast<std::size_t>(bin.stride))
+      watch = particle[q] != 0;
+    if (watch) watched.push_back(b);
   }
   return watched;
+}
+
+// Slopes of the nodes' functions at the particles of some bins.
+std::vector<std::array<double, 18>> slopes_at(const Scene& scene, const State& state,
+                                              const std::vector<std::size_t>& bins) {
+  std::vector<std::array<double, 18>> slopes;
+  const Particles& p = state.particles;
+  for (const std::size_t b : bins) {
+    const Bin& bin = state.bins[b];
+    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+         q += static_cast<std::size_t>(bin.stride)) {
+      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
+      std::array<double, 18>& N = slopes.emplace_back();
+      std::copy(g.N_x.begin(), g.N_x.end(), N.begin());
+      std::copy(g.N_y.begin(), g.N_y.end(), N.begin() + 9);
+    }
+  }
+  return slopes;
+}
+
+// D of the vertices of all surfaces, one below the other.
+Eigen::SparseMatrix<double, Eigen::RowMajor> jumps_at_vertices(const State& state, const Condensed& condensed) {
+  std::vector<Eigen::Triplet<double>> entries;
+  int row = 0;
+  for (const std::vector<SurfaceStencil>& stencils : state.vertex_stencils) {
+    for (const SurfaceStencil& stencil : stencils) {
+      for (std::size_t n = 0; n < 9; ++n) {
+        if (stencil.plus[n] == stencil.minus[n]) continue;
+        for (int c = 0; c < 2; ++c) {
+          const Unknown plus = jump_unknown(condensed, stencil.plus[n], c),
+                        minus = jump_unknown(condensed, stencil.minus[n], c);
+          if (plus.index >= 0) entries.emplace_back(row + c, plus.index, plus.factor * stencil.N[n]);
+          if (minus.index >= 0) entries.emplace_back(row + c, minus.index, -minus.factor * stencil.N[n]);
+        }
+      }
+      row += 2;
+    }
+  }
+  Eigen::SparseMatrix<double, Eigen::RowMajor> D(row, condensed.size());
+  D.setFromTriplets(entries.begin(), entries.end());
+  return D;
 }
 
 // Masses of the copies of cut nodes (kg/m), which tell those that have rock; others' are not complete.
@@ -85,10 +143,9 @@ void weigh_copies(const Scene& scene, State& state) {
 }
 
 // The records that some bins reach.
-std::vector<int> records_of(const State& state, const std::vector<char>& which) {
+std::vector<int> records_of(const State& state, const std::vector<std::size_t>& bins) {
   std::vector<char> reached(static_cast<std::size_t>(state.copies.records()), 0);
-  for (std::size_t b = 0; b < which.size(); ++b) {
-    if (which[b] == 0) continue;
+  for (const std::size_t b : bins) {
     for (const int record : state.bins[b].record) reached[static_cast<std::size_t>(record)] = 1;
   }
   std::vector<int> records;
@@ -108,6 +165,17 @@ double plastic_slip(const ContactPlace& place, const LawAnswer& r, const Vec2& w
 
 void update_model(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, QuasistaticModel& model,
                   bool halve) {
+  update_equations(scene, rocks, state, model, halve);
+  model.bonds = find_bonds(scene, state);
+  model.watched = watched_bins(scene, state, model.bonds);
+  model.asked = ask_for(scene, state, *model.body, records_of(state, model.watched));
+  model.slopes.clear();
+  if (!scene.body.acceleration_m_s2) model.slopes = slopes_at(scene, state, model.watched);
+  model.vertex_jumps = jumps_at_vertices(state, model.condensed);
+}
+
+void update_equations(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, QuasistaticModel& model,
+                      bool halve) {
   rebuild(scene, rocks, state);
   weigh_copies(scene, state);
   update_stencil_weights(scene, state);
@@ -119,9 +187,6 @@ void update_model(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
   }
   model.condensed = condense(scene, rocks, state, *model.body, same_body ? &model.condensed : nullptr);
   forget_solution(scene, rocks, state, model);
-  model.bonds = find_bonds(scene, state);
-  model.watched = watched_bins(scene, state, model.bonds);
-  model.asked = ask_for(scene, state, *model.body, records_of(state, model.watched));
 }
 
 void forget_solution(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
@@ -142,14 +207,18 @@ Equilibrium find_equilibrium(const Scene& scene, double time, State& state, Quas
 std::vector<Vec2> set_all_particles(const Scene& scene, State& state, const QuasistaticModel& model) {
   const Asked all = ask_for_all(state, *model.body);
   std::vector<Vec2> u = displacements(scene, state, *model.body, model.condensed, model.shown, all);
-  set_particles(scene, u, {}, state);
+  set_particles(scene, u, state);
   return u;
 }
 
 void set_fields(const Scene& scene, State& state, QuasistaticModel& model, const Equilibrium& equilibrium) {
   model.shown = equilibrium.j;
-  set_particles(scene, displacements(scene, state, *model.body, model.condensed, model.shown, model.asked),
-                model.watched, state);
+  const std::vector<Vec2> u = displacements(scene, state, *model.body, model.condensed, model.shown, model.asked);
+  if (scene.body.acceleration_m_s2) {
+    set_particles(scene, u, state);
+  } else {
+    set_watched(model, u, state);
+  }
   for (std::size_t k = 0; k < model.places.size(); ++k) {
     const ContactPlace& place = model.places[k];
     const LawAnswer& r = equilibrium.answers[k];
@@ -158,10 +227,10 @@ void set_fields(const Scene& scene, State& state, QuasistaticModel& model, const
     s.w = equilibrium.w[k];
     s.reaction = r.n * place.n + r.t * tangent_of(place.n);
   }
-  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
-    auto& vertices = state.surfaces[k].vertices;
-    for (std::size_t q = 0; q < vertices.size(); ++q)
-      vertices[q].w = jump_at(model.condensed, state.vertex_stencils[k][q], equilibrium.j);
+  const Eigen::VectorXd w = model.vertex_jumps * equilibrium.j;
+  Eigen::Index row = 0;
+  for (Surface& surface : state.surfaces) {
+    for (SurfacePoint& vertex : surface.vertices) vertex.w = w.segment<2>(row), row += 2;
   }
 }
 

@@ -2,6 +2,8 @@
 // surfaces.
 #pragma once
 
+#include <Eigen/SparseCore>
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -17,11 +19,14 @@ struct QuasistaticModel {
   std::vector<ContactPlace> places;
   TangentFactor factor;
   Bonds bonds;
-  std::vector<char> watched;  // bins whose fields decide what happens next: around tips, beside bonded interfaces; with
-                              // a body force all
-  Asked asked;                // the records that these reach
-  Eigen::VectorXd j;          // the last solution, as a first guess
-  Eigen::VectorXd shown;      // the solution whose fields the state was given
+  std::vector<std::size_t> watched;  // bins whose fields decide what happens next: around tips, beside bonded
+                                     // interfaces; with a body force all
+  Asked asked;                                 // the records that these reach
+  std::vector<std::array<double, 18>> slopes;  // of the nine nodes' functions at each of their particles (1/m), those
+                                               // along x first; none with a body force
+  Eigen::SparseMatrix<double, Eigen::RowMajor> vertex_jumps;  // jumps at all vertices (x and y) by the jump unknowns
+  Eigen::VectorXd j;                                          // the last solution, as a first guess
+  Eigen::VectorXd shown;                                      // the solution whose fields the state was given
 };
 
 /// Rebuilds what follows from the state's particles and surfaces (copies, springs of tips, stencils) and brings the
@@ -29,6 +34,10 @@ struct QuasistaticModel {
 /// mirror-symmetric scene. Throws NumericalFailure as rebuild_copies() and IntactBody do.
 void update_model(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, QuasistaticModel& model,
                   bool halve = true);
+
+/// The same without what set_fields() needs, for a model that equilibria are only asked for.
+void update_equations(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, QuasistaticModel& model,
+                      bool halve = true);
 
 /// Takes back what a model has of former solutions: first guess and factor; friction's memory is that of the state.
 void forget_solution(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,

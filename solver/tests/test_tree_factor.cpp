@@ -119,8 +119,7 @@ TEST_CASE("displacements of a few records are those among all") {
   CHECK(largest > 1e-5);
   set_all_particles(s.run.scene, s.state(), s.model);
   std::size_t same = 0;
-  for (std::size_t b = 0; b < s.state().bins.size(); ++b) {
-    if (s.model.watched[b] == 0) continue;
+  for (const std::size_t b : s.model.watched) {
     for (int q = s.state().bins[b].first; q < s.state().bins[b].last; ++q) {
       const auto k = static_cast<std::size_t>(q);
       CHECK(few.g_yy[k] == s.state().particles.g_yy[k]);
