@@ -12,13 +12,14 @@ namespace {
 
 using Motion = Eigen::Matrix<double, 18, 1>;  // of a bin's nodes, (u_x, u_y) in turn
 
-// What quarters add to the stiffness of a bin whose particles q of its own stand for four.
-LocalStiffness stiffness_of_quarters(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
-                                     const Quarters& quarters, const Bin& bin) {
-  LocalStiffness more = LocalStiffness::Zero();
+// Visits what replaces the particles of a bin that stand for four: each itself with its area taken back, and its
+// quarters; visit(rock, functions, area).
+template <class Visit>
+void for_each_change(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
+                     const Quarters& quarters, const Bin& bin, Visit visit) {
   const Particles& p = state.particles;
   const auto add = [&](std::size_t q, const Vec2& x, const Vec2& half, double V) {
-    add_stiffness(rocks[p.rock[q]], gradients_at(scene, state.grid, bin.i, bin.j, x, half), V, more);
+    visit(rocks[p.rock[q]], gradients_at(scene, state.grid, bin.i, bin.j, x, half), V);
   };
   for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
        q += static_cast<std::size_t>(bin.stride)) {
@@ -26,7 +27,34 @@ LocalStiffness stiffness_of_quarters(const Scene& scene, const std::vector<Elast
     add(q, {p.x[q], p.y[q]}, p.half(q), -p.V[q]);
     quarters.for_each_point(p, q, [&](const Vec2& x, const Vec2& half, double V) { add(q, x, half, V); });
   }
+}
+
+// What quarters add to the stiffness of a bin.
+LocalStiffness stiffness_of_quarters(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
+                                     const Quarters& quarters, const Bin& bin) {
+  LocalStiffness more = LocalStiffness::Zero();
+  for_each_change(scene, rocks, state, quarters, bin,
+                  [&](const Elasticity& rock, const Gradients& g, double V) { add_stiffness(rock, g, V, more); });
   return more;
+}
+
+// What they add to the forces that hold a motion of its nodes, V B^T s (N/m): a bin that is like no other needs no
+// stiffness.
+Motion forces_of_quarters(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
+                          const Quarters& quarters, const Bin& bin, const Motion& moved) {
+  Motion f = Motion::Zero();
+  const auto add = [&](const Elasticity& rock, const Gradients& g, double V) {
+    Vec2 d_x = Vec2::Zero(), d_y = Vec2::Zero();
+    for (std::size_t n = 0; n < 9; ++n) {
+      const Vec2 u = moved.segment<2>(static_cast<Eigen::Index>(2 * n));
+      d_x += g.N_x[n] * u, d_y += g.N_y[n] * u;
+    }
+    const Stress s = stress_of(rock, d_x.x(), d_y.x(), d_x.y(), d_y.y());
+    for (std::size_t n = 0; n < 9; ++n)
+      f.segment<2>(static_cast<Eigen::Index>(2 * n)) += V * s.on({g.N_x[n], g.N_y[n]});
+  };
+  for_each_change(scene, rocks, state, quarters, bin, add);
+  return f;
 }
 
 // Whether the spans of a bin's nodes are all h, but for round-off.
@@ -68,14 +96,14 @@ void exert_quarters(const Scene& scene, const std::vector<Elasticity>& rocks, co
   std::map<int, LocalStiffness> alike;
   for (const Bin& bin : state.bins) {
     if (!any_whole(state, quarters, bin)) continue;
-    const int rock = rock_of_alike(state, quarters, bin);
-    const auto own = [&] { return stiffness_of_quarters(scene, rocks, state, quarters, bin); };
-    auto known = alike.find(rock);
-    if (known == alike.end() || rock < 0) known = alike.insert_or_assign(rock, own()).first;
     Motion moved;
     for (Eigen::Index n = 0; n < 9; ++n)
       moved.segment<2>(2 * n) = u[static_cast<std::size_t>(bin.record[static_cast<std::size_t>(n)])];
-    const Motion f = known->second * moved;
+    const int rock = rock_of_alike(state, quarters, bin);
+    if (rock >= 0 && !alike.contains(rock))
+      alike.emplace(rock, stiffness_of_quarters(scene, rocks, state, quarters, bin));
+    const Motion f =
+        rock >= 0 ? Motion(alike.at(rock) * moved) : forces_of_quarters(scene, rocks, state, quarters, bin, moved);
     for (std::size_t n = 0; n < 9; ++n) {
       const auto r = static_cast<std::size_t>(bin.record[n]);
       const auto k = static_cast<Eigen::Index>(2 * n);
