@@ -193,6 +193,9 @@ def _symmetry(content: dict[str, Any]) -> Ingredient:
     settings = ["domain.bottom=traction", f"domain.height_m={2.0 * height!r}", f"fracture.path_m={toml(path)}"]
     if "tip_y_m" in content["stop"]:
         settings.append(f"stop.tip_y_m={height + float(content['stop']['tip_y_m'])!r}")
+    if "fine_top_m" in content["numerics"]:
+        fine = float(content["numerics"]["fine_top_m"])
+        settings += [f"numerics.fine_top_m={height + fine!r}", f"numerics.fine_bottom_m={height - fine!r}"]
     if strata.get("along", "y") == "y":
         settings += [f"{key}={toml(value)}" for key, value in mirrored(strata, height).items()]
     return Ingredient("symmetry", label, MODELLED, "both halves of the block", tuple(settings), View(fold_m=height))

@@ -74,6 +74,14 @@ def test_layers_are_mirrored() -> None:
     assert both["strata.interfaces"] == ["soft", "weak", "weak", "soft"]
 
 
+def test_fine_cells_are_mirrored() -> None:
+    """Where fine cells end above the symmetry line they end as far below it; a scene without such an end gets none."""
+    for name, ends in (("exp6_stress_reversal", ("numerics.fine_top_m=120.0", "numerics.fine_bottom_m=40.0")), ("exp5_parallel_interface", ())):
+        content = content_of(EXPERIMENTS / f"{name}.toml", "perfect", ())
+        both = next(one for one in ingredients_of(content) if one.id == "symmetry")
+        assert tuple(key for key in both.settings if ".fine_" in key) == ends
+
+
 def run_of(folder: Path, steps: list[tuple[float, float, float]], closing_Pa: float = 2.0e6) -> Run:
     """A run made up from its growth steps (inlet pressure, x, y), under a closing stress."""
     run = load(write_run(folder, steps, end_Pa=steps[-1][0] + 1e4))
