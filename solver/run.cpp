@@ -186,9 +186,9 @@ void save_good_state(Run& run) {
 // Keeps the state where it is as a resumed run finds it.
 void keep_if_sound(Run& run) {
   if (run.state.step % steps_between_sound_states(run) != 0 || run.state.step <= run.good.step) return;
-  if (run.statics) restart_quasistatic(run.scene, run.rocks, run.state, *run.statics);  // as a resumed run starts
   run.good = run.state;
   run.good_mark = run.recorder.mark();
+  if (run.statics) restart_quasistatic(run.scene, run.rocks, run.state, *run.statics);  // as a resumed run starts
 }
 
 // Steps from run.state to the end of the run.
