@@ -43,6 +43,10 @@ struct Grid {
   int column_at(double x) const { return holding(x_knots, x); }
   int row_at(double y) const { return holding(y_knots, y); }
 
+  // The same, found at once where it is `guess` (0 ... nx, or ny).
+  int column_at(double x, int guess) const { return holding(x_knots, x, guess); }
+  int row_at(double y, int guess) const { return holding(y_knots, y, guess); }
+
   // Column (row) of the node before a coordinate (m): that of the cell, from node to node, that it is in.
   int cell_along_x(double x) const { return column_at(x) - (x < this->x(column_at(x)) ? 1 : 0); }
   int cell_along_y(double y) const { return row_at(y) - (y < this->y(row_at(y)) ? 1 : 0); }
@@ -64,6 +68,10 @@ struct Grid {
   int holding(const std::vector<double>& t, double x) const {
     if (t.empty()) return static_cast<int>(std::floor(x / h + 0.5));
     return static_cast<int>(std::upper_bound(t.begin() + 1, t.end() - 1, x) - t.begin()) - 2;
+  }
+  int holding(const std::vector<double>& t, double x, int guess) const {
+    const auto k = static_cast<std::size_t>(guess + 1);
+    return k + 1 < t.size() && t[k] <= x && x < t[k + 1] ? guess : holding(t, x);
   }
   bool fine(const std::vector<double>& t, int n, double from, double to) const {
     if (t.empty()) return true;

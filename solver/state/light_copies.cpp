@@ -14,6 +14,11 @@ std::size_t master_of(const State& state, int record) {
   return static_cast<std::size_t>(state.masters[static_cast<std::size_t>(record)].record);
 }
 
+// |grad N_n| (1/m).
+double slope(const Gradients& g, std::size_t n) {
+  return std::sqrt(g.N_x[n] * g.N_x[n] + g.N_y[n] * g.N_y[n]);
+}
+
 // int N_i ds over a surface's split points (m) of each record that they part, -1 for all others.
 std::vector<double> reached_by_points(const Scene& scene, const State& state, std::size_t surface) {
   std::vector<double> reached(state.masters.size(), -1.0);
@@ -44,8 +49,7 @@ std::vector<double> worth_of_particles(const Scene& scene, const State& state, c
     for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
          q += static_cast<std::size_t>(bin.stride)) {
       const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
-      for (std::size_t n = 0; n < 9; ++n)
-        worth[master_of(state, bin.record[n])] += p.V[q] * std::hypot(g.N_x[n], g.N_y[n]);
+      for (std::size_t n = 0; n < 9; ++n) worth[master_of(state, bin.record[n])] += p.V[q] * slope(g, n);
     }
   }
   return worth;
@@ -101,17 +105,17 @@ std::vector<Corners> corners_of(const Scene& scene, const State& state) {
   for (std::size_t q = 0; q < p.size(); ++q) {
     const int i = grid.column_at(p.x[q]), j = grid.row_at(p.y[q]);
     if (i < 0 || i > grid.nx || j < 0 || j > grid.ny || near[static_cast<std::size_t>(grid.node(i, j))] == 0) continue;
+    const Gradients g = gradients_at(scene, grid, i, j, {p.x[q], p.y[q]}, p.half(q));
     for (std::size_t n = 0; n < 9; ++n) {
       const int node = grid.node(i + static_cast<int>(n % 3) - 1, j + static_cast<int>(n / 3) - 1);
       const int c = state.copies.cut_of_node[static_cast<std::size_t>(node)];
       if (c < 0 || !has_corners(state.copies.cut[static_cast<std::size_t>(c)])) continue;
       const SideWord key = state.copies.cut[static_cast<std::size_t>(c)].key(p.sides[q]);
-      const Gradients g = gradients_at(scene, grid, i, j, {p.x[q], p.y[q]}, p.half(q));
       corners[static_cast<std::size_t>(c)].node = node;
       auto& of_node = corners[static_cast<std::size_t>(c)].all;
       auto at = std::find_if(of_node.begin(), of_node.end(), [key](const Corner& corner) { return corner.key == key; });
       if (at == of_node.end()) at = of_node.insert(of_node.end(), Corner{key});
-      at->worth += p.V[q] * std::hypot(g.N_x[n], g.N_y[n]);
+      at->worth += p.V[q] * slope(g, n);
     }
   }
   return corners;

@@ -182,19 +182,24 @@ struct SortKey {
   auto order() const { return std::tie(j, i, sides, id); }
 };
 
+// Which surfaces split any node of the stencil around a node.
+std::vector<SideWord> reach_of(const Grid& g, const std::vector<SideWord>& mask) {
+  std::vector<SideWord> along(mask.size(), 0), reach(mask.size(), 0);
+  for (std::size_t node = 1; node + 1 < mask.size(); ++node) along[node] = mask[node - 1] | mask[node] | mask[node + 1];
+  const auto row = static_cast<std::size_t>(g.columns());
+  for (std::size_t node = row; node + row < mask.size(); ++node)
+    reach[node] = along[node - row] | along[node] | along[node + row];
+  return reach;
+}
+
 std::vector<SortKey> sort_keys(const State& state, const std::vector<SideWord>& mask) {
   const Particles& p = state.particles;
   const Grid& g = state.grid;
-  std::vector<SideWord> reach(mask.size(), 0);  // which surfaces split any node of the stencil around a node
-  for (int j = 0; j <= g.ny; ++j) {
-    for (int i = 0; i <= g.nx; ++i) {
-      for (int node : stencil_nodes(g, i, j))
-        reach[static_cast<std::size_t>(g.node(i, j))] |= mask[static_cast<std::size_t>(node)];
-    }
-  }
+  const std::vector<SideWord> reach = reach_of(g, mask);
   std::vector<SortKey> keys(p.size());
+  int i = 0, j = 0;  // those of the particle before, most often
   for (std::size_t k = 0; k < p.size(); ++k) {
-    const int i = g.column_at(p.x[k]), j = g.row_at(p.y[k]);
+    i = g.column_at(p.x[k], i), j = g.row_at(p.y[k], j);
     if (i < 0 || i > g.nx || j < 0 || j > g.ny) {
       throw NumericalFailure("a particle has left the block at x = " + std::to_string(p.x[k]) +
                              ", y = " + std::to_string(p.y[k]) + " m: parts move freely, or the time step is too long");
