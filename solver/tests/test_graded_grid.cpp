@@ -231,6 +231,11 @@ TEST_CASE("places are found in their spans") {
     for (const double f : {-0.499, 0.0, 0.499}) CHECK(g.column_at(g.x(i) + f * g.span_x(i)) == i);
   }
   for (int j = 0; j <= g.ny; ++j) CHECK(g.row_at(g.y(j) + 0.49 * g.span_y(j)) == j);
+  for (int i = 0; i <= g.nx; ++i) {
+    for (int guess = 0; guess <= g.nx; ++guess)
+      CHECK(g.column_at(g.x(i) - 0.49 * g.span_x(i), guess) + g.column_at(g.x(i) + 0.49 * g.span_x(i), guess) == 2 * i);
+  }
+  CHECK(g.row_at(g.y(-1), 0) == -1);
   CHECK(g.fine_around(20.0, 25.0, 10.0));
   CHECK_FALSE(g.fine_around(20.0, 25.0, 12.0));
   CHECK_FALSE(g.fine_around(28.0, 25.0, 4.0));

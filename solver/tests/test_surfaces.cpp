@@ -41,6 +41,30 @@ TEST_CASE("geometry of a kinked path") {
   CHECK(s.vertices[5].arc == Approx(2.4));
 }
 
+// Requires the nearest of all segments of a long path that winds back beside itself, of pieces of two lengths, the
+// first and the last one extended by 4 m. Mutations that fail: segments skipped three times as far as they may be, the
+// first one skipped.
+TEST_CASE("the nearest segment of a long path") {
+  Surface s = path({{0.0, 0.0}, {0.0, 12.0}, {3.0, 14.0}, {6.0, 12.0}, {5.0, 1.0}, {8.0, -3.0}});
+  extend(s, true, {11.0, 9.0}, 1.3);
+  extend(s, true, {-12.0, -9.0}, 1.3);
+  extend(s, false, {-7.0, -9.0}, 0.2);
+  const std::size_t n = s.points.size();
+  for (double x = -12.0; x < 16.0; x += 0.37) {
+    for (double y = -14.0; y < 18.0; y += 0.41) {
+      double nearest = 1e9;
+      for (std::size_t k = 0; k < n; ++k) {
+        const Vec2 from = s.vertices[k].x, d = (s.vertices[k + 1].x - from).normalized(), at{x, y};
+        const double along =
+            std::clamp((at - from).dot(d), k == 0 ? -4.0 : 0.0, s.points[k].A + (k + 1 == n ? 4.0 : 0.0));
+        nearest = std::min(nearest, (at - from - along * d).norm());
+      }
+      CAPTURE(x, y);
+      CHECK(std::abs(project(s, {x, y}, 4.0).distance) == Approx(nearest).epsilon(1e-12));
+    }
+  }
+}
+
 // Requires signed distances and foot points on a straight surface, beyond its ends on the straight extension, and on
 // the surface itself, which counts as +.
 TEST_CASE("projection on a straight surface") {
