@@ -139,7 +139,9 @@ void measure_tips(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
     const TipGeometry at = tip_geometry(scene, rocks, state, tip);
     RingSums sums{};
     for (const Bin& bin : state.bins) add_bin(scene, rocks, state, at, bin, sums);
-    add_faces(state.fracture(), at.frame, face_places(state, at, tip.at_back), sums);
+    for (std::size_t k = 0; k < state.fracture().points.size(); ++k) {
+      if (const auto place = face_place(state, at, tip.at_back, k)) add_face(state.fracture(), at.frame, *place, sums);
+    }
     finish_tip(scene, at, state, sums, tip);
   }
 }

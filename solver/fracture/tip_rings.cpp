@@ -163,49 +163,42 @@ AuxiliaryFields williams(const Elasticity& rock, int mode, double r, double thet
   return aux;
 }
 
-std::vector<FacePlace> face_places(const State& state, const TipGeometry& at, bool at_back) {
+std::optional<FacePlace> face_place(const State& state, const TipGeometry& at, bool at_back, std::size_t point) {
   const Grid& grid = state.grid;
   const Surface& fracture = state.fracture();
   const auto& points = fracture.points;
-  const auto n = static_cast<std::ptrdiff_t>(points.size());
-  std::vector<FacePlace> places;
-  for (std::ptrdiff_t k = 0; k < n; ++k) {
-    const SurfacePoint& s = points[static_cast<std::size_t>(k)];
-    const double from_tip = at_back ? fracture.length() - s.arc : s.arc;
-    if (from_tip > 1.5 * at.rings.back().outer + 2.0 * grid.h) continue;
-    FacePlace place;
-    place.point = static_cast<std::size_t>(k);
-    place.ahead = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k + (at_back ? 1 : -1), 0, n - 1));
-    place.behind = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k + (at_back ? -1 : 1), 0, n - 1));
-    place.span = std::abs(points[place.ahead].arc - points[place.behind].arc);
-    const double near = from_tip - 0.5 * s.A, far = from_tip + 0.5 * s.A;
-    place.root = 4.0 / at.rock.E_prime * 2.0 * (std::sqrt(far) - std::sqrt(std::max(near, 0.0))) / std::sqrt(2.0 * pi);
-    const Vec2 forward = at.frame.local(at_back ? Vec2{s.n.y(), -s.n.x()} : Vec2{-s.n.y(), s.n.x()});
-    const int i = grid.column_at(s.x.x()), j = grid.row_at(s.x.y());
-    for (std::size_t r = 0; r < at.rings.size(); ++r) {
-      const Weight weight = weight_at(grid, at.frame, nodal_weights(grid, at.frame.tip, at.rings[r], i, j), i, j, s.x);
-      place.q[r] = weight.q, place.dq_ds[r] = weight.grad.dot(forward);
-    }
-    places.push_back(place);
+  const SurfacePoint& s = points[point];
+  const double from_tip = at_back ? fracture.length() - s.arc : s.arc;
+  if (from_tip > 1.5 * at.rings.back().outer + 2.0 * grid.h) return std::nullopt;
+  const auto k = static_cast<std::ptrdiff_t>(point), last = static_cast<std::ptrdiff_t>(points.size()) - 1;
+  FacePlace place;
+  place.point = point;
+  place.ahead = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k + (at_back ? 1 : -1), 0, last));
+  place.behind = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k + (at_back ? -1 : 1), 0, last));
+  place.span = std::abs(points[place.ahead].arc - points[place.behind].arc);
+  const double near = from_tip - 0.5 * s.A, far = from_tip + 0.5 * s.A;
+  place.root = 4.0 / at.rock.E_prime * 2.0 * (std::sqrt(far) - std::sqrt(std::max(near, 0.0))) / std::sqrt(2.0 * pi);
+  const Vec2 forward = at.frame.local(at_back ? Vec2{s.n.y(), -s.n.x()} : Vec2{-s.n.y(), s.n.x()});
+  const int i = grid.column_at(s.x.x()), j = grid.row_at(s.x.y());
+  for (std::size_t r = 0; r < at.rings.size(); ++r) {
+    const Weight weight = weight_at(grid, at.frame, nodal_weights(grid, at.frame.tip, at.rings[r], i, j), i, j, s.x);
+    place.q[r] = weight.q, place.dq_ds[r] = weight.grad.dot(forward);
   }
-  return places;
+  return place;
 }
 
-void add_faces(const Surface& fracture, const Frame& frame, const std::vector<FacePlace>& places, RingSums& sums) {
+void add_face(const Surface& fracture, const Frame& frame, const FacePlace& place, RingSums& sums) {
   const auto net = [&](std::size_t k) -> Vec2 {
     const SurfacePoint& s = fracture.points[k];
     return frame.sign * frame.local(s.P * s.n - s.in_situ + s.reaction);
   };
-  for (const FacePlace& place : places) {
-    const SurfacePoint& s = fracture.points[place.point];
-    const Vec2 w = frame.sign * frame.local(s.w), t = net(place.point);
-    const Vec2 dt_ds =
-        place.span > 0.0 ? Vec2{(net(place.ahead) - net(place.behind)) / place.span} : Vec2{Vec2::Zero()};
-    for (std::size_t j = 0; j < sums.size(); ++j) {
-      sums[j].J += s.A * (w.dot(t) * place.dq_ds[j] + place.q[j] * w.dot(dt_ds));
-      sums[j].I[0] += t.y() * place.q[j] * place.root;
-      sums[j].I[1] += t.x() * place.q[j] * place.root;
-    }
+  const SurfacePoint& s = fracture.points[place.point];
+  const Vec2 w = frame.sign * frame.local(s.w), t = net(place.point);
+  const Vec2 dt_ds = place.span > 0.0 ? Vec2{(net(place.ahead) - net(place.behind)) / place.span} : Vec2{Vec2::Zero()};
+  for (std::size_t j = 0; j < sums.size(); ++j) {
+    sums[j].J += s.A * (w.dot(t) * place.dq_ds[j] + place.q[j] * w.dot(dt_ds));
+    sums[j].I[0] += t.y() * place.q[j] * place.root;
+    sums[j].I[1] += t.x() * place.q[j] * place.root;
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "state/elasticity.hpp"
 #include "state/state.hpp"
@@ -77,8 +78,8 @@ struct FacePlace {
   std::array<double, ring_fractions.size()> q{}, dq_ds{};  // weights and their slope towards the tip (1/m)
 };
 
-/// Points of the fracture that rings around a tip may weigh. Throws nothing.
-std::vector<FacePlace> face_places(const State& state, const TipGeometry& at, bool at_back);
+/// The place of a point of the fracture, if rings around a tip may weigh it. Throws nothing.
+std::optional<FacePlace> face_place(const State& state, const TipGeometry& at, bool at_back, std::size_t point);
 
 // J (N/m) and what the interaction with unit K_I and K_II gives, of one ring.
 struct RingSum {
@@ -87,9 +88,9 @@ struct RingSum {
 };
 using RingSums = std::array<RingSum, ring_fractions.size()>;
 
-/// Adds the face terms: w . d(t q)/ds of J, and of the interaction integral + t 4/E' q/sqrt(2 pi r) dr, exact for t
+/// Adds a face's terms: w . d(t q)/ds of J, and of the interaction integral + t 4/E' q/sqrt(2 pi r) dr, exact for t
 /// constant on a piece. Throws nothing.
-void add_faces(const Surface& fracture, const Frame& frame, const std::vector<FacePlace>& places, RingSums& sums);
+void add_face(const Surface& fracture, const Frame& frame, const FacePlace& place, RingSums& sums);
 
 /// J, K and the next direction of growth from the sums of all rings. Throws NumericalFailure where they are not finite.
 void finish_tip(const Scene& scene, const TipGeometry& at, const State& state, const RingSums& sums, Tip& tip);

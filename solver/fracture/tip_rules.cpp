@@ -95,7 +95,9 @@ std::vector<TipRule> make_tip_rules(const Scene& scene, const std::vector<Elasti
   for (const Tip& tip : state.tips) {
     TipRule& rule = rules.emplace_back();
     rule.at = tip_geometry(scene, rocks, state, tip);
-    rule.faces = face_places(state, rule.at, tip.at_back);
+    for (std::size_t k = 0; k < state.fracture().points.size(); ++k) {
+      if (const auto place = face_place(state, rule.at, tip.at_back, k)) rule.faces.push_back(*place);
+    }
     for (const Bin& bin : state.bins) add_bin(rocks, state, bin, rule);
   }
   return rules;
@@ -107,7 +109,7 @@ void measure_tips(const Scene& scene, const std::vector<TipRule>& rules, State& 
     const DomainSums domain = domain_of(rule, state.particles);
     RingSums sums{};
     for (std::size_t k = 0; k < sums.size(); ++k) sums[k] = {domain.J[k], {domain.I_1, domain.I_2}};
-    add_faces(state.fracture(), rule.at.frame, rule.faces, sums);
+    for (const FacePlace& place : rule.faces) add_face(state.fracture(), rule.at.frame, place, sums);
     finish_tip(scene, rule.at, state, sums, state.tips[t]);
   }
 }
