@@ -89,7 +89,7 @@ TEST_CASE("the fracture's fields are those of its vertices") {
 
 // Requires that large fields come back bit for bit, noise and smooth ones, of one value, one chunk and more, in less
 // room than they take and no more than a hundredth above it where nothing shrinks. Mutations that fail: two planes
-// exchanged, all planes stored, a stored block's last one not marked, the last chunk not filled up.
+// exchanged, all planes stored, a stored block's last one not marked.
 TEST_CASE("large fields are packed without loss") {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder.path / "fields.h5";
