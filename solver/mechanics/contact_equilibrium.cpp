@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 #include <string>
+#include <utility>
 
 namespace strata {
 
@@ -227,14 +228,17 @@ double step_length(const State& state, const Condensed& condensed, const std::ve
 }
 
 // Whether what is out of balance of the solution on `pieces` is what a factor that followed changes lost of the digits:
-// corrections by it then bring them back.
+// corrections by it then bring them back. Leaves `at` as it was where they do not.
 bool refine(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
             const TangentFactor& factor, const Pieces& pieces, Equilibrium& at) {
   constexpr int corrections = 2;
-  for (int k = 0; k < corrections && at.pieces == pieces; ++k) {
-    at.j += factor.solve(at.unbalanced);
-    evaluate(state, condensed, places, at);
-    if (at.pieces == pieces && in_balance(condensed, at)) return true;
+  Equilibrium better = at;
+  for (int k = 0; k < corrections && better.pieces == pieces; ++k) {
+    better.j += factor.solve(better.unbalanced);
+    evaluate(state, condensed, places, better);
+    if (better.pieces != pieces || !in_balance(condensed, better)) continue;
+    at = std::move(better);
+    return true;
   }
   return false;
 }
