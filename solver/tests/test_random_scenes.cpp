@@ -281,10 +281,10 @@ TEST_CASE("random scenes with inertia on graded grids keep their balances") {
 // Requires that every random scene ends in equilibria that are in balance (from the particles' stress) and satisfy
 // every law and inequality to 1e-8 of the load, or in a reported mechanism, in a bounded number of steps.
 // Mutations that fail: friction's given bound left out on open faces, or its bound 10 % less; its memory left out; no
-// line search; the force of tips' springs left out; no check of the smallest eigenvalue (0). On the way here 10 % of
-// the scenes ended in "no equilibrium".
+// line search; the force of tips' springs left out; no check of the smallest eigenvalue (0); corrections that do not
+// bring digits back but stay (152). On the way here 10 % of the scenes ended in "no equilibrium".
 TEST_CASE("random scenes end in a right state or a mechanism") {
-  run_seeds(0, 150);
+  run_seeds(0, 155);
 }
 
 // The same for 1000; hidden since it takes a minute: test_random_scenes "[thousand]".
