@@ -192,8 +192,7 @@ void update_equations(const Scene& scene, const std::vector<Elasticity>& rocks, 
 void forget_solution(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
                      QuasistaticModel& model) {
   model.places = contact_places(scene, rocks, state, model.condensed);
-  std::destroy_at(&model.factor);
-  std::construct_at(&model.factor);
+  model.factor = TangentFactor{};
   model.j.resize(0);
 }
 
