@@ -19,8 +19,8 @@ struct QuasistaticModel {
   std::vector<ContactPlace> places;
   TangentFactor factor;
   Bonds bonds;
-  std::vector<std::size_t> watched;  // bins whose fields decide what happens next: around tips, beside bonded
-                                     // interfaces; with a body force all
+  std::vector<std::size_t> watched;            // bins whose fields decide what happens next: around tips, beside bonded
+                                               // interfaces; with a body force all
   Asked asked;                                 // the records that these reach
   std::vector<std::array<double, 18>> slopes;  // of the nine nodes' functions at each of their particles (1/m), those
                                                // along x first; none with a body force
