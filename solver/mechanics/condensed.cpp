@@ -84,12 +84,16 @@ std::vector<Eigen::Index> origins(const Condensed& before, const Condensed& now)
 std::vector<int> take_over(const Condensed* before, Condensed& out) {
   const std::size_t n = out.columns.size();
   out.S.resize(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
-  const std::vector<Eigen::Index> from = before == nullptr ? std::vector<Eigen::Index>(n, -1) : origins(*before, out);
+  std::vector<int> fresh(n, -1);
+  if (before == nullptr) {
+    std::iota(fresh.begin(), fresh.end(), 0);
+    return fresh;
+  }
+  const std::vector<Eigen::Index> from = origins(*before, out);
   struct Run {
     Eigen::Index first, from, count;
   };
   std::vector<Run> runs;
-  std::vector<int> fresh(n, -1);
   int next = 0;
   for (std::size_t k = 0; k < n; ++k) {
     if (from[k] < 0) {

@@ -396,8 +396,7 @@ Eigen::MatrixXd opening_per_pressure(const State& state, const Condensed& conden
     }
     if (equilibrium.pieces[k] == LawAnswer::Piece::open) load.col(column) = place.A * opening.col(column);
   }
-  const Eigen::MatrixXd C = opening.transpose() * factor.solve(load);
-  return C;
+  return opening.transpose() * factor.solve(load);
 }
 
 }  // namespace strata
