@@ -98,7 +98,7 @@ double points_of(const Scene& scene) {
 
 double memory_need(const Scene& scene) {
   const double points = points_of(scene);
-  if (scene.numerics.mechanics != Numerics::Mechanics::quasistatic) return 24e6 + 1250.0 * points;
+  if (scene.numerics.mechanics != Numerics::Mechanics::quasistatic) return 20e6 + 1250.0 * points;
   const Cells cells = cells_of(scene);
   const double n = 2.0 * (0.5 * cells.x * (is_halved(scene) ? 1.0 : 2.0) + 1.0) * (cells.y + 1.0);
   // Factors by nested dissection fill up as n log n (George 1973): in Experiment 1 83 MB are measured at 1 m cells and
