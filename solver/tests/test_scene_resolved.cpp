@@ -122,7 +122,7 @@ TEST_CASE("Memory needed grows with the particles, more so with a factor, and le
   Scene scene = good(layered);
   const double points = 4.0 * 80.0 * 80.0;
   CHECK(points_of(scene) == Approx(points));
-  CHECK(memory_need(scene) == Approx(24e6 + 1250.0 * points));
+  CHECK(memory_need(scene) == Approx(20e6 + 1250.0 * points));
   scene.numerics.mechanics = Numerics::Mechanics::quasistatic;
   const auto factor = [](double unknowns) { return 700.0 * unknowns * std::log2(unknowns); };
   const double whole = process + 330.0 * points + factor(2.0 * 81.0 * 81.0);
