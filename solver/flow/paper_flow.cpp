@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace strata {
 
@@ -42,7 +43,7 @@ Diffusion::Diffusion(const Channel& channel, double mobility, Fluid::TimeRule ru
   before[inlet_] = after[inlet_] = 0.0;
   if (theta_ == 0.0) {
     require_stable(channel, mobility, dt);
-    before_ = before, after_ = after;
+    before_ = std::move(before), after_ = std::move(after);
     return;
   }
   // Elimination without pivoting: the matrix is diagonally dominant.

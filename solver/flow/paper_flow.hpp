@@ -52,8 +52,8 @@ class Diffusion {
 
   std::size_t inlet_ = 0, middle_ = 0;
   double theta_ = 0.0;
-  std::vector<double> before_,
-      after_;  // parts of the differences to its neighbours that a vertex takes in an explicit step
+  // Parts of the differences to its neighbours that a vertex takes in an explicit step.
+  std::vector<double> before_, after_;
   std::vector<Two> factor_, inverse_, upper_, rhs_, P_;  // of elimination (upper over its pivot), and the pressures
   double inverse_middle_ = 1.0, P_middle_ = 0.0;
 };

@@ -13,9 +13,9 @@ namespace strata {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-// numerics.ring_cells is 4 by default: rings of 3.2 to 4 cells are wide enough to leave the tip's own error inside.
-// None is smaller than this, since the tip's own error would fill it. An interface that would ask for less flags the K;
-// an edge nearer than 3.5 cells, or a second tip nearer than 7, does not: the ring then reaches over it.
+
+// No ring is smaller than this, since the tip's own error would fill it. An interface that would ask for less flags the
+// K; an edge nearer than 3.5 cells, or a second tip nearer than 7, does not: the ring then reaches over it.
 constexpr double narrowest_ring_cells = 2.5;
 constexpr double trusted_cells = 4.0;   // distance to an interface below which K is flagged
 constexpr double inner_fraction = 0.6;  // q is 1 inside this fraction of a ring's radius: 0.3 costs 1 % in J

@@ -9,6 +9,8 @@
 
 namespace strata {
 
+// Radii of the rings over the widest one's: numerics.ring_cells is 4 by default, and rings of 3.2 to 4 cells are wide
+// enough to leave the tip's own error inside.
 constexpr std::array<double, 3> ring_fractions{0.8, 0.9, 1.0};
 
 struct Frame {

@@ -21,19 +21,6 @@ void add_to_row(SparseRow& row, const Unknown& unknown, double weight) {
   row.emplace_back(unknown.index, weight * unknown.factor);
 }
 
-std::array<SparseRow, 2> jump_rows(const Condensed& condensed, const SurfaceStencil& stencil) {
-  std::array<SparseRow, 2> rows;
-  for (std::size_t n = 0; n < 9; ++n) {
-    if (stencil.plus[n] == stencil.minus[n]) continue;
-    for (int component = 0; component < 2; ++component) {
-      SparseRow& row = rows[static_cast<std::size_t>(component)];
-      add_to_row(row, jump_unknown(condensed, stencil.plus[n], component), stencil.N[n]);
-      add_to_row(row, jump_unknown(condensed, stencil.minus[n], component), -stencil.N[n]);
-    }
-  }
-  return rows;
-}
-
 double times(const SparseRow& row, const Eigen::VectorXd& j) {
   double sum = 0.0;
   for (const auto& [index, value] : row) sum += value * j[index];
@@ -330,6 +317,19 @@ Equilibrium solve_with_fixed_bounds(const State& state, const Condensed& condens
 }
 
 }  // namespace
+
+std::array<SparseRow, 2> jump_rows(const Condensed& condensed, const SurfaceStencil& stencil) {
+  std::array<SparseRow, 2> rows;
+  for (std::size_t n = 0; n < 9; ++n) {
+    if (stencil.plus[n] == stencil.minus[n]) continue;
+    for (int component = 0; component < 2; ++component) {
+      SparseRow& row = rows[static_cast<std::size_t>(component)];
+      add_to_row(row, jump_unknown(condensed, stencil.plus[n], component), stencil.N[n]);
+      add_to_row(row, jump_unknown(condensed, stencil.minus[n], component), -stencil.N[n]);
+    }
+  }
+  return rows;
+}
 
 Vec2 jump_at(const Condensed& condensed, const SurfaceStencil& stencil, const Eigen::VectorXd& j) {
   const std::array<SparseRow, 2> rows = jump_rows(condensed, stencil);

@@ -1,6 +1,7 @@
 // Static equilibrium of the condensed block with the laws of its split surfaces.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "mechanics/condensed.hpp"
@@ -38,6 +39,9 @@ Equilibrium solve_equilibrium(const State& state, const Condensed& condensed, co
 Eigen::MatrixXd opening_per_pressure(const State& state, const Condensed& condensed,
                                      const std::vector<ContactPlace>& places, const Equilibrium& equilibrium,
                                      const TangentFactor& factor);
+
+/// Rows of the jump's x and y at a stencil in terms of the jump unknowns. Throws nothing.
+std::array<SparseRow, 2> jump_rows(const Condensed& condensed, const SurfaceStencil& stencil);
 
 /// Jump (m) at a stencil for the jump unknowns j.
 Vec2 jump_at(const Condensed& condensed, const SurfaceStencil& stencil, const Eigen::VectorXd& j);

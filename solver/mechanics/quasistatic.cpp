@@ -111,16 +111,10 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> jumps_at_vertices(const State& stat
   int row = 0;
   for (const std::vector<SurfaceStencil>& stencils : state.vertex_stencils) {
     for (const SurfaceStencil& stencil : stencils) {
-      for (std::size_t n = 0; n < 9; ++n) {
-        if (stencil.plus[n] == stencil.minus[n]) continue;
-        for (int c = 0; c < 2; ++c) {
-          const Unknown plus = jump_unknown(condensed, stencil.plus[n], c),
-                        minus = jump_unknown(condensed, stencil.minus[n], c);
-          if (plus.index >= 0) entries.emplace_back(row + c, plus.index, plus.factor * stencil.N[n]);
-          if (minus.index >= 0) entries.emplace_back(row + c, minus.index, -minus.factor * stencil.N[n]);
-        }
+      for (const SparseRow& of : jump_rows(condensed, stencil)) {
+        for (const auto& [index, value] : of) entries.emplace_back(row, index, value);
+        ++row;
       }
-      row += 2;
     }
   }
   Eigen::SparseMatrix<double, Eigen::RowMajor> D(row, condensed.size());

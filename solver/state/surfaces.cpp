@@ -45,6 +45,7 @@ Projection project(const Surface& surface, const Vec2& x, double reach) {
     const double farthest = distance + (surface.points[k].A + before + after) * (1.0 + 1e-9);
     const double away2 = (x - v[k].x).squaredNorm();
     if (away2 > farthest * farthest) {
+      // A path between two places is no shorter than the straight line; a hundredth is left for round-off.
       k = skip_far(surface, k, 0.99 * (std::sqrt(away2) - distance));
       continue;
     }
