@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <string>
 #include <utility>
+
+#include "mechanics/contact_pieces.hpp"
 
 namespace strata {
 
@@ -154,22 +155,23 @@ int unknowns_that_move(const TangentFactor& factor, Eigen::Index n) {
 // a solution they may for a while, so the factor is then that of a tangent slightly stiffer. A sliver of rock with
 // fewer particles than its copies of nodes have unknowns (between a fracture and an interface that it meets, or in a
 // sharp turn) has motions without strain, too; no load drives them, and the same stiffening holds them.
-bool factor_tangent(const Condensed& condensed, const std::vector<ContactPlace>& places, const Equilibrium& at,
-                    const State& state, TangentFactor& factor) {
+bool factor_tangent(const Condensed& condensed, const std::vector<ContactPlace>& places,
+                    const std::vector<LawAnswer>& answers, const State& state, TangentFactor& factor) {
   constexpr double stiffening = 1e-9;
   constexpr double on_the_way = 1e-6;  // parts that come to rest later: a step that does not leave all sight of it
   constexpr int sliver =
       24;  // unknowns: fewer than the copies of 3 x 3 nodes have with one jump each, and some to spare
-  if (factor.pieces == at.pieces && factor.scale().size() == condensed.size()) return true;
-  factor.pieces = at.pieces;
-  if (factor.scale().size() == condensed.size() && factor.follow(places, at.answers)) return true;
-  Eigen::MatrixXd T = tangent(condensed.S, places, at.answers);
-  if (factor.factorise(T, places, at.answers)) return true;
+  const Pieces pieces = pieces_of(answers);
+  if (factor.pieces == pieces && factor.scale().size() == condensed.size()) return true;
+  factor.pieces = pieces;
+  if (factor.scale().size() == condensed.size() && factor.follow(places, answers)) return true;
+  Eigen::MatrixXd T = tangent(condensed.S, places, answers);
+  if (factor.factorise(T, places, answers)) return true;
   T.diagonal() *= 1.0 + stiffening;
-  if (!factor.factorise(T, places, at.answers, true)) report_mechanism(state, places);
+  if (!factor.factorise(T, places, answers, true)) report_mechanism(state, places);
   if (unknowns_that_move(factor, condensed.size()) <= sliver) return true;
   T.diagonal() *= 1.0 + on_the_way;
-  factor.factorise(T, places, at.answers, true);
+  factor.factorise(T, places, answers, true);
   factor.pieces.clear();
   return false;
 }
@@ -236,32 +238,43 @@ bool iterate(const State& state, const Condensed& condensed, const std::vector<C
              TangentFactor& factor, bool bounds_held, Equilibrium& at) {
   constexpr int most_iterations = 200;
   constexpr int plain_iterations = 15;  // without line search it ends within some 5 where it does
-  constexpr int checked = 5;            // from this iteration on what is in balance has been found to be so
-  bool singular = false, stays = false;
-  std::set<Pieces> been;
+  constexpr int solved_from = 5;        // from this iteration on balance counts, whatever the pieces
+  constexpr double lost_digits = 1e-4;  // no more is out of balance for the digits that a factor has lost
   if (bounds_held) {
     evaluate(state, condensed, places, at);
     if (at.residual < balanced) return true;
   } else {
     answer(state, places, at);
   }
+  bool singular = false, stays = false;
+  Pivoting pivoting{first_pieces(places, at.answers, !at.j.isZero(0.0))};
   for (at.iterations = 1; at.iterations <= most_iterations; ++at.iterations) {
-    const Pieces pieces = at.pieces;
-    const bool sliding = slips(at.answers);
-    if (sliding && at.iterations > 2 * plain_iterations) return false;
-    // The whole step follows from the pieces alone: where they come back it goes round for ever.
-    if (sliding && !bounds_held && at.iterations >= checked && !been.insert(pieces).second) return false;
-    singular = !factor_tangent(condensed, places, at, state, factor);
+    const bool search = at.iterations > plain_iterations && !slips(at.answers);
+    if (search) {
+      pivoting.on = at.answers;
+    } else if (at.iterations > 1) {
+      pivot(places, at.answers, pivoting);
+    }
+    const Pieces pieces = pieces_of(pivoting.on);
+    if (slips(pivoting.on) && at.iterations > 2 * plain_iterations) return false;
+    singular = !factor_tangent(condensed, places, pivoting.on, state, factor);
     // A tangent that was stiffened does not solve its pieces at once: from there on by what is out of balance.
     const Eigen::VectorXd next = stays ? Eigen::VectorXd(at.j + factor.solve(at.unbalanced))
-                                       : solve_on_pieces(state, condensed, places, at.answers, factor);
-    const bool search = !sliding && (bounds_held || at.iterations > plain_iterations);
+                                       : solve_on_pieces(state, condensed, places, pivoting.on, factor);
     const double length = search ? step_length(state, condensed, places, at, next) : 1.0;
     at.j = length == 1.0 ? next : Eigen::VectorXd(at.j + length * (next - at.j));
-    evaluate(state, condensed, places, at);
     if (!at.j.allFinite()) report_mechanism(state, places);
+    answer(state, places, at);
+    if (!bounds_held && at.pieces != pieces && at.iterations < solved_from) continue;
+    evaluate(state, condensed, places, at);
+    // Places on the border of two pieces go by digits that a factor which has followed changes lost.
+    if (length == 1.0 && at.pieces != pieces && factor.changed() && at.residual > balanced &&
+        at.residual < lost_digits) {
+      at.j += factor.solve(at.unbalanced);
+      evaluate(state, condensed, places, at);
+    }
     stays = bounds_held && length < 1.0 && at.pieces == pieces;
-    const bool solved = at.residual < balanced && (bounds_held || (length == 1.0 && at.iterations > 4));
+    const bool solved = at.residual < balanced && (bounds_held || (length == 1.0 && at.iterations >= solved_from));
     const bool settled = solved || (length == 1.0 && at.pieces == pieces);
     if (!settled) continue;
     if (singular && !bounds_held) report_mechanism(state, places);
@@ -308,7 +321,7 @@ Equilibrium solve_with_fixed_bounds(const State& state, const Condensed& condens
   evaluate(state, condensed, places, at);
   factor.pieces.clear();  // bounds that follow the normal reaction have another tangent
   if (at.residual < 1e-8) {
-    if (factor_tangent(condensed, places, at, state, factor)) return at;
+    if (factor_tangent(condensed, places, at.answers, state, factor)) return at;
     report_mechanism(state, places);
   }
   throw NumericalFailure("no equilibrium of the surfaces was found; the force out of balance is " +

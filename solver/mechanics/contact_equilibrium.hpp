@@ -27,11 +27,12 @@ std::vector<ContactPlace> contact_places(const Scene& scene, const std::vector<E
                                          const Condensed& condensed);
 
 /// Solves S j = sum_s A_s D_s^T (P n - t_in_situ + r(D j)) + condensed.load.jumps for the pressures that the state's
-/// points hold, by Newton's method on the pieces of the laws (semismooth). Where that does not end by itself,
-/// friction's bounds are held fixed, so that the problem is the minimum of a convex energy (Newton with a line search),
-/// and renewed until they agree with the normal reactions. What is returned depends on loads and memory only, not on
-/// `start` (the first guess, or empty). `factor` is reused where the pieces are the same, and left for what follows.
-/// Throws NumericalFailure where parts of the block move freely, or where no equilibrium is found.
+/// points hold, by Newton's method on the pieces of the laws (semismooth, by block pivoting; see contact_pieces.hpp).
+/// Where that does not end by itself, friction's bounds are held fixed, so that the problem is the minimum of a convex
+/// energy (Newton with a line search), and renewed until they agree with the normal reactions. What is returned depends
+/// on loads and memory only, not on `start` (the first guess, or empty). `factor` is reused where the pieces are the
+/// same, and left for what follows. Throws NumericalFailure where parts of the block move freely, or where no
+/// equilibrium is found.
 Equilibrium solve_equilibrium(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
                               const Eigen::VectorXd& start, TangentFactor& factor);
 

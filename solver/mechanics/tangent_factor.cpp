@@ -15,8 +15,14 @@ constexpr double smallest_eigenvalue = 1e-12;
 // A tangent that has followed changes has lost digits: what is as weak as this is factorised to be sure of it.
 constexpr double smallest_to_follow = 1e-9;
 
-// Columns of changed places over unknowns from which on a factorisation takes no longer: those to solve for, and all.
-constexpr double most_fresh = 0.15;
+// Where the matrix of the changes is no worse conditioned than this (an estimate in the 1-norm), none of them has let
+// go what the first tangent held: contact that opens or slides leaves 1e-4 of its stiffness, some of them beside each
+// other 1e-6.
+constexpr double sound = 1e-7;
+
+// Rows of reactions that changed over unknowns from which on a factorisation takes no longer: those to solve for, and
+// all.
+constexpr double most_fresh = 0.2;
 constexpr double most_changed = 0.35;
 
 // The smallest eigenvalue of a scaled tangent in size, by two inverse iterations.
@@ -31,13 +37,6 @@ double weakest(Solve solve, Eigen::Index n) {
     eigenvalue = x.allFinite() ? 1.0 / x.norm() : 0.0;
   }
   return eigenvalue;
-}
-
-std::vector<Eigen::Matrix2d> reaction_tangents(const std::vector<ContactPlace>& places,
-                                               const std::vector<LawAnswer>& answers) {
-  std::vector<Eigen::Matrix2d> R;
-  for (std::size_t k = 0; k < places.size(); ++k) R.push_back(places[k].A * tangent_matrix(places[k], answers[k]));
-  return R;
 }
 
 }  // namespace
@@ -70,14 +69,14 @@ bool TangentFactor::factorise(const Eigen::MatrixXd& T, const std::vector<Contac
                               const std::vector<LawAnswer>& answers, bool stiffened) {
   stiffened_ = stiffened;
   symmetric_ = std::none_of(answers.begin(), answers.end(), [](const LawAnswer& r) { return r.dt_dn != 0.0; });
-  R_ = reaction_tangents(places, answers);
-  known_.assign(places.size(), -1);
+  first_ = answers;
+  known_.assign(places.size(), {-1, -1});
   Z_all_.resize(T.rows(), 0);
-  changed_.clear();
+  V_.clear();
   scale_.resize(0);
   if (T.rows() == 0) return true;  // a fracture so short that it splits no node
   scale_ = T.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = scale_.asDiagonal() * T * scale_.asDiagonal();
+  const auto scaled = scale_.asDiagonal() * T * scale_.asDiagonal();
   if (symmetric_) {
     llt_.compute(scaled);
     return llt_.info() == Eigen::Success &&
@@ -87,70 +86,77 @@ bool TangentFactor::factorise(const Eigen::MatrixXd& T, const std::vector<Contac
   return weakest([&](const auto& x) { return Eigen::VectorXd(lu_.solve(x)); }, T.rows()) > smallest_eigenvalue;
 }
 
-std::vector<std::size_t> TangentFactor::places_that_differ(const std::vector<Eigen::Matrix2d>& R) const {
-  std::vector<std::size_t> differ;
-  for (std::size_t k = 0; k < R.size(); ++k) {
-    if (R[k] != R_[k]) differ.push_back(k);
+// The rows of reactions that are others now than in T_0.
+std::vector<TangentFactor::Change> TangentFactor::changes(const std::vector<ContactPlace>& places,
+                                                          const std::vector<LawAnswer>& answers) const {
+  std::vector<Change> changes;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const LawAnswer &before = first_[k], &now = answers[k];
+    const Vec2 n = places[k].n, t = tangent_of(n);
+    const double A = places[k].A, n_n = A * (before.dn_dn - now.dn_dn), t_n = A * (before.dt_dn - now.dt_dn),
+                 t_t = A * (before.dt_dt - now.dt_dt);
+    if (n_n != 0.0) changes.push_back({k, 0, n, n_n * n});
+    if (t_n != 0.0 || t_t != 0.0) changes.push_back({k, 1, t, t_n * n + t_t * t});
   }
-  return differ;
+  return changes;
 }
 
-// Adds the columns of Z of places that do not have them yet.
-void TangentFactor::solve_for(const std::vector<ContactPlace>& places, const std::vector<std::size_t>& fresh) {
+// Adds the columns of Z that are not known yet.
+void TangentFactor::solve_for(const std::vector<ContactPlace>& places, const std::vector<Change>& fresh) {
   if (fresh.empty()) return;
-  Eigen::MatrixXd U = Eigen::MatrixXd::Zero(scale_.size(), 2 * static_cast<Eigen::Index>(fresh.size()));
+  Eigen::MatrixXd U = Eigen::MatrixXd::Zero(scale_.size(), static_cast<Eigen::Index>(fresh.size()));
   const Eigen::Index before = Z_all_.cols();
   for (std::size_t f = 0; f < fresh.size(); ++f) {
-    known_[fresh[f]] = static_cast<int>(before + 2 * static_cast<Eigen::Index>(f));
+    const Change& change = fresh[f];
+    const auto column = static_cast<Eigen::Index>(f);
+    known_[change.place][change.component] = static_cast<int>(before + column);
     for (std::size_t c = 0; c < 2; ++c) {
-      for (const auto& [row, value] : places[fresh[f]].D[c]) U(row, static_cast<Eigen::Index>(2 * f + c)) += value;
+      for (const auto& [row, value] : places[change.place].D[c])
+        U(row, column) += change.u[static_cast<Eigen::Index>(c)] * value;
     }
   }
   Z_all_.conservativeResize(Eigen::NoChange, before + U.cols());
   Z_all_.rightCols(U.cols()) = solve_first(U);
 }
 
-// M U^T y.
+// V^T y.
 Eigen::MatrixXd TangentFactor::change_of(const Eigen::MatrixXd& y) const {
-  Eigen::MatrixXd out(static_cast<Eigen::Index>(U_.size()), y.cols());
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(V_.size()), y.cols());
   for (Eigen::Index column = 0; column < y.cols(); ++column) {
-    for (std::size_t f = 0; f < M_.size(); ++f) {
-      Vec2 jump = Vec2::Zero();
-      for (std::size_t c = 0; c < 2; ++c) {
-        for (const auto& [row, value] : U_[2 * f + c]) jump[static_cast<Eigen::Index>(c)] += value * y(row, column);
-      }
-      out.col(column).segment<2>(2 * static_cast<Eigen::Index>(f)) = M_[f] * jump;
+    for (std::size_t f = 0; f < V_.size(); ++f) {
+      for (const auto& [row, value] : V_[f]) out(static_cast<Eigen::Index>(f), column) += value * y(row, column);
     }
   }
   return out;
 }
 
 bool TangentFactor::follow(const std::vector<ContactPlace>& places, const std::vector<LawAnswer>& answers) {
-  if (stiffened_ || scale_.size() == 0 || R_.size() != places.size()) return false;
-  const std::vector<Eigen::Matrix2d> R = reaction_tangents(places, answers);
-  std::vector<std::size_t> differ = places_that_differ(R);
-  std::vector<std::size_t> fresh;
-  for (const std::size_t k : differ) {
-    if (known_[k] < 0) fresh.push_back(k);
+  if (stiffened_ || scale_.size() == 0 || first_.size() != places.size()) return false;
+  const std::vector<Change> differ = changes(places, answers);
+  std::vector<Change> fresh;
+  for (const Change& change : differ) {
+    if (known_[change.place][change.component] < 0) fresh.push_back(change);
   }
   const auto share = [&](const auto& of) {
-    return 2.0 * static_cast<double>(of.size()) / static_cast<double>(scale_.size());
+    return static_cast<double>(of.size()) / static_cast<double>(scale_.size());
   };
   if (share(differ) > most_changed || share(fresh) > most_fresh) return false;
   solve_for(places, fresh);
-  changed_ = std::move(differ);
-  if (changed_.empty()) return true;
-  const auto columns = 2 * static_cast<Eigen::Index>(changed_.size());
-  U_.clear();
+  V_.clear();
+  if (differ.empty()) return true;
+  const auto columns = static_cast<Eigen::Index>(differ.size());
   Z_.resize(scale_.size(), columns);
-  M_.clear();
-  for (std::size_t f = 0; f < changed_.size(); ++f) {
-    const std::size_t k = changed_[f];
-    U_.insert(U_.end(), places[k].D.begin(), places[k].D.end());
-    Z_.middleCols(2 * static_cast<Eigen::Index>(f), 2) = Z_all_.middleCols(known_[k], 2);
-    M_.push_back(R_[k] - R[k]);
+  for (Eigen::Index f = 0; f < columns; ++f) {
+    const Change& change = differ[static_cast<std::size_t>(f)];
+    SparseRow& row = V_.emplace_back();
+    for (std::size_t c = 0; c < 2; ++c) {
+      for (const auto& [index, value] : places[change.place].D[c])
+        row.emplace_back(index, change.v[static_cast<Eigen::Index>(c)] * value);
+    }
+    Z_.col(f) = Z_all_.col(known_[change.place][change.component]);
   }
   small_.compute(Eigen::MatrixXd::Identity(columns, columns) + change_of(Z_));
+  if (small_.rcond() > sound) return true;
   const auto solve_scaled = [&](const Eigen::VectorXd& x) {
     return Eigen::VectorXd(solve(x.cwiseQuotient(scale_)).cwiseQuotient(scale_));
   };
@@ -171,7 +177,7 @@ Eigen::MatrixXd TangentFactor::solve_first(const Eigen::MatrixXd& b) const {
 
 Eigen::MatrixXd TangentFactor::solve(const Eigen::MatrixXd& b) const {
   Eigen::MatrixXd y = solve_first(b);
-  if (!changed_.empty()) y -= Z_ * small_.solve(change_of(y));
+  if (changed()) y -= Z_ * small_.solve(change_of(y));
   return y;
 }
 

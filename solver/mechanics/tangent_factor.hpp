@@ -39,10 +39,11 @@ Eigen::Matrix2d tangent_matrix(const ContactPlace& place, const LawAnswer& r);
 Eigen::MatrixXd tangent(const Eigen::MatrixXd& S, const std::vector<ContactPlace>& places,
                         const std::vector<LawAnswer>& answers);
 
-// A tangent T_0 that was factored, and what of it has changed since. With U = [D_s^T] of the places whose dr/dw is
-// another now and M = blocks of their -A change(dr/dw), T = T_0 + U M U^T, and (Woodbury 1950)
-//   T^-1 b = y - Z (I + M U^T Z)^-1 M U^T y,  y = T_0^-1 b,  Z = T_0^-1 U:
-// two solves a changed place instead of a factorisation, and none for a place that has changed before.
+// A tangent T_0 that was factored, and what of it has changed since. A place whose law is on another piece changes the
+// derivative of its normal reaction, or of its tangential one, or both: with a column u = D^T n or D^T t and a row
+// v^T = -A change(dr_n/dw or dr_t/dw) D for each of them, T = T_0 + U V^T and (Woodbury 1950)
+//   T^-1 b = y - Z (I + V^T Z)^-1 V^T y,  y = T_0^-1 b,  Z = T_0^-1 U:
+// a solve for each instead of a factorisation, and none for what has changed before.
 class TangentFactor {
  public:
   Pieces pieces;  // of T; none where it is not to be used again
@@ -60,29 +61,35 @@ class TangentFactor {
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
 
   /// True where T is not T_0.
-  bool changed() const { return !changed_.empty(); }
+  bool changed() const { return !V_.empty(); }
 
   /// What scales T_0 to a unit diagonal from both sides.
   const Eigen::VectorXd& scale() const { return scale_; }
 
  private:
+  // A row of a place's reaction that changed.
+  struct Change {
+    std::size_t place = 0;
+    std::size_t component = 0;  // 0: the normal one, 1: the tangential one
+    Vec2 u = Vec2::Zero();      // its direction
+    Vec2 v = Vec2::Zero();      // -A times the change of its derivative (N/m)
+  };
+
   Eigen::MatrixXd solve_first(const Eigen::MatrixXd& b) const;
-  std::vector<std::size_t> places_that_differ(const std::vector<Eigen::Matrix2d>& R) const;
-  void solve_for(const std::vector<ContactPlace>& places, const std::vector<std::size_t>& fresh);
+  std::vector<Change> changes(const std::vector<ContactPlace>& places, const std::vector<LawAnswer>& answers) const;
+  void solve_for(const std::vector<ContactPlace>& places, const std::vector<Change>& fresh);
   Eigen::MatrixXd change_of(const Eigen::MatrixXd& y) const;
 
   bool symmetric_ = true, stiffened_ = false;
   Eigen::VectorXd scale_;
   Eigen::LLT<Eigen::MatrixXd> llt_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
-  std::vector<Eigen::Matrix2d> R_;  // A dr/dw of each place in T_0 (N/m)
-  std::vector<int> known_;          // where a place's two columns of Z stand in Z_all_; -1: not computed
+  std::vector<LawAnswer> first_;           // answers of the places in T_0
+  std::vector<std::array<int, 2>> known_;  // where a place's columns of Z stand in Z_all_; -1: not computed
   Eigen::MatrixXd Z_all_;
-  std::vector<std::size_t> changed_;
-  std::vector<SparseRow> U_;                    // columns of U, of changed places alone
-  Eigen::MatrixXd Z_;                           // and of Z
-  std::vector<Eigen::Matrix2d> M_;              // blocks
-  Eigen::PartialPivLU<Eigen::MatrixXd> small_;  // I + M U^T Z
+  std::vector<SparseRow> V_;                    // columns of V
+  Eigen::MatrixXd Z_;                           // and the columns of Z of these
+  Eigen::PartialPivLU<Eigen::MatrixXd> small_;  // I + V^T Z
 };
 
 }  // namespace strata
