@@ -127,7 +127,7 @@ double margin_of(const Scene& scene, const std::vector<Elasticity>& rocks, State
 
 // Which criterion decides about each tip where it now stands, and the trials that need it.
 void make_trials(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
-  run.trials.clear();
+  std::vector<GrowthTrial> former = std::exchange(run.trials, {});
   for (std::size_t k = 0; k < state.tips.size(); ++k) {
     Tip& tip = state.tips[k];
     if (!may_grow(scene, state, tip)) continue;
@@ -140,6 +140,9 @@ void make_trials(const Scene& scene, const std::vector<Elasticity>& rocks, State
     trial.increment = extend_tip(scene, trial.state, trial.state.tips[k], increment_of(scene, tip));
     trial.model.body = run.model.body;
     trial.model.condensed = run.model.condensed;
+    for (GrowthTrial& before : former) {
+      if (before.tip == k) trial.model.factor = std::move(before.model.factor);
+    }
     update_equations(scene, rocks, trial.state, trial.model);
   }
 }
@@ -202,7 +205,7 @@ void accept(const Scene& scene, const LoadPoint& before, Change change, State& s
 
 void rebuild_all(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
   const double fracture = state.ledger.fracture;
-  run.trials.clear();  // which hold the body, too
+  for (GrowthTrial& trial : run.trials) trial.model.body.reset(), trial.model.condensed = {};
   update_model(scene, rocks, state, run.model);
   run.rules = make_tip_rules(scene, rocks, state);
   state.ledger.fracture = fracture;  // what springs of tips give back is in the difference of stored energy already

@@ -151,6 +151,13 @@ int unknowns_that_move(const TangentFactor& factor, Eigen::Index n) {
   return static_cast<int>((v.array().abs() > takes_part * v.lpNorm<Eigen::Infinity>()).count());
 }
 
+// Whether some places slide, but so few that their coupling of tangential and normal reactions costs less as a change
+// of a symmetric tangent than in a factorisation that is not symmetric.
+bool few_slide(const std::vector<LawAnswer>& answers, Eigen::Index unknowns) {
+  const auto sliding = std::ranges::count_if(answers, [](const LawAnswer& r) { return r.dt_dn != 0.0; });
+  return sliding > 0 && 8 * sliding < unknowns;
+}
+
 // Factors the tangent at `at` unless `factor` has it already; false where parts of the block move freely. On the way to
 // a solution they may for a while, so the factor is then that of a tangent slightly stiffer. A sliver of rock with
 // fewer particles than its copies of nodes have unknowns (between a fracture and an interface that it meets, or in a
@@ -162,16 +169,27 @@ bool factor_tangent(const Condensed& condensed, const std::vector<ContactPlace>&
   constexpr int sliver =
       24;  // unknowns: fewer than the copies of 3 x 3 nodes have with one jump each, and some to spare
   const Pieces pieces = pieces_of(answers);
-  if (factor.pieces == pieces && factor.scale().size() == condensed.size()) return true;
+  const bool holds = factor.holds(condensed.size());
+  if (holds && factor.pieces == pieces) return true;
+  const Unknowns unknowns(condensed.columns.begin(), condensed.columns.end());
+  if (holds ? factor.follow(places, answers) : factor.grow(condensed.S, unknowns, places, answers)) {
+    factor.pieces = pieces;
+    return true;
+  }
   factor.pieces = pieces;
-  if (factor.scale().size() == condensed.size() && factor.follow(places, answers)) return true;
+  if (few_slide(answers, condensed.size())) {
+    const std::vector<LawAnswer> first = without_coupling(answers);
+    if (factor.factorise(tangent(condensed.S, places, first), unknowns, places, first) &&
+        factor.follow(places, answers))
+      return true;
+  }
   Eigen::MatrixXd T = tangent(condensed.S, places, answers);
-  if (factor.factorise(T, places, answers)) return true;
+  if (factor.factorise(T, unknowns, places, answers)) return true;
   T.diagonal() *= 1.0 + stiffening;
-  if (!factor.factorise(T, places, answers, true)) report_mechanism(state, places);
+  if (!factor.factorise(T, unknowns, places, answers, true)) report_mechanism(state, places);
   if (unknowns_that_move(factor, condensed.size()) <= sliver) return true;
   T.diagonal() *= 1.0 + on_the_way;
-  factor.factorise(T, places, answers, true);
+  factor.factorise(T, unknowns, places, answers, true);
   factor.pieces.clear();
   return false;
 }

@@ -180,7 +180,9 @@ void update_equations(const Scene& scene, const std::vector<Elasticity>& rocks, 
     model.body = std::make_shared<const IntactBody>(scene, rocks, state, halved);
   }
   model.condensed = condense(scene, rocks, state, *model.body, same_body ? &model.condensed : nullptr);
-  forget_solution(scene, rocks, state, model);
+  model.places = contact_places(scene, rocks, state, model.condensed);
+  model.factor.outdate();
+  model.j.resize(0);
 }
 
 void forget_solution(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,

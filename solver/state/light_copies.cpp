@@ -76,43 +76,46 @@ struct Corner {
   double worth = 0.0;
 };
 
-struct Corners {
-  int node = 0;
-  std::vector<Corner> all;
+using Corners = std::vector<Corner>;  // of a cut node
+
+// By cut node, whether it has corners that a leaning fracture makes, and by node whether one of those is among the
+// 3 x 3 around it.
+struct Leaning {
+  std::vector<char> cut, near;
 };
 
-// By node, whether the 3 x 3 nodes around it have corners.
-std::vector<char> near_corners(const State& state) {
+Leaning leaning_corners(const State& state) {
   const Grid& g = state.grid;
-  std::vector<char> near(static_cast<std::size_t>(g.nodes()), 0);
+  Leaning leaning{std::vector<char>(state.copies.cut.size(), 0), {}};
+  leaning.near.assign(static_cast<std::size_t>(g.nodes()), 0);
   for (int node = 0; node < g.nodes(); ++node) {
     const int c = state.copies.cut_of_node[static_cast<std::size_t>(node)];
-    if (c < 0 || !has_corners(state.copies.cut[static_cast<std::size_t>(c)])) continue;
+    if (c < 0 || !has_corners(state.copies.cut[static_cast<std::size_t>(c)]) || !leans_at(state, node)) continue;
+    leaning.cut[static_cast<std::size_t>(c)] = 1;
     for (int j = std::max(g.row(node) - 1, 0); j <= std::min(g.row(node) + 1, g.ny); ++j) {
       for (int i = std::max(g.column(node) - 1, 0); i <= std::min(g.column(node) + 1, g.nx); ++i)
-        near[static_cast<std::size_t>(g.node(i, j))] = 1;
+        leaning.near[static_cast<std::size_t>(g.node(i, j))] = 1;
     }
   }
-  return near;
+  return leaning;
 }
 
 // sum_p V_p |grad N_i| of each corner of each cut node that has some.
-std::vector<Corners> corners_of(const Scene& scene, const State& state) {
+std::vector<Corners> corners_of(const Scene& scene, const State& state, const Leaning& leaning) {
   std::vector<Corners> corners(state.copies.cut.size());
   const Particles& p = state.particles;
   const Grid& grid = state.grid;
-  const std::vector<char> near = near_corners(state);
   for (std::size_t q = 0; q < p.size(); ++q) {
     const int i = grid.column_at(p.x[q]), j = grid.row_at(p.y[q]);
-    if (i < 0 || i > grid.nx || j < 0 || j > grid.ny || near[static_cast<std::size_t>(grid.node(i, j))] == 0) continue;
+    if (i < 0 || i > grid.nx || j < 0 || j > grid.ny || leaning.near[static_cast<std::size_t>(grid.node(i, j))] == 0)
+      continue;
     const Gradients g = gradients_at(scene, grid, i, j, {p.x[q], p.y[q]}, p.half(q));
     for (std::size_t n = 0; n < 9; ++n) {
       const int node = grid.node(i + static_cast<int>(n % 3) - 1, j + static_cast<int>(n / 3) - 1);
       const int c = state.copies.cut_of_node[static_cast<std::size_t>(node)];
-      if (c < 0 || !has_corners(state.copies.cut[static_cast<std::size_t>(c)])) continue;
+      if (c < 0 || leaning.cut[static_cast<std::size_t>(c)] == 0) continue;
       const SideWord key = state.copies.cut[static_cast<std::size_t>(c)].key(p.sides[q]);
-      corners[static_cast<std::size_t>(c)].node = node;
-      auto& of_node = corners[static_cast<std::size_t>(c)].all;
+      Corners& of_node = corners[static_cast<std::size_t>(c)];
       auto at = std::find_if(of_node.begin(), of_node.end(), [key](const Corner& corner) { return corner.key == key; });
       if (at == of_node.end()) at = of_node.insert(of_node.end(), Corner{key});
       at->worth += p.V[q] * slope(g, n);
@@ -125,11 +128,12 @@ std::vector<Corners> corners_of(const Scene& scene, const State& state) {
 
 void join_corners(const Scene& scene, State& state) {
   auto& cuts = state.copies.cut;
-  if (std::none_of(cuts.begin(), cuts.end(), has_corners)) return;
-  const auto corners = corners_of(scene, state);
+  const Leaning leaning = leaning_corners(state);
+  if (std::ranges::count(leaning.cut, 1) == 0) return;
+  const std::vector<Corners> corners = corners_of(scene, state, leaning);
   for (std::size_t c = 0; c < cuts.size(); ++c) {
-    const auto& own = corners[c].all;
-    if (own.size() < 3 || !leans_at(state, corners[c].node)) continue;
+    const Corners& own = corners[c];
+    if (own.size() < 3) continue;
     double all = 0.0;
     for (const Corner& corner : own) all += corner.worth;
     for (const Corner& small : own) {
