@@ -1,5 +1,6 @@
 #include "mechanics/condensed.hpp"
 
+#include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
 
 #include "fracture/growth.hpp"
