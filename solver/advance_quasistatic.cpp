@@ -376,6 +376,7 @@ void locate_event(const Scene& scene, const std::vector<Elasticity>& rocks, cons
 }  // namespace
 
 void start_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+  run.model.factor = TangentFactor{}, run.trials.clear();  // digits go by the state alone
   rebuild_all(scene, rocks, state, run);
   if (state.step == 0) fill_fracture(scene, state, run.model);
   equilibrate(scene, rocks, state, run);
