@@ -76,6 +76,10 @@ struct Corner {
   double worth = 0.0;
 };
 
+bool larger(const Corner& a, const Corner& b) {
+  return a.worth > b.worth || (a.worth == b.worth && a.key > b.key);
+}
+
 using Corners = std::vector<Corner>;  // of a cut node
 
 // By cut node, whether it has corners that a leaning fracture makes, and by node whether one of those is among the
@@ -141,9 +145,8 @@ void join_corners(const Scene& scene, State& state) {
       const Corner* into = nullptr;
       for (const Corner& other : own) {
         const SideWord parted = small.key ^ other.key;
-        const bool beside =
-            std::popcount(parted) == 1 && parted != cuts[c].fracture && other.worth >= least_corner * all;
-        if (beside && (into == nullptr || other.worth > into->worth)) into = &other;
+        const bool beside = std::popcount(parted) == 1 && parted != cuts[c].fracture;
+        if (beside && larger(other, into == nullptr ? small : *into)) into = &other;
       }
       if (into != nullptr) cuts[c].joined.push_back({small.key, into->key});
     }

@@ -31,8 +31,9 @@ constexpr double least_corner = 1.0 / 128.0;
 
 /// Where a fracture that does not lie along the grid crosses an interface, nodes have a copy for each of up to four
 /// corners, and several nodes may have the same one or two particles at the point of such a corner: too few to hold all
-/// these copies. A corner that has less than least_corner of its node's sum_p V_p |grad N_i| becomes part of the one on
-/// the same side of the fracture that a single interface parts from it (CutNode::joined). Needs the cut nodes of
+/// these copies. A corner that has less than least_corner of its node's sum_p V_p |grad N_i| becomes part of the
+/// largest one on the same side of the fracture that a single interface parts from it (CutNode::joined), if that is
+/// larger than itself: where both are small, a single particle may be all there is of either. Needs the cut nodes of
 /// `state`, before any record of theirs. Throws nothing.
 void join_corners(const Scene& scene, State& state);
 

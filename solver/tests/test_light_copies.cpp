@@ -202,8 +202,9 @@ TEST_CASE("a crack through stiff springs at an angle is no mechanism, and K_I is
   CHECK(joined_corners(Run(through_springs(degrees, 1e13)).state) > 0);
 }
 
-// Requires just those corners to be joined that have less than 1/128 of their node's rock, each with the larger one of
-// those that an interface alone parts from it. Mutations that fail: 0.3 or 1e-9 instead of 1/128, the smaller one.
+// Requires just those corners to be joined that have less than 1/128 of their node's rock, each with the largest one of
+// those that an interface alone parts from it, where that is larger. Mutations that fail: 0.3 or 1e-9 instead of 1/128,
+// the smallest one, none where both are so small.
 TEST_CASE("corners with hardly any rock are joined with the largest one beside them") {
   const double degrees = GENERATE(10.0, 20.0, 25.0, 30.0, 45.0, 70.0, 110.0, 160.0);
   const double second = GENERATE(0.0, 20.5, 21.0);
@@ -236,9 +237,9 @@ TEST_CASE("corners with hardly any rock are joined with the largest one beside t
     for (const auto& [key, own] : corners) all += own;
     for (const auto& [key, own] : corners) {
       if (cut.fracture == 0 || corners.size() < 3 || own >= all / 128.0) continue;
-      double most = all / 128.0;
+      double most = own;
       for (const auto& [other, its] : corners) {
-        if (std::popcount(key ^ other) == 1 && (key ^ other) != cut.fracture && its >= most)
+        if (std::popcount(key ^ other) == 1 && (key ^ other) != cut.fracture && its > most)
           expected[key] = other, most = its;
       }
     }
@@ -260,7 +261,8 @@ TEST_CASE("springs of an interface pull at no light copies where a crack crosses
   const double degrees = GENERATE(20.0, 30.0, 45.0, 60.0);
   CAPTURE(degrees);
   const Run run(through_springs(degrees, 1e9));
-  CHECK(check_no_light_copies(run, 0) + check_no_light_copies(run, 1) > 0);
+  const std::size_t light = check_no_light_copies(run, 0) + check_no_light_copies(run, 1);
+  if (degrees != 45.0) CHECK(light > 0);  // there all light ones are corners that have joined
 }
 
 TEST_CASE("a layer of one or half a cell between two interfaces is held by its springs") {
