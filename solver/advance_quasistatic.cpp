@@ -330,7 +330,7 @@ FluidStep try_step(const Scene& scene, const std::vector<Elasticity>& rocks, con
                    State& state, Quasistatic& run) {
   return_to(from, state);
   try {
-    const FluidStep fluid = advance_fluid(scene, dt, state, run.model);
+    FluidStep fluid = advance_fluid(scene, dt, state, run.model);
     if (fluid.found) equilibrate(scene, rocks, state, run);
     return fluid;
   } catch (const NumericalFailure& failure) {  // perhaps only beyond the next event

@@ -18,7 +18,7 @@ FED = (
     "--set", "fracture.path_m=[[30, 0], [30, 2]]", "--set", "stop.time_s=1",
 )
 
-# Two blocks on an interface that fails at once, with friction that no rock has, and a fracture through both at 45 degrees.
+# Two blocks on an interface that fails at once, with friction that no rock has, and a fracture through both at 63 degrees.
 ROUGH = """\
 [domain]
 width_m = 12
@@ -40,7 +40,7 @@ residual_friction = 1e6
 layers = [{rock = "r", thickness_m = 6}, {rock = "s"}]
 interfaces = ["rough"]
 [fracture]
-path_m = [[4, 4], [8, 8]]
+path_m = [[4, 3], [7, 9]]
 growth = "none"
 [fluid]
 law = "uniform"
