@@ -62,7 +62,7 @@ void load_body(const Scene& scene, double time, const IntactBody& body, State& s
       }
     }
   }
-  const Eigen::VectorXd u_0 = body.factor().solve(load.intact, body.factor().all(), body.factor().all());
+  const Eigen::VectorXd u_0 = body.factor().solve(load.intact);
   for (std::size_t k = 0; k < condensed.columns.size(); ++k) {
     const SparseVector& G = condensed.columns[k]->G;
     for (std::size_t e = 0; e < G.index.size(); ++e)

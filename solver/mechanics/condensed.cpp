@@ -6,6 +6,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "mechanics/branch_products.hpp"
 #include "mechanics/stiffness.hpp"
 #include "state/quarters.hpp"
 
@@ -209,51 +210,28 @@ SparseVector summed(Entries entries) {
   return out;
 }
 
-// Columns that are multiplied by all others together: two of the longest vectors of the processor.
-using Eight = Eigen::Array<double, 8, 1>;
-using Lanes = std::array<Eight, 2>;
-constexpr std::size_t lanes = 16;
-
-// Products of one column with the dense ones, each a sum over the rows of that column in their order.
-Lanes products(const SparseVector& Y, const std::vector<Lanes>& dense) {
-  Eight low = Eight::Zero(), high = Eight::Zero();
-  for (std::size_t k = 0; k < Y.index.size(); ++k) {
-    const Lanes& row = dense[static_cast<std::size_t>(Y.index[k])];
-    low += Y.value[k] * row[0];
-    high += Y.value[k] * row[1];
-  }
-  return {low, high};
-}
-
-// S = K_jj - Y^T Y for the new unknowns. Rows that only one of two columns has add 0 to their product, so that its
-// digits are the same whichever of them is the dense one.
-void condense_new(const std::vector<int>& place, const NewStiffness& K_jj, int unknowns, Condensed& out) {
+// S = K_jj - Y^T Y for the new unknowns.
+void condense_new(const IntactBody& body, const std::vector<int>& place, const NewStiffness& K_jj, Condensed& out) {
   std::vector<std::size_t> fresh;
   for (std::size_t k = 0; k < place.size(); ++k) {
     if (place[k] >= 0) fresh.push_back(k);
   }
-  std::vector<Lanes> dense(fresh.empty() ? 0 : static_cast<std::size_t>(unknowns), Lanes{Eight::Zero(), Eight::Zero()});
-  for (std::size_t from = 0; from < fresh.size(); from += lanes) {
-    const std::size_t count = std::min(lanes, fresh.size() - from);
-    for (std::size_t c = 0; c < count; ++c) {
-      const SparseVector& Y = out.columns[fresh[from + c]]->Y;
-      for (std::size_t k = 0; k < Y.index.size(); ++k)
-        dense[static_cast<std::size_t>(Y.index[k])][c / 8][static_cast<Eigen::Index>(c % 8)] = Y.value[k];
-    }
+  SideBySide dense(body.factor());
+  std::vector<const BranchVector*> columns;
+  for (std::size_t from = 0; from < fresh.size(); from += SideBySide::most) {
+    const std::size_t count = std::min(SideBySide::most, fresh.size() - from);
+    columns.clear();
+    for (std::size_t c = 0; c < count; ++c) columns.push_back(&out.columns[fresh[from + c]]->Y);
+    dense.put(columns);
     for (std::size_t b = 0; b < place.size(); ++b) {
       if (place[b] >= 0 && b < fresh[from]) continue;  // done with b among the dense ones
-      const Lanes product = products(out.columns[b]->Y, dense);
+      const auto product = dense.times(out.columns[b]->Y);
       for (std::size_t c = 0; c < count; ++c) {
         const auto i = static_cast<Eigen::Index>(fresh[from + c]), j = static_cast<Eigen::Index>(b);
         const auto f = static_cast<Eigen::Index>(from + c);
         // K_jj is symmetric but for round-off, and which of two unknowns is new depends on what came before.
-        out.S(i, j) = out.S(j, i) =
-            0.5 * (K_jj.rows(j, f) + K_jj.columns(j, f)) - product[c / 8][static_cast<Eigen::Index>(c % 8)];
+        out.S(i, j) = out.S(j, i) = 0.5 * (K_jj.rows(j, f) + K_jj.columns(j, f)) - product[c];
       }
-    }
-    for (std::size_t c = 0; c < count; ++c) {
-      for (const int k : out.columns[fresh[from + c]]->Y.index)
-        dense[static_cast<std::size_t>(k)] = {Eight::Zero(), Eight::Zero()};
     }
   }
 }
@@ -264,7 +242,7 @@ void factor_columns(const IntactBody& body, const std::vector<int>& place, std::
   for (std::size_t k = 0; k < place.size(); ++k) {
     if (place[k] >= 0) fresh.push_back(summed(std::move(G[k])));
   }
-  std::vector<SparseVector> Y = body.factor().forward(fresh);
+  std::vector<BranchVector> Y = body.factor().forward(fresh);
   std::size_t next = 0;
   std::vector<int> loaded;
   for (std::size_t k = 0; k < place.size(); ++k) {
@@ -340,7 +318,7 @@ Condensed condense(const Scene& scene, const std::vector<Elasticity>& rocks, con
              n_fresh = static_cast<Eigen::Index>(std::ranges::count_if(fresh, [](int f) { return f >= 0; }));
   NewStiffness K_jj{Eigen::MatrixXd::Zero(n, n_fresh), Eigen::MatrixXd::Zero(n, n_fresh)};
   factor_columns(body, fresh, assemble_jumps(scene, rocks, state, body, fresh, out, K_jj), out);
-  condense_new(fresh, K_jj, body.unknowns(), out);
+  condense_new(body, fresh, K_jj, out);
   return out;
 }
 
@@ -367,24 +345,24 @@ Asked ask_for_all(const State& state, const IntactBody& body) {
 
 std::vector<Vec2> displacements(const Scene& scene, const State& state, const IntactBody& body,
                                 const Condensed& condensed, const Eigen::VectorXd& j, const Asked& asked) {
-  Eigen::VectorXd load = condensed.load.intact;
-  if (condensed.load.empty()) load.setZero(body.unknowns());
-  for (std::size_t k = 0; k < condensed.columns.size(); ++k) {
-    const SparseVector& G = condensed.columns[k]->G;
-    for (std::size_t e = 0; e < G.index.size(); ++e) load[G.index[e]] -= G.value[e] * j[static_cast<Eigen::Index>(k)];
-  }
   const TreeFactor& factor = body.factor();
   const auto& loaded = condensed.load.empty() ? condensed.loaded : factor.all();  // a body force loads them all
-  const Eigen::VectorXd base = factor.solve(load, loaded, asked.blocks);
-  std::vector<Vec2> u(static_cast<std::size_t>(state.copies.records()), Vec2::Zero());
-  for (const int record : asked.records) {
-    const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
+  Eigen::VectorXd base = factor.zeros(loaded, asked.blocks);
+  for (int k = 0; k < condensed.load.intact.size(); ++k) base[factor.row(k)] = condensed.load.intact[k];
+  for (std::size_t k = 0; k < condensed.columns.size(); ++k) {
+    const SparseVector& G = condensed.columns[k]->G;
+    for (std::size_t e = 0; e < G.index.size(); ++e)
+      base[factor.row(G.index[e])] -= G.value[e] * j[static_cast<Eigen::Index>(k)];
+  }
+  factor.solve(loaded, asked.blocks, base);
+  std::vector<Vec2> u(asked.records.size(), Vec2::Zero());
+  for (std::size_t r = 0; r < u.size(); ++r) {
+    const int record = asked.records[r], node = state.copies.node_of_record[static_cast<std::size_t>(record)];
     for (int component = 0; component < 2; ++component) {
       const Unknown from = unknown_of(body.masters(), node, component),
                     jump = jump_unknown(condensed, record, component);
-      double& value = u[static_cast<std::size_t>(record)][component];
-      if (from.index >= 0) value += from.factor * base[from.index];
-      if (jump.index >= 0) value += jump.factor * j[jump.index];
+      if (from.index >= 0) u[r][component] += from.factor * base[factor.row(from.index)];
+      if (jump.index >= 0) u[r][component] += jump.factor * j[jump.index];
     }
   }
   remove_rigid_motion(scene, state, body.halved(), u);

@@ -29,7 +29,7 @@ struct JumpColumn {
   int component = 0;
   std::uint64_t particles = 0;  // fingerprint of the set
   SparseVector G;
-  SparseVector Y;
+  BranchVector Y;
 };
 
 // The load of a body force at one time (see body_load.hpp).
@@ -73,9 +73,9 @@ Asked ask_for(const Scene& scene, const State& state, const IntactBody& body, st
 /// All records.
 Asked ask_for_all(const State& state, const IntactBody& body);
 
-/// Displacements (m) of the records asked for, 0 for others, for the jumps j (m): u = K^-1 (f_u - G j), and the copies'
-/// jumps on top; rigid motion that no edge holds is taken out (zero mean displacement and rotation of the particles).
-/// The digits do not depend on what else is asked for.
+/// Displacements (m) of the records asked for, in their order, for the jumps j (m): u = K^-1 (f_u - G j), and the
+/// copies' jumps on top; rigid motion that no edge holds is taken out (zero mean displacement and rotation of the
+/// particles). The digits do not depend on what else is asked for.
 std::vector<Vec2> displacements(const Scene& scene, const State& state, const IntactBody& body,
                                 const Condensed& condensed, const Eigen::VectorXd& j, const Asked& asked);
 

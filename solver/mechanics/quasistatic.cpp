@@ -41,10 +41,10 @@ void set_particles(const Scene& scene, const std::vector<Vec2>& u, State& state)
 void set_watched(const QuasistaticModel& model, const std::vector<Vec2>& u, State& state) {
   Particles& p = state.particles;
   std::size_t at = 0;
-  for (const std::size_t b : model.watched) {
-    const Bin& bin = state.bins[b];
+  for (std::size_t b = 0; b < model.watched.size(); ++b) {
+    const Bin& bin = state.bins[model.watched[b]];
     std::array<Vec2, 9> u_i;
-    for (std::size_t n = 0; n < 9; ++n) u_i[n] = u[static_cast<std::size_t>(bin.record[n])];
+    for (std::size_t n = 0; n < 9; ++n) u_i[n] = u[static_cast<std::size_t>(model.reached[b][n])];
     for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
          q += static_cast<std::size_t>(bin.stride)) {
       const std::array<double, 18>& N = model.slopes[at++];
@@ -70,7 +70,6 @@ bool weighed(const Scene& scene, const State& state, const Bin& bin) {
 }
 
 std::vector<std::size_t> watched_bins(const Scene& scene, const State& state, const Bonds& bonds) {
-  const bool all = scene.body.acceleration_m_s2.has_value();  // its work needs them
   std::vector<char> particle(state.particles.size(), 0);
   for (const BondSample& sample : bonds.samples) {
     for (const BondSample::Share& share : sample.particles) particle[share.index] = 1;
@@ -78,7 +77,7 @@ std::vector<std::size_t> watched_bins(const Scene& scene, const State& state, co
   std::vector<std::size_t> watched;
   for (std::size_t b = 0; b < state.bins.size(); ++b) {
     const Bin& bin = state.bins[b];
-    bool watch = all || weighed(scene, state, bin);
+    bool watch = weighed(scene, state, bin);
     for (auto q = static_cast<std::size_t>(bin.first); !watch && q < static_cast<std::size_t>(bin.last);
          q += static_cast<std::size_t>(bin.stride))
       watch = particle[q] != 0;
@@ -149,6 +148,21 @@ std::vector<int> records_of(const State& state, const std::vector<std::size_t>& 
   return records;
 }
 
+// Where the displacements of the nodes of some bins are among those asked for.
+std::vector<std::array<int, 9>> reached_by(const State& state, const std::vector<std::size_t>& bins,
+                                           const Asked& asked) {
+  std::vector<int> place(static_cast<std::size_t>(state.copies.records()), -1);
+  for (std::size_t k = 0; k < asked.records.size(); ++k)
+    place[static_cast<std::size_t>(asked.records[k])] = static_cast<int>(k);
+  std::vector<std::array<int, 9>> reached;
+  reached.reserve(bins.size());
+  for (const std::size_t b : bins) {
+    std::array<int, 9>& at = reached.emplace_back();
+    std::ranges::transform(state.bins[b].record, at.begin(), [&](int r) { return place[static_cast<std::size_t>(r)]; });
+  }
+  return reached;
+}
+
 // Plastic slip of a place since friction's memory (m): the tangential jump less what the stick spring gives way.
 double plastic_slip(const ContactPlace& place, const LawAnswer& r, const Vec2& w) {
   if (r.dt_dn == 0.0) return 0.0;
@@ -161,10 +175,14 @@ void update_model(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
                   bool halve) {
   update_equations(scene, rocks, state, model, halve);
   model.bonds = find_bonds(scene, state);
-  model.watched = watched_bins(scene, state, model.bonds);
-  model.asked = ask_for(scene, state, *model.body, records_of(state, model.watched));
-  model.slopes.clear();
-  if (!scene.body.acceleration_m_s2) model.slopes = slopes_at(scene, state, model.watched);
+  if (scene.body.acceleration_m_s2) {  // its work needs all
+    model.asked = ask_for_all(state, *model.body);
+  } else {
+    model.watched = watched_bins(scene, state, model.bonds);
+    model.asked = ask_for(scene, state, *model.body, records_of(state, model.watched));
+    model.reached = reached_by(state, model.watched, model.asked);
+    model.slopes = slopes_at(scene, state, model.watched);
+  }
   model.vertex_jumps = jumps_at_vertices(state, model.condensed);
 }
 

@@ -20,10 +20,11 @@ struct QuasistaticModel {
   TangentFactor factor;
   Bonds bonds;
   std::vector<std::size_t> watched;            // bins whose fields decide what happens next: around tips, beside bonded
-                                               // interfaces; with a body force all
+                                               // interfaces; none with a body force, under which all do
   Asked asked;                                 // the records that these reach
+  std::vector<std::array<int, 9>> reached;     // where among these each of their bins' nodes is
   std::vector<std::array<double, 18>> slopes;  // of the nine nodes' functions at each of their particles (1/m), those
-                                               // along x first; none with a body force
+                                               // along x first
   Eigen::SparseMatrix<double, Eigen::RowMajor> vertex_jumps;  // jumps at all vertices (x and y) by the jump unknowns
   Eigen::VectorXd j;                                          // the last solution, as a first guess
   Eigen::VectorXd shown;                                      // the solution whose fields the state was given

@@ -113,17 +113,17 @@ TreeFactor::Branches TreeFactor::branches(const std::vector<int>& unknowns) cons
 }
 
 // Solves for a block's own rows of y and takes their part from the rows below.
-void TreeFactor::down(const Block& block, std::vector<double>& y) const {
+void TreeFactor::down(const Block& block, Eigen::VectorXd& y) const {
   const Eight* L = &values_[block.values];
   Eight own = Eight::Zero();
   for (int c = 0; c < block.columns; ++c) {
-    double value = y[static_cast<std::size_t>(block.first + c)];
+    double value = y[block.first + c];
     for (int b = 0; b < c; ++b) value -= L[c][b] * own[b];
-    y[static_cast<std::size_t>(block.first + c)] = own[c] = value / L[c][c];
+    y[block.first + c] = own[c] = value / L[c][c];
   }
   L += width;
   for (std::size_t r = block.rows; r < block.last_row; ++r, ++L) {
-    double& below = y[static_cast<std::size_t>(row_[r])];
+    double& below = y[row_[r]];
     double value = below;
     for (int b = 0; b < width; ++b) value -= (*L)[b] * own[b];
     below = value;
@@ -131,98 +131,108 @@ void TreeFactor::down(const Block& block, std::vector<double>& y) const {
 }
 
 // Solves for a block's own rows of x from those below, in the place of y.
-void TreeFactor::up(const Block& block, std::vector<double>& y) const {
+void TreeFactor::up(const Block& block, Eigen::VectorXd& y) const {
   const Eight* L = &values_[block.values + width];
   Eight even = Eight::Zero(), odd = Eight::Zero();  // two sums: one alone waits for itself
   std::size_t r = block.rows;
   for (; r + 2 <= block.last_row; r += 2, L += 2) {
-    even += y[static_cast<std::size_t>(row_[r])] * L[0];
-    odd += y[static_cast<std::size_t>(row_[r + 1])] * L[1];
+    even += y[row_[r]] * L[0];
+    odd += y[row_[r + 1]] * L[1];
   }
-  if (r < block.last_row) even += y[static_cast<std::size_t>(row_[r])] * L[0];
+  if (r < block.last_row) even += y[row_[r]] * L[0];
   const Eight below = even + odd;
   L = &values_[block.values];
   for (int c = block.columns - 1; c >= 0; --c) {
-    double value = y[static_cast<std::size_t>(block.first + c)] - below[c];
-    for (int b = c + 1; b < block.columns; ++b) value -= L[b][c] * y[static_cast<std::size_t>(block.first + b)];
-    y[static_cast<std::size_t>(block.first + c)] = value / L[c][c];
+    double value = y[block.first + c] - below[c];
+    for (int b = c + 1; b < block.columns; ++b) value -= L[b][c] * y[block.first + b];
+    y[block.first + c] = value / L[c][c];
   }
 }
 
-Eigen::VectorXd TreeFactor::solve(const Eigen::VectorXd& f, const Branches& loaded, const Branches& wanted) const {
-  std::vector<double> y(place_.size(), 0.0);
-  for (const int b : loaded) {
-    const Block& block = blocks_[static_cast<std::size_t>(b)];
-    for (int k = block.first; k < block.first + block.columns; ++k)
-      y[static_cast<std::size_t>(k)] = f[unknown_[static_cast<std::size_t>(k)]];
+Eigen::VectorXd TreeFactor::zeros(const Branches& loaded, const Branches& wanted) const {
+  Eigen::VectorXd y(size());
+  for (const Branches* branches : {&loaded, &wanted}) {
+    for (const int b : *branches) {
+      const Block& block = blocks_[static_cast<std::size_t>(b)];
+      y.segment(block.first, block.columns).setZero();
+    }
   }
-  for (const int b : loaded) down(blocks_[static_cast<std::size_t>(b)], y);
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(size());
-  for (auto b = wanted.rbegin(); b != wanted.rend(); ++b) {
-    const Block& block = blocks_[static_cast<std::size_t>(*b)];
-    up(block, y);
-    for (int k = block.first; k < block.first + block.columns; ++k)
-      x[unknown_[static_cast<std::size_t>(k)]] = y[static_cast<std::size_t>(k)];
-  }
+  return y;
+}
+
+void TreeFactor::solve(const Branches& loaded, const Branches& wanted, Eigen::VectorXd& f) const {
+  for (const int b : loaded) down(blocks_[static_cast<std::size_t>(b)], f);
+  for (auto b = wanted.rbegin(); b != wanted.rend(); ++b) up(blocks_[static_cast<std::size_t>(*b)], f);
+}
+
+Eigen::VectorXd TreeFactor::solve(const Eigen::VectorXd& f) const {
+  Eigen::VectorXd in_rows(size()), x(size());
+  for (int k = 0; k < size(); ++k) in_rows[row(k)] = f[k];
+  solve(all_, all_, in_rows);
+  for (int k = 0; k < size(); ++k) x[k] = in_rows[row(k)];
   return x;
 }
 
-// The same as for one right-hand side, for many.
+// The same as for one right-hand side, for many, of which y holds the rows on some branches; place: of each of them.
 template <class Lanes>
-void TreeFactor::down(const Block& block, std::vector<Lanes>& y) const {
+void TreeFactor::down(const Block& block, const std::vector<int>& place, std::vector<Lanes>& y) const {
+  const auto at = [&](int row) -> Lanes& {
+    return y[static_cast<std::size_t>(place[static_cast<std::size_t>(row)])];
+  };
   const Eight* L = &values_[block.values];
   std::array<Lanes, width> own;
   own.fill(Lanes::Zero());
   for (int c = 0; c < block.columns; ++c) {
-    Lanes value = y[static_cast<std::size_t>(block.first + c)];
+    Lanes value = at(block.first + c);
     for (int b = 0; b < c; ++b) value -= L[c][b] * own[static_cast<std::size_t>(b)];
-    y[static_cast<std::size_t>(block.first + c)] = own[static_cast<std::size_t>(c)] = value / L[c][c];
+    at(block.first + c) = own[static_cast<std::size_t>(c)] = value / L[c][c];
   }
   L += width;
   for (std::size_t r = block.rows; r < block.last_row; ++r, ++L) {
-    Lanes value = y[static_cast<std::size_t>(row_[r])];
+    Lanes value = at(row_[r]);
     for (int b = 0; b < width; ++b) value -= (*L)[b] * own[static_cast<std::size_t>(b)];
-    y[static_cast<std::size_t>(row_[r])] = value;
+    at(row_[r]) = value;
   }
 }
 
-std::vector<SparseVector> TreeFactor::forward(const std::vector<SparseVector>& g) const {
-  std::vector<SparseVector> out(g.size());
-  std::vector<Sixteen> y(g.empty() ? 0 : place_.size(), Sixteen::Zero());
-  std::vector<char> on(blocks_.size(), 0);
+std::vector<BranchVector> TreeFactor::forward(const std::vector<SparseVector>& g) const {
+  std::vector<BranchVector> out(g.size());
+  std::vector<int> place(g.empty() ? 0 : place_.size());  // of rows on the branches of one batch, in y
+  std::vector<Sixteen> y;
+  std::vector<char> on(g.empty() ? 0 : blocks_.size(), 0);
   Branches together, own;
   for (std::size_t from = 0; from < g.size(); from += lanes) {
     const std::size_t count = std::min(lanes, g.size() - from);
     together.clear();
+    for (std::size_t c = 0; c < count; ++c) mark(g[from + c].index, on, together);
+    std::sort(together.begin(), together.end());
+    int rows = 0;
+    for (const int b : together) {
+      const Block& block = blocks_[static_cast<std::size_t>(b)];
+      on[static_cast<std::size_t>(b)] = 0;
+      for (int k = block.first; k < block.first + block.columns; ++k) place[static_cast<std::size_t>(k)] = rows++;
+    }
+    const auto at = [&](int row) { return static_cast<std::size_t>(place[static_cast<std::size_t>(row)]); };
+    y.assign(static_cast<std::size_t>(rows), Sixteen::Zero());
     for (std::size_t c = 0; c < count; ++c) {
       const SparseVector& load = g[from + c];
-      mark(load.index, on, together);
       for (std::size_t e = 0; e < load.index.size(); ++e)
-        y[static_cast<std::size_t>(place_[static_cast<std::size_t>(load.index[e])])][static_cast<Eigen::Index>(c)] =
-            load.value[e];
+        y[at(row(load.index[e]))][static_cast<Eigen::Index>(c)] = load.value[e];
     }
-    std::sort(together.begin(), together.end());
-    for (const int b : together) {
-      on[static_cast<std::size_t>(b)] = 0;
-      down(blocks_[static_cast<std::size_t>(b)], y);
-    }
+    for (const int b : together) down(blocks_[static_cast<std::size_t>(b)], place, y);
     for (std::size_t c = 0; c < count; ++c) {
       own.clear();
       mark(g[from + c].index, on, own);
-      SparseVector& Y = out[from + c];
-      for (const int b : together) {
-        if (on[static_cast<std::size_t>(b)] == 0) continue;
+      std::sort(own.begin(), own.end());
+      BranchVector& Y = out[from + c];
+      for (const int b : own) {
         on[static_cast<std::size_t>(b)] = 0;
         const Block& block = blocks_[static_cast<std::size_t>(b)];
-        for (int k = block.first; k < block.first + block.columns; ++k) {
-          Y.index.push_back(k);
-          Y.value.push_back(y[static_cast<std::size_t>(k)][static_cast<Eigen::Index>(c)]);
-        }
+        for (int k = block.first; k < block.first + block.columns; ++k)
+          Y.value.push_back(y[at(k)][static_cast<Eigen::Index>(c)]);
+        Y.block.push_back(b);
+        Y.begin.push_back(static_cast<int>(Y.value.size()));
       }
-    }
-    for (const int b : together) {
-      const Block& block = blocks_[static_cast<std::size_t>(b)];
-      for (int k = block.first; k < block.first + block.columns; ++k) y[static_cast<std::size_t>(k)].setZero();
     }
   }
   return out;

@@ -20,6 +20,14 @@ struct SparseVector {
   std::vector<double> value;
 };
 
+// A vector in rows of a factor that is 0 off some branches: its values on their blocks, rising, and where those of each
+// block begin (one more: the end).
+struct BranchVector {
+  std::vector<int> block;
+  std::vector<int> begin{0};
+  std::vector<double> value;
+};
+
 class TreeFactor {
  public:
   /// Blocks of the factor, rising, with each block its parents up to the root.
@@ -37,14 +45,24 @@ class TreeFactor {
   /// All blocks.
   const Branches& all() const { return all_; }
 
-  /// x = K^-1 f, where f is 0 off the branches `loaded`, at the unknowns on `wanted` (0 elsewhere). Units follow K and
-  /// f. Throws nothing.
-  Eigen::VectorXd solve(const Eigen::VectorXd& f, const Branches& loaded, const Branches& wanted) const;
+  /// The row of an unknown.
+  int row(int unknown) const { return place_[static_cast<std::size_t>(unknown)]; }
 
-  /// Y = L^-1 P g of each g, in rows of the factor; the digits of one do not depend on the others. Throws nothing.
-  std::vector<SparseVector> forward(const std::vector<SparseVector>& g) const;
+  /// A vector in rows of the factor, 0 on some branches and with no value yet elsewhere. Throws nothing.
+  Eigen::VectorXd zeros(const Branches& loaded, const Branches& wanted) const;
+
+  /// Puts x = K^-1 f in the place of f, both in rows of the factor: f is 0 off the branches `loaded` and given there
+  /// and on `wanted`; x is good on `wanted`. Units follow K and f. Throws nothing.
+  void solve(const Branches& loaded, const Branches& wanted, Eigen::VectorXd& f) const;
+
+  /// x = K^-1 f by unknowns, whole. Throws nothing.
+  Eigen::VectorXd solve(const Eigen::VectorXd& f) const;
+
+  /// Y = L^-1 P g of each g; the digits of one do not depend on the others. Throws nothing.
+  std::vector<BranchVector> forward(const std::vector<SparseVector>& g) const;
 
   int size() const { return static_cast<int>(place_.size()); }
+  int blocks() const { return static_cast<int>(blocks_.size()); }
 
  private:
   static constexpr int width = 8;  // columns of a block: a vector of the processor
@@ -62,10 +80,10 @@ class TreeFactor {
 
   void add_block(int first, int columns, const double* values, std::size_t stride, const int* rows, std::size_t count);
   void mark(const std::vector<int>& unknowns, std::vector<char>& on, Branches& blocks) const;
-  void down(const Block& block, std::vector<double>& y) const;
-  void up(const Block& block, std::vector<double>& y) const;
+  void down(const Block& block, Eigen::VectorXd& y) const;
+  void up(const Block& block, Eigen::VectorXd& y) const;
   template <class Lanes>
-  void down(const Block& block, std::vector<Lanes>& y) const;
+  void down(const Block& block, const std::vector<int>& place, std::vector<Lanes>& y) const;
 
   std::vector<int> place_;    // row of an unknown
   std::vector<int> unknown_;  // and back

@@ -53,8 +53,8 @@ double difference(const IntactBody& a, const IntactBody& b) {
       if (at.index >= 0) load[at.index] = std::sin(0.37 * at.index);
     }
   }
-  const Eigen::VectorXd x = a.factor().solve(load, a.factor().all(), a.factor().all());
-  const Eigen::VectorXd y = b.factor().solve(load, b.factor().all(), b.factor().all());
+  const Eigen::VectorXd x = a.factor().solve(load);
+  const Eigen::VectorXd y = b.factor().solve(load);
   return (x - y).cwiseAbs().maxCoeff() / y.cwiseAbs().maxCoeff();
 }
 
