@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "fracture/j_integral.hpp"
 #include "fracture/refine_beside.hpp"
@@ -94,14 +95,27 @@ void lengthen_fluid(const Scene& scene, State& state, bool at_back, std::size_t 
   if (!at_back) state.fluid.inlet += pieces;
 }
 
-// Particles ahead of the old tip may change sides as the path turns; those beside the older fracture keep theirs.
-void update_particle_sides(State& state, const Tip& tip, double old_length) {
+// Whether growth leaves the side of a place alone whatever is nearest to it: `off` the old tip it lies behind the end
+// of the last piece, beside which the older fracture is nearer than the tip, or beside the new pieces and what extends
+// them straight on, where it is on the side that it is said to be on. Slack (m): what is nearer to a limit is not told.
+bool keeps_side(const Vec2& off, const Vec2& old_direction, const Vec2& direction, bool on_left, double slack) {
+  const double ahead = off.dot(direction), left = cross(direction, off);
+  if (ahead < -slack) return off.dot(old_direction) < -slack;
+  return ahead > slack && (on_left ? left > slack : left < -slack);
+}
+
+// Particles ahead of the old tip (`from`) may change sides as the path turns; those beside the older fracture keep
+// theirs.
+void update_particle_sides(State& state, const Tip& tip, const Vec2& from, const Vec2& old_direction,
+                           double old_length) {
   const Surface& fracture = state.fracture();
-  const Vec2 at = tip_position(state, tip);
-  const double near = extension(state.grid) + fracture.length() - old_length;
+  const Vec2 at = tip_position(state, tip), direction = tip_direction(fracture, tip.at_back);
+  const double near = extension(state.grid) + fracture.length() - old_length, slack = 1e-6 * state.grid.h;
   Particles& p = state.particles;
   for (std::size_t q = 0; q < p.size(); ++q) {
     const Vec2 x{p.x[q], p.y[q]};
+    if (keeps_side(x - from, old_direction, direction, tip.at_back == ((p.sides[q] & fracture.mask()) != 0), slack))
+      continue;
     if ((x - at).norm() > 2.0 * near) continue;
     const Projection on = project(fracture, x, extension(state.grid));
     const bool ahead = tip.at_back ? on.arc >= old_length - 1e-9 : on.arc <= fracture.length() - old_length + 1e-9;
@@ -182,10 +196,19 @@ bool passes_through(const Particles& p, std::size_t q, const SurfacePoint& s, do
   return std::abs(off.dot(s.n)) < 1e-3 * h && std::abs(off.dot(Vec2{s.n.y(), -s.n.x()})) - 0.5 * s.A <= 1.5 * h;
 }
 
-int fine_ones_hit(const Particles& p, const SurfacePoint& s, double h) {
-  int hit = 0;
-  for (std::size_t q = 0; q < p.size(); ++q) hit += p.V[q] <= 1.01 * h * h / 16.0 && passes_through(p, q, s, h) ? 1 : 0;
-  return hit;
+// Particles that passes_through() or near_point(1.5 h) may hold for, for any of these points: those in a box around
+// them.
+std::vector<std::size_t> particles_beside(const Particles& p, std::span<const SurfacePoint> points, double h) {
+  Vec2 low = Vec2::Constant(HUGE_VAL), high = Vec2::Constant(-HUGE_VAL);
+  for (const SurfacePoint& s : points) {
+    const Vec2 reach = Vec2::Constant(0.5 * s.A + 3.0 * h);
+    low = low.cwiseMin(s.x - reach), high = high.cwiseMax(s.x + reach);
+  }
+  std::vector<std::size_t> beside;
+  for (std::size_t q = 0; q < p.size(); ++q) {
+    if (p.x[q] > low.x() && p.x[q] < high.x() && p.y[q] > low.y() && p.y[q] < high.y()) beside.push_back(q);
+  }
+  return beside;
 }
 
 }  // namespace
@@ -193,14 +216,19 @@ int fine_ones_hit(const Particles& p, const SurfacePoint& s, double h) {
 void refine_particles(const Scene& scene, State& state, std::size_t first, std::size_t last) {
   const double h = state.grid.h, sixteenth = 1.01 * h * h / 16.0;
   Particles& p = state.particles;
-  const std::size_t before = p.size();
+  const std::vector<std::size_t> beside =
+      particles_beside(p, std::span(state.fracture().points).subspan(first, last - first), h);
   std::vector<std::size_t> split;
   std::vector<char> whole(last - first, 0);  // of points: whether they leave fine particles as they are
   if (scene.numerics.mechanics == Numerics::Mechanics::quasistatic) {
-    for (std::size_t k = first; k < last; ++k)
-      whole[k - first] = fine_ones_hit(p, state.fracture().points[k], h) <= now_and_then ? 1 : 0;
+    for (std::size_t k = first; k < last; ++k) {
+      const auto hit = std::ranges::count_if(beside, [&](std::size_t q) {
+        return p.V[q] <= sixteenth && passes_through(p, q, state.fracture().points[k], h);
+      });
+      whole[k - first] = hit <= now_and_then ? 1 : 0;
+    }
   }
-  for (std::size_t q = 0; q < before; ++q) {
+  for (const std::size_t q : beside) {
     const bool fine = p.V[q] <= sixteenth;
     for (std::size_t k = first; k < last; ++k) {
       const SurfacePoint& s = state.fracture().points[k];
@@ -235,7 +263,8 @@ void place_points(const Scene& scene, State& state, Surface& surface) {
 double extend_tip(const Scene& scene, State& state, Tip& tip, double increment) {
   Surface& fracture = state.fracture();
   const Vec2 from = tip_position(state, tip);
-  Vec2 direction = tip_direction(fracture, tip.at_back);
+  const Vec2 old_direction = tip_direction(fracture, tip.at_back);
+  Vec2 direction = old_direction;
   if (scene.fracture->direction == Fracture::Direction::max_hoop) {
     direction = Vec2{std::cos(tip.turn) * direction.x() - std::sin(tip.turn) * direction.y(),
                      std::sin(tip.turn) * direction.x() + std::cos(tip.turn) * direction.y()};
@@ -250,7 +279,7 @@ double extend_tip(const Scene& scene, State& state, Tip& tip, double increment) 
     displace_new(state, tip.at_back, pieces);
   const std::size_t first = tip.at_back ? old_points : 0;
   refine_beside(scene, state, first, first + pieces);
-  update_particle_sides(state, tip, old_length);
+  update_particle_sides(state, tip, from, old_direction, old_length);
   refine_particles(scene, state, first, first + pieces);
   for (Surface& surface : state.surfaces) place_points(scene, state, surface);
   return length;

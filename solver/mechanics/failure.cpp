@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
 
 #include "mechanics/stiffness.hpp"
@@ -227,12 +228,15 @@ Bonds find_bonds(const Scene& scene, const State& state) {
 }
 
 void load_bonds(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, Bonds& bonds) {
+  std::vector<std::optional<Vec2>> of_sample(bonds.samples.size());  // places of a column share theirs
   for (BondedPlace& place : bonds.places) {
     const Surface& surface = state.surfaces[place.surface];
     const SurfacePoint& s = surface.points[place.point];
     place.carried = s.in_situ;
-    for (const std::size_t k : place.samples)
-      place.carried += traction(rocks, state, surface, bonds.samples[k]) / static_cast<double>(place.samples.size());
+    for (const std::size_t k : place.samples) {
+      if (!of_sample[k]) of_sample[k] = traction(rocks, state, surface, bonds.samples[k]);
+      place.carried += *of_sample[k] / static_cast<double>(place.samples.size());
+    }
     const Vec2 t{s.n.y(), -s.n.x()};
     place.index = failure_index(scene.laws[surface.law], place.carried.dot(s.n), place.carried.dot(t));
   }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <map>
+#include <optional>
+#include <tuple>
 
 #include "mechanics/stiffness.hpp"
 #include "state/quarters.hpp"
@@ -57,26 +59,34 @@ Motion forces_of_quarters(const Scene& scene, const std::vector<Elasticity>& roc
   return f;
 }
 
-// Whether the spans of a bin's nodes are all h, but for round-off.
-bool is_uniform(const Grid& g, const Bin& bin) {
+// Whether three spans in a row are all h, but for round-off.
+template <class Span>
+bool is_uniform(const Grid& g, int middle, Span span) {
   constexpr double round_off = 1e-9;
-  for (int k = -1; k <= 1; ++k) {
-    if (std::abs(g.span_x(bin.i + k) - g.h) > round_off * g.h) return false;
-    if (std::abs(g.span_y(bin.j + k) - g.h) > round_off * g.h) return false;
+  for (int k = middle - 1; k <= middle + 1; ++k) {
+    if (std::abs(span(k) - g.h) > round_off * g.h) return false;
   }
   return true;
 }
 
-// The rock of a bin that is like all others of that rock: four particles that stand for four, among cells of one size;
-// else -1.
-int rock_of_alike(const State& state, const Quarters& quarters, const Bin& bin) {
+// What bins are like each other by: their column, their row (-1: one among cells of width or height h, as all such) and
+// their rock.
+using Kind = std::tuple<int, int, int>;
+
+// The kind of a bin of four particles that stand for four; none where it is like no other: among cells that are neither
+// of width nor of height h.
+std::optional<Kind> kind_of(const State& state, const Quarters& quarters, const Bin& bin) {
   const Particles& p = state.particles;
-  if (bin.last - bin.first != 4 * bin.stride || !is_uniform(state.grid, bin)) return -1;
+  const Grid& g = state.grid;
+  if (bin.last - bin.first != 4 * bin.stride) return std::nullopt;
+  const bool along_x = is_uniform(g, bin.i, [&](int k) { return g.span_x(k); }),
+             along_y = is_uniform(g, bin.j, [&](int k) { return g.span_y(k); });
+  if (!along_x && !along_y) return std::nullopt;
   const auto first = static_cast<std::size_t>(bin.first);
   for (auto q = first; q < static_cast<std::size_t>(bin.last); q += static_cast<std::size_t>(bin.stride)) {
-    if (!quarters.whole(p, q) || p.rock[q] != p.rock[first]) return -1;
+    if (!quarters.whole(p, q) || p.rock[q] != p.rock[first]) return std::nullopt;
   }
-  return p.rock[first];
+  return Kind{along_x ? -1 : bin.i, along_y ? -1 : bin.j, p.rock[first]};
 }
 
 bool any_whole(const State& state, const Quarters& quarters, const Bin& bin) {
@@ -93,17 +103,16 @@ void exert_quarters(const Scene& scene, const std::vector<Elasticity>& rocks, co
                     State& state) {
   const Quarters quarters(scene, state.grid);
   if (!quarters.in_use()) return;
-  std::map<int, LocalStiffness> alike;
+  std::map<Kind, LocalStiffness> alike;
   for (const Bin& bin : state.bins) {
     if (!any_whole(state, quarters, bin)) continue;
     Motion moved;
     for (Eigen::Index n = 0; n < 9; ++n)
       moved.segment<2>(2 * n) = u[static_cast<std::size_t>(bin.record[static_cast<std::size_t>(n)])];
-    const int rock = rock_of_alike(state, quarters, bin);
-    if (rock >= 0 && !alike.contains(rock))
-      alike.emplace(rock, stiffness_of_quarters(scene, rocks, state, quarters, bin));
+    const std::optional<Kind> kind = kind_of(state, quarters, bin);
+    if (kind && !alike.contains(*kind)) alike.emplace(*kind, stiffness_of_quarters(scene, rocks, state, quarters, bin));
     const Motion f =
-        rock >= 0 ? Motion(alike.at(rock) * moved) : forces_of_quarters(scene, rocks, state, quarters, bin, moved);
+        kind ? Motion(alike.at(*kind) * moved) : forces_of_quarters(scene, rocks, state, quarters, bin, moved);
     for (std::size_t n = 0; n < 9; ++n) {
       const auto r = static_cast<std::size_t>(bin.record[n]);
       const auto k = static_cast<Eigen::Index>(2 * n);

@@ -176,9 +176,7 @@ Eigen::VectorXd TreeFactor::solve(const Eigen::VectorXd& f) const {
 // The same as for one right-hand side, for many, of which y holds the rows on some branches; place: of each of them.
 template <class Lanes>
 void TreeFactor::down(const Block& block, const std::vector<int>& place, std::vector<Lanes>& y) const {
-  const auto at = [&](int row) -> Lanes& {
-    return y[static_cast<std::size_t>(place[static_cast<std::size_t>(row)])];
-  };
+  const auto at = [&](int row) -> Lanes& { return y[static_cast<std::size_t>(place[static_cast<std::size_t>(row)])]; };
   const Eight* L = &values_[block.values];
   std::array<Lanes, width> own;
   own.fill(Lanes::Zero());

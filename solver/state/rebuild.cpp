@@ -192,10 +192,9 @@ std::vector<SideWord> reach_of(const Grid& g, const std::vector<SideWord>& mask)
   return reach;
 }
 
-std::vector<SortKey> sort_keys(const State& state, const std::vector<SideWord>& mask) {
+std::vector<SortKey> sort_keys(const State& state, const std::vector<SideWord>& reach) {
   const Particles& p = state.particles;
   const Grid& g = state.grid;
-  const std::vector<SideWord> reach = reach_of(g, mask);
   std::vector<SortKey> keys(p.size());
   int i = 0, j = 0;  // those of the particle before, most often
   for (std::size_t k = 0; k < p.size(); ++k) {
@@ -242,7 +241,7 @@ void sort_particles(Particles& particles, const std::vector<std::size_t>& order)
   });
 }
 
-void make_bins(State& state, const std::vector<SortKey>& keys) {
+void make_bins(State& state, const std::vector<SideWord>& reach, const std::vector<SortKey>& keys) {
   state.bins.clear();
   for (std::size_t k = 0; k < keys.size(); ++k) {
     const bool same = k > 0 && std::tie(keys[k].j, keys[k].i, keys[k].sides) ==
@@ -251,8 +250,10 @@ void make_bins(State& state, const std::vector<SortKey>& keys) {
       Bin bin;
       bin.first = static_cast<int>(k);
       bin.i = keys[k].i, bin.j = keys[k].j;
-      const auto nodes = stencil_nodes(state.grid, bin.i, bin.j);
-      for (std::size_t n = 0; n < 9; ++n) bin.record[n] = record_for(state.copies, nodes[n], keys[k].sides);
+      bin.record = stencil_nodes(state.grid, bin.i, bin.j);
+      if (reach[static_cast<std::size_t>(state.grid.node(bin.i, bin.j))] != 0) {
+        for (int& record : bin.record) record = record_for(state.copies, record, keys[k].sides);
+      }
       state.bins.push_back(bin);
     }
     state.bins.back().last = static_cast<int>(k) + 1;
@@ -357,6 +358,7 @@ std::vector<std::vector<StressSample>> sample_stress(const Scene& scene, const S
 
 void make_stress_samples(const Scene& scene, State& state) {
   state.stress_samples.assign(state.surfaces.size(), {});
+  if (scene.numerics.mechanics == Numerics::Mechanics::quasistatic) return;  // which has bonds of its own
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
     const Surface& s = state.surfaces[k];
     if (s.kind != Surface::Kind::interface) continue;
@@ -411,8 +413,9 @@ void rebuild_copies(const Scene& scene, State& state) {
   const std::vector<SideWord> mask = node_masks(scene, state);
   make_cut_nodes(state, mask, state.copies);
   join_corners(scene, state);
-  const std::vector<SortKey> keys = sorted(state.grid, sort_keys(state, mask));
-  make_bins(state, keys);
+  const std::vector<SideWord> reach = reach_of(state.grid, mask);
+  const std::vector<SortKey> keys = sorted(state.grid, sort_keys(state, reach));
+  make_bins(state, reach, keys);
   std::vector<std::size_t> order(keys.size());
   std::transform(keys.begin(), keys.end(), order.begin(), [](const SortKey& key) { return key.from; });
   if (scene.numerics.in_lanes()) {
