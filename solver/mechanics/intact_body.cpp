@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "mechanics/stiffness.hpp"
 #include "state/quarters.hpp"
@@ -80,7 +81,8 @@ std::vector<Master> mirrored(const State& state, std::vector<Master> masters) {
   return masters;
 }
 
-IntactBody::IntactBody(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, bool halved)
+IntactBody::IntactBody(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, bool halved,
+                       std::vector<int> order)
     : halved_(halved) {
   State intact;
   intact.grid = state.grid;
@@ -92,7 +94,7 @@ IntactBody::IntactBody(const Scene& scene, const std::vector<Elasticity>& rocks,
   masters_ = halved ? mirrored(intact, intact.masters) : intact.masters;
   hold_rigid_motion(scene, state.grid, halved, masters_);
   factor_ = TreeFactor(assemble_stiffness(scene, rocks, intact, masters_),
-                       "the stiffness of the intact block is singular: its edges leave a motion free");
+                       "the stiffness of the intact block is singular: its edges leave a motion free", std::move(order));
 }
 
 }  // namespace strata

@@ -24,8 +24,10 @@ class IntactBody {
  public:
   /// Assembles and factors K from the state's particles with all surfaces closed, those that stand for four divided;
   /// halved: with the mirror's ties, the energy of the left half counted twice. Rigid motion that no edge holds is held
-  /// at corners: loads are in balance. Throws NumericalFailure where the factorisation fails.
-  IntactBody(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, bool halved);
+  /// at corners: loads are in balance. order: that of the factor of a body on the same grid with the same ties, or
+  /// none. Throws NumericalFailure where the factorisation fails.
+  IntactBody(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, bool halved,
+             std::vector<int> order = {});
 
   /// K = L L^T in one value for each of the 2 x nodes unknowns (N/m, m); loads on held ones must be 0.
   const TreeFactor& factor() const { return factor_; }

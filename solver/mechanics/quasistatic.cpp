@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "mechanics/body_load.hpp"
 #include "mechanics/stiffness.hpp"
@@ -194,8 +195,10 @@ void update_equations(const Scene& scene, const std::vector<Elasticity>& rocks, 
   const bool halved = halve && mirror_symmetric(scene, state);
   const bool same_body = model.body && model.body->points() == Quarters(scene, state.grid).points(state.particles);
   if (!same_body) {
+    std::vector<int> order;
+    if (model.body && model.body->halved() == halved) order = model.body->factor().order();
     model.body.reset();  // two are not to be held at a time
-    model.body = std::make_shared<const IntactBody>(scene, rocks, state, halved);
+    model.body = std::make_shared<const IntactBody>(scene, rocks, state, halved, std::move(order));
   }
   model.condensed = condense(scene, rocks, state, *model.body, same_body ? &model.condensed : nullptr);
   model.places = contact_places(scene, rocks, state, model.condensed);

@@ -32,14 +32,16 @@ class OneThread {
 
 }  // namespace
 
-TreeFactor::TreeFactor(const Eigen::SparseMatrix<double>& K, const char* singular) {
+TreeFactor::TreeFactor(const Eigen::SparseMatrix<double>& K, const char* singular, std::vector<int> order) {
   const OneThread guard;
   cholmod_common common{};
   cholmod_start(&common);
   common.print = 0;
   common.supernodal = CHOLMOD_SUPERNODAL;
   cholmod_sparse view = Eigen::viewAsCholmod(K.selfadjointView<Eigen::Lower>());
-  cholmod_factor* L = cholmod_analyze(&view, &common);
+  const bool ordered = order.size() == view.nrow;
+  if (ordered) common.nmethods = 1, common.method[0].ordering = CHOLMOD_GIVEN;
+  cholmod_factor* L = cholmod_analyze_p(&view, ordered ? order.data() : nullptr, nullptr, 0, &common);
   cholmod_factorize(&view, L, &common);
   const bool sound = common.status == CHOLMOD_OK;
   const bool out_of_memory = common.status == CHOLMOD_OUT_OF_MEMORY || common.status == CHOLMOD_TOO_LARGE;
@@ -51,6 +53,7 @@ TreeFactor::TreeFactor(const Eigen::SparseMatrix<double>& K, const char* singula
     place_.resize(L->n);
     for (std::size_t k = 0; k < L->n; ++k) place_[static_cast<std::size_t>(unknown_[k])] = static_cast<int>(k);
     block_of_row_.resize(L->n);
+    reserve(*L);
     for (std::size_t s = 0; s < L->nsuper; ++s) {
       const auto stride = static_cast<std::size_t>(rows_at[s + 1] - rows_at[s]);
       for (int first = super[s]; first < super[s + 1]; first += width) {
@@ -70,6 +73,21 @@ TreeFactor::TreeFactor(const Eigen::SparseMatrix<double>& K, const char* singula
   cholmod_finish(&common);
   if (out_of_memory) throw std::bad_alloc();
   if (!sound) throw NumericalFailure(singular);
+}
+
+// Room for the blocks of all supernodes.
+void TreeFactor::reserve(const cholmod_factor& L) {
+  const auto *super = static_cast<const int*>(L.super), *rows_at = static_cast<const int*>(L.pi);
+  std::size_t blocks = 0, rows = 0;
+  for (std::size_t s = 0; s < L.nsuper; ++s) {
+    const int columns = super[s + 1] - super[s], stride = rows_at[s + 1] - rows_at[s];
+    for (int last = std::min(width, columns);; last = std::min(last + width, columns)) {
+      ++blocks;
+      rows += static_cast<std::size_t>(stride - last);
+      if (last == columns) break;
+    }
+  }
+  blocks_.reserve(blocks), row_.reserve(rows), values_.reserve(rows + width * blocks);
 }
 
 // A block from its columns of a supernode, `stride` values apart; rows: `count` of them, its own first.

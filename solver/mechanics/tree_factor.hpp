@@ -12,6 +12,8 @@
 #include <array>
 #include <vector>
 
+struct cholmod_factor_struct;  // of CHOLMOD
+
 namespace strata {
 
 // Entries of a vector, their indices rising.
@@ -35,15 +37,19 @@ class TreeFactor {
 
   TreeFactor() = default;
 
-  /// Factors a symmetric positive definite matrix of which the lower triangle counts (CHOLMOD, supernodal). Throws
+  /// Factors a symmetric positive definite matrix of which the lower triangle counts (CHOLMOD, supernodal). order: that
+  /// of a factor of a matrix with entries in the same places, which need not be sought again, or none. Throws
   /// NumericalFailure with `singular` as its text where a pivot is not positive.
-  TreeFactor(const Eigen::SparseMatrix<double>& K, const char* singular);
+  TreeFactor(const Eigen::SparseMatrix<double>& K, const char* singular, std::vector<int> order = {});
 
   /// The branches on which the given unknowns lie. Throws nothing.
   Branches branches(const std::vector<int>& unknowns) const;
 
   /// All blocks.
   const Branches& all() const { return all_; }
+
+  /// The unknowns in the order of their rows.
+  const std::vector<int>& order() const { return unknown_; }
 
   /// The row of an unknown.
   int row(int unknown) const { return place_[static_cast<std::size_t>(unknown)]; }
@@ -78,6 +84,7 @@ class TreeFactor {
                                // those below; one Eight a row, a value a column
   };
 
+  void reserve(const cholmod_factor_struct& L);
   void add_block(int first, int columns, const double* values, std::size_t stride, const int* rows, std::size_t count);
   void mark(const std::vector<int>& unknowns, std::vector<char>& on, Branches& blocks) const;
   void down(const Block& block, Eigen::VectorXd& y) const;
