@@ -1,10 +1,12 @@
 // The command line: read a scene, run it, and say by the exit status how it went.
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <limits>
 #include <new>
 #include <string>
 #include <vector>
@@ -94,9 +96,17 @@ int parse_and_do(int argc, char** argv) {
   return done;
 }
 
+// Without inertia, matrices of tens of MB come and go with each increment of the fracture. Given back to the system and
+// taken anew, their pages alone took 12 % of Experiment 5 soft at 0.25 m.
+void keep_freed_memory() {
+  mallopt(M_MMAP_MAX, 0);
+  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_freed_memory();
   try {
     return parse_and_do(argc, argv);
   } catch (const std::bad_alloc&) {

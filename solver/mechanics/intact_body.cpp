@@ -93,8 +93,9 @@ IntactBody::IntactBody(const Scene& scene, const std::vector<Elasticity>& rocks,
   rebuild_copies(scene, intact);
   masters_ = halved ? mirrored(intact, intact.masters) : intact.masters;
   hold_rigid_motion(scene, state.grid, halved, masters_);
-  factor_ = TreeFactor(assemble_stiffness(scene, rocks, intact, masters_),
-                       "the stiffness of the intact block is singular: its edges leave a motion free", std::move(order));
+  factor_ =
+      TreeFactor(assemble_stiffness(scene, rocks, intact, masters_),
+                 "the stiffness of the intact block is singular: its edges leave a motion free", std::move(order));
 }
 
 }  // namespace strata

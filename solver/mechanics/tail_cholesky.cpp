@@ -2,7 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <numeric>
+#include <utility>
 
 namespace strata {
 
@@ -14,10 +14,9 @@ bool factor_in_place(Eigen::Ref<Eigen::MatrixXd> A) {
 
 }  // namespace
 
-bool TailCholesky::factorise(const Eigen::MatrixXd& T, const Eigen::VectorXd& scale) {
-  order_.resize(static_cast<std::size_t>(T.rows()));
-  std::iota(order_.begin(), order_.end(), 0);
-  L_ = scale.asDiagonal() * T * scale.asDiagonal();
+bool TailCholesky::factorise(const Eigen::MatrixXd& T, const Eigen::VectorXd& scale, std::vector<int> order) {
+  order_ = std::move(order);
+  L_ = (scale.asDiagonal() * T * scale.asDiagonal())(order_, order_);
   return factor_in_place(L_);
 }
 

@@ -10,9 +10,9 @@ namespace strata {
 // they were, so do those of L, and a change of the others costs a factorisation of these, not of the whole.
 class TailCholesky {
  public:
-  /// Factors T (N/m per metre of thickness), scaled from both sides, with its unknowns in their order; false where it
-  /// is not positive definite.
-  bool factorise(const Eigen::MatrixXd& T, const Eigen::VectorXd& scale);
+  /// Factors T (N/m per metre of thickness), scaled from both sides, with its unknowns in this order; false where it is
+  /// not positive definite.
+  bool factorise(const Eigen::MatrixXd& T, const Eigen::VectorXd& scale, std::vector<int> order);
 
   /// Goes over to another matrix. now: what index each unknown has in it, -1 where it has gone. Entries of unknowns
   /// that have stayed with each other are what they were, scale included, but for those of two unknowns that are

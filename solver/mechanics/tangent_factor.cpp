@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <utility>
 
 namespace strata {
 
@@ -120,13 +121,13 @@ bool TangentFactor::stands_still() const {
 
 bool TangentFactor::factorise(const Eigen::MatrixXd& T, const Unknowns& unknowns,
                               const std::vector<ContactPlace>& places, const std::vector<LawAnswer>& answers,
-                              bool stiffened) {
+                              std::vector<int> order, bool stiffened) {
   stiffened_ = stiffened;
   symmetric_ = std::none_of(answers.begin(), answers.end(), [](const LawAnswer& r) { return r.dt_dn != 0.0; });
   start(unknowns, places, answers);
   scale_ = scale_of(T);
   if (T.rows() == 0) return true;  // a fracture so short that it splits no node
-  if (symmetric_) return cholesky_.factorise(T, scale_) && stands_still();
+  if (symmetric_) return cholesky_.factorise(T, scale_, std::move(order)) && stands_still();
   lu_.compute(scale_.asDiagonal() * T * scale_.asDiagonal());
   return stands_still();
 }

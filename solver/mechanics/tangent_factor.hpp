@@ -56,10 +56,11 @@ class TangentFactor {
  public:
   Pieces pieces;  // of T; none where it is not to be used again
 
-  /// Factors T as the T_0 of what follows; false where it is singular. stiffened: T is not quite that of `places` and
-  /// `answers`, and nothing may follow it.
+  /// Factors T as the T_0 of what follows; false where it is singular. order: of the unknowns in the factor, best those
+  /// last that the next change of the state will touch. stiffened: T is not quite that of `places` and `answers`, and
+  /// nothing may follow it.
   bool factorise(const Eigen::MatrixXd& T, const Unknowns& unknowns, const std::vector<ContactPlace>& places,
-                 const std::vector<LawAnswer>& answers, bool stiffened = false);
+                 const std::vector<LawAnswer>& answers, std::vector<int> order, bool stiffened = false);
 
   /// Goes over to the tangent of other answers of the same places; false where it is not sure to keep the digits (too
   /// many places have changed, the result is nearly singular) or nothing was factored: then it has to be factorised.
