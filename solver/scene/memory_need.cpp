@@ -68,24 +68,51 @@ bool is_halved(const Scene& scene) {
                              [&](const auto& x) { return std::abs(x[0] - middle) < 1e-9 * scene.numerics.cell_m; });
 }
 
+// How high a tip may come (m).
+double way_up(const Scene& scene) {
+  double length = scene.stop.tip_y_m.value_or(scene.domain.height_m);
+  for (const auto& x : scene.fracture->path_m) length = std::max(length, x[1]);
+  return length;
+}
+
+// Cells along an interface.
+double cells_along(const Scene& scene, const Cells& cells) {
+  return scene.strata.along == Strata::Along::y ? cells.x : cells.y;
+}
+
 // Cells that have 4 x 4 points at the end where others have 2 x 2: as far as J's rings reach beside the way up of a
 // tip, and 3.25 cells beside interfaces that may part (fracture/refine_beside.hpp).
 double refined_cells(const Scene& scene, const Cells& cells) {
   const double h = scene.numerics.cell_m, beside_path = 2.0 * (scene.numerics.ring_cells + 2.0), beside_interface = 6.5;
-  double length = scene.stop.tip_y_m.value_or(scene.domain.height_m), refined = 0.0;
-  for (const auto& x : scene.fracture->path_m) length = std::max(length, x[1]);
-  refined += beside_path * length / h;
+  double refined = beside_path * way_up(scene) / h;
   for (const InterfacePlace& place : scene.strata.interfaces) {
     if (scene.laws[place.law].kind == InterfaceLaw::Kind::perfect) continue;
-    refined += beside_interface * (scene.strata.along == Strata::Along::y ? cells.x : cells.y);
+    refined += beside_interface * cells_along(scene, cells);
   }
   return std::min(refined, cells.x * cells.y);
 }
 
-// Without inertia.
-double bytes_a_point(const Scene& scene) {
-  if (!may_turn(scene)) return 330.0;
-  return refines_ahead(scene) ? 700.0 : 950.0;
+// Jumps across the fracture at the end and interfaces: six a cell. Bonded interfaces fail in part.
+double jumps_of(const Scene& scene, const Cells& cells) {
+  constexpr double fails = 0.35;
+  double parted = scene.fracture ? way_up(scene) / scene.numerics.cell_m : 0.0;
+  for (const InterfacePlace& place : scene.strata.interfaces) {
+    const InterfaceLaw::Kind kind = scene.laws[place.law].kind;
+    if (kind == InterfaceLaw::Kind::perfect) continue;
+    parted += (kind == InterfaceLaw::Kind::soft ? 1.0 : fails) * cells_along(scene, cells);
+  }
+  return 6.0 * parted * (is_halved(scene) ? 0.5 : 1.0);
+}
+
+// Bytes without inertia, of a point and of n log n of n unknowns: that of bodies which are factored anew on the way is
+// smaller, since what the first one left serves the others.
+struct Bytes {
+  double point, factor;
+};
+
+Bytes bytes_of(const Scene& scene) {
+  if (!may_turn(scene)) return {330.0, 690.0};
+  return {refines_ahead(scene) ? 800.0 : 1090.0, 440.0};
 }
 
 }  // namespace
@@ -101,9 +128,11 @@ double memory_need(const Scene& scene) {
   if (scene.numerics.mechanics != Numerics::Mechanics::quasistatic) return 20e6 + 1250.0 * points;
   const Cells cells = cells_of(scene);
   const double n = 2.0 * (0.5 * cells.x * (is_halved(scene) ? 1.0 : 2.0) + 1.0) * (cells.y + 1.0);
-  // Factors by nested dissection fill up as n log n (George 1973): in Experiment 1 83 MB are measured at 1 m cells and
-  // 1232 MB at 0.25 m on uniform grids, 53 to 60 MB at 1 m and 207 to 229 MB at 0.25 m on graded ones.
-  return 28e6 + points * bytes_a_point(scene) + 700.0 * n * std::log2(n);
+  // Factors by nested dissection fill up as n log n (George 1973); jumps have some dense matrices. Fitted to the peaks
+  // of all variants of the experiments: 42 to 110 MB at 1 m cells, 187 to 1369 MB at 0.25 m.
+  const Bytes bytes = bytes_of(scene);
+  const double dense = 28.0 * std::pow(jumps_of(scene, cells), 2);
+  return 20e6 + points * bytes.point + bytes.factor * n * std::log2(n) + dense;
 }
 
 std::optional<std::string> too_large(const Scene& scene, double available) {

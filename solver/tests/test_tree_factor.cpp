@@ -143,6 +143,20 @@ TEST_CASE("vectors on branches are multiplied side by side") {
   for (std::size_t k = 0; k < Y.size(); ++k) CHECK(products(k, k + 1, Y[3])[0] == products(3, 4, Y[k])[0]);
 }
 
+// Requires that a matrix factored in the order of another with entries in the same places gives the digits that it has
+// with an order of its own, and that an order of another size is not taken.
+TEST_CASE("the order of one factor serves another") {
+  Eigen::SparseMatrix<double> K = grid_matrix(23, 31);
+  const TreeFactor before(K, "singular");
+  for (int k = 40; k < 60; ++k) K.coeffRef(k, k) *= 1.5;
+  const TreeFactor own(K, "singular"), taken(K, "singular", before.order()), other(K, "singular", {0, 1, 2});
+  const Eigen::VectorXd f = dense(some_loads(static_cast<int>(K.rows()))[11], K.rows()), x = own.solve(f);
+  CHECK(own.order() == before.order());
+  CHECK((taken.solve(f).array() == x.array()).all());
+  CHECK((other.solve(f).array() == x.array()).all());
+  CHECK((before.solve(f) - x).norm() > 1e-6 * x.norm());
+}
+
 TEST_CASE("a matrix that is not positive definite is refused with the text given") {
   Eigen::SparseMatrix<double> K = grid_matrix(4, 4);
   K.coeffRef(7, 7) = -1.0;
