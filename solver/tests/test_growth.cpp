@@ -6,6 +6,8 @@
 
 #include "fracture/j_integral.hpp"
 #include "small_scenes.hpp"
+#include "state/rebuild.hpp"
+#include "state/surfaces.hpp"
 
 using namespace strata;
 using namespace strata::test;
@@ -192,6 +194,37 @@ TEST_CASE("an oblique increment ends on the interface") {
     }
     CHECK(near >= 2);
   }
+}
+
+// Requires of both tips of a fracture that turns again and again, and back, that after each increment every particle is
+// on the side of the nearest place where that lies at the old tip or ahead of it, and where it was where not; some
+// change. What may be told without the nearest place (keeps_side()) is not used here. Mutations that fail: sides that
+// never change, those ahead told by the other sign, by the other tip, those behind the new piece left alone.
+TEST_CASE("particles ahead of a turn change sides") {
+  Scene scene = growing({{5.0, 10.0}, {9.0, 10.2}}, 1.3);
+  scene.domain.bottom = Edge::fixed;
+  scene.fracture->direction = Fracture::Direction::max_hoop;
+  Run run(scene);
+  State& state = run.state;
+  int changed = 0;
+  for (const double turn : {0.7, -0.4, -1.1, 0.5}) {
+    for (Tip& tip : state.tips) {
+      const std::vector<SideWord> before = state.particles.sides;
+      const double old_length = state.fracture().length();
+      tip.turn = turn;
+      extend_tip(run.scene, state, tip, 1.3);
+      const Surface& fracture = state.fracture();
+      const double grown = fracture.length() - old_length;
+      for (std::size_t q = 0; q < before.size(); ++q) {
+        const Projection on = project(fracture, {state.particles.x[q], state.particles.y[q]}, extension(state.grid));
+        const bool ahead = tip.at_back ? on.arc >= old_length - 1e-9 : on.arc <= grown + 1e-9;
+        const bool was = (before[q] & fracture.mask()) != 0, is = (state.particles.sides[q] & fracture.mask()) != 0;
+        CHECK(is == (ahead ? on.distance >= 0.0 : was));
+        changed += is != was ? 1 : 0;
+      }
+    }
+  }
+  CHECK(changed > 20);
 }
 
 // Requires that a straight run does not turn whatever the kink.
