@@ -95,27 +95,24 @@ void lengthen_fluid(const Scene& scene, State& state, bool at_back, std::size_t 
   if (!at_back) state.fluid.inlet += pieces;
 }
 
-// Whether growth leaves the side of a place alone whatever is nearest to it: `off` the old tip it lies behind the end
-// of the last piece, beside which the older fracture is nearer than the tip, or beside the new pieces and what extends
-// them straight on, where it is on the side that it is said to be on. Slack (m): what is nearer to a limit is not told.
-bool keeps_side(const Vec2& off, const Vec2& old_direction, const Vec2& direction, bool on_left, double slack) {
+// Whether growth leaves the side of a place alone whatever is nearest to it: `off` the old tip it lies behind the new
+// pieces, beside the older fracture or on the outside of the kink, or beside them and what extends them straight on,
+// where it is on the side that it is said to be on. Slack (m): what is nearer to a limit is not told.
+bool keeps_side(const Vec2& off, const Vec2& direction, bool on_left, double slack) {
   const double ahead = off.dot(direction), left = cross(direction, off);
-  if (ahead < -slack) return off.dot(old_direction) < -slack;
-  return ahead > slack && (on_left ? left > slack : left < -slack);
+  return ahead < -slack || (ahead > slack && (on_left ? left > slack : left < -slack));
 }
 
 // Particles ahead of the old tip (`from`) may change sides as the path turns; those beside the older fracture keep
 // theirs.
-void update_particle_sides(State& state, const Tip& tip, const Vec2& from, const Vec2& old_direction,
-                           double old_length) {
+void update_particle_sides(State& state, const Tip& tip, const Vec2& from, double old_length) {
   const Surface& fracture = state.fracture();
   const Vec2 at = tip_position(state, tip), direction = tip_direction(fracture, tip.at_back);
   const double near = extension(state.grid) + fracture.length() - old_length, slack = 1e-6 * state.grid.h;
   Particles& p = state.particles;
   for (std::size_t q = 0; q < p.size(); ++q) {
     const Vec2 x{p.x[q], p.y[q]};
-    if (keeps_side(x - from, old_direction, direction, tip.at_back == ((p.sides[q] & fracture.mask()) != 0), slack))
-      continue;
+    if (keeps_side(x - from, direction, tip.at_back == ((p.sides[q] & fracture.mask()) != 0), slack)) continue;
     if ((x - at).norm() > 2.0 * near) continue;
     const Projection on = project(fracture, x, extension(state.grid));
     const bool ahead = tip.at_back ? on.arc >= old_length - 1e-9 : on.arc <= fracture.length() - old_length + 1e-9;
@@ -263,8 +260,7 @@ void place_points(const Scene& scene, State& state, Surface& surface) {
 double extend_tip(const Scene& scene, State& state, Tip& tip, double increment) {
   Surface& fracture = state.fracture();
   const Vec2 from = tip_position(state, tip);
-  const Vec2 old_direction = tip_direction(fracture, tip.at_back);
-  Vec2 direction = old_direction;
+  Vec2 direction = tip_direction(fracture, tip.at_back);
   if (scene.fracture->direction == Fracture::Direction::max_hoop) {
     direction = Vec2{std::cos(tip.turn) * direction.x() - std::sin(tip.turn) * direction.y(),
                      std::sin(tip.turn) * direction.x() + std::cos(tip.turn) * direction.y()};
@@ -279,7 +275,7 @@ double extend_tip(const Scene& scene, State& state, Tip& tip, double increment) 
     displace_new(state, tip.at_back, pieces);
   const std::size_t first = tip.at_back ? old_points : 0;
   refine_beside(scene, state, first, first + pieces);
-  update_particle_sides(state, tip, from, old_direction, old_length);
+  update_particle_sides(state, tip, from, old_length);
   refine_particles(scene, state, first, first + pieces);
   for (Surface& surface : state.surfaces) place_points(scene, state, surface);
   return length;
