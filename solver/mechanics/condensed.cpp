@@ -26,8 +26,8 @@ std::uint64_t fingerprint(const Particles& p, std::size_t q) {
 
 std::vector<std::uint64_t> fingerprints(const State& state) {
   std::vector<std::uint64_t> prints(static_cast<std::size_t>(state.copies.records()), 0);
-  for (const Bin& bin : state.bins) {
-    if (std::none_of(bin.record.begin(), bin.record.end(), [&](int r) { return is_cut(state.copies, r); })) continue;
+  for (const std::size_t b : state.cut_bins) {
+    const Bin& bin = state.bins[b];
     std::uint64_t sum = 0;
     for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
          q += static_cast<std::size_t>(bin.stride))
@@ -174,12 +174,13 @@ std::vector<Entries> assemble_jumps(const Scene& scene, const std::vector<Elasti
     const Bin* bin;
   };
   std::vector<Member> members;
-  for (std::size_t b = 0; b < state.bins.size();) {
+  const std::vector<std::size_t>& cut = state.cut_bins;  // all bins of a cell, which share its nodes, or none
+  for (std::size_t b = 0; b < cut.size();) {
     members.clear();
     bool any = false;
-    const Bin& first = state.bins[b];
-    for (; b < state.bins.size() && state.bins[b].i == first.i && state.bins[b].j == first.j; ++b) {
-      const Bin& bin = state.bins[b];
+    const Bin& first = state.bins[cut[b]];
+    for (; b < cut.size() && state.bins[cut[b]].i == first.i && state.bins[cut[b]].j == first.j; ++b) {
+      const Bin& bin = state.bins[cut[b]];
       any = any || touches_new(bin);
       for (int q = bin.first; q < bin.last; q += bin.stride)
         members.push_back({p.id[static_cast<std::size_t>(q)], static_cast<std::size_t>(q), &bin});

@@ -126,8 +126,8 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> jumps_at_vertices(const State& stat
 void weigh_copies(const Scene& scene, State& state) {
   state.sums.clear(state.sums.size());
   const Particles& p = state.particles;
-  for (const Bin& bin : state.bins) {
-    if (std::none_of(bin.record.begin(), bin.record.end(), [&](int r) { return is_cut(state.copies, r); })) continue;
+  for (const std::size_t b : state.cut_bins) {
+    const Bin& bin = state.bins[b];
     for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
          q += static_cast<std::size_t>(bin.stride)) {
       const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));

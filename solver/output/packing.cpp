@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t width = 4;          // bytes of a value
 constexpr int fastest = 1;                // libdeflate's levels
-constexpr std::size_t sample = 4096;      // bytes that tell whether more are worth the search
+constexpr std::size_t sample = 1024;      // bytes that tell whether more are worth the search
 constexpr std::size_t longest = 0xffff;   // bytes of a stored block
 constexpr std::size_t head = 2, sum = 4;  // bytes of a zlib stream around its blocks
 

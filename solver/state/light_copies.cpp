@@ -43,7 +43,8 @@ std::vector<double> reached_by_points(const Scene& scene, const State& state, st
 std::vector<double> worth_of_particles(const Scene& scene, const State& state, const std::vector<double>& reached) {
   std::vector<double> worth(state.masters.size(), 0.0);
   const Particles& p = state.particles;
-  for (const Bin& bin : state.bins) {
+  for (const std::size_t b : state.cut_bins) {
+    const Bin& bin = state.bins[b];
     if (std::none_of(bin.record.begin(), bin.record.end(), [&](int r) { return reached[master_of(state, r)] >= 0.0; }))
       continue;
     for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);

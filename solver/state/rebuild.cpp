@@ -260,6 +260,14 @@ void make_bins(State& state, const std::vector<SideWord>& reach, const std::vect
   }
 }
 
+void find_cut_bins(State& state, const std::vector<SideWord>& reach) {
+  state.cut_bins.clear();
+  for (std::size_t b = 0; b < state.bins.size(); ++b) {
+    if (reach[static_cast<std::size_t>(state.grid.node(state.bins[b].i, state.bins[b].j))] != 0)
+      state.cut_bins.push_back(b);
+  }
+}
+
 void make_strips(State& state) {
   state.strips.clear();
   for (int j = 0, b = 0; j <= state.grid.ny; j += rows_per_strip) {
@@ -423,6 +431,7 @@ void rebuild_copies(const Scene& scene, State& state) {
     make_blocks(state.particles.rock, state.bins, order);
   }
   sort_particles(state.particles, order);
+  find_cut_bins(state, reach);
   make_strips(state);
   make_masters(scene, state);
   make_stress_samples(scene, state);

@@ -111,6 +111,7 @@ struct State {
   // Derived from the above by rebuild_copies(); not saved.
   Copies copies;
   std::vector<Bin> bins;
+  std::vector<std::size_t> cut_bins;  // of which a node is cut
   std::vector<Strip> strips;
   std::vector<Master> masters;  // of each record
   std::vector<int> tied;        // the records whose master is another one or has a factor 0
