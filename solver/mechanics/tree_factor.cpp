@@ -80,11 +80,11 @@ void TreeFactor::reserve(const cholmod_factor& L) {
   const auto *super = static_cast<const int*>(L.super), *rows_at = static_cast<const int*>(L.pi);
   std::size_t blocks = 0, rows = 0;
   for (std::size_t s = 0; s < L.nsuper; ++s) {
-    const int columns = super[s + 1] - super[s], stride = rows_at[s + 1] - rows_at[s];
-    for (int last = std::min(width, columns);; last = std::min(last + width, columns)) {
+    const auto columns = static_cast<std::size_t>(super[s + 1]) - static_cast<std::size_t>(super[s]),
+               stride = static_cast<std::size_t>(rows_at[s + 1]) - static_cast<std::size_t>(rows_at[s]);
+    for (std::size_t first = 0; first < columns; first += width) {
       ++blocks;
-      rows += static_cast<std::size_t>(stride - last);
-      if (last == columns) break;
+      rows += stride - std::min(first + width, columns);
     }
   }
   blocks_.reserve(blocks), row_.reserve(rows), values_.reserve(rows + width * blocks);
