@@ -92,14 +92,22 @@ double refined_cells(const Scene& scene, const Cells& cells) {
   return std::min(refined, cells.x * cells.y);
 }
 
-// Jumps across the fracture at the end and interfaces: six a cell. Bonded interfaces fail in part.
+// Length of the fracture at the end (m).
+double longest_fracture(const Scene& scene) {
+  if (scene.fracture->growth != Fracture::Growth::none) return way_up(scene);
+  const auto& path = scene.fracture->path_m;
+  double length = 0.0;
+  for (std::size_t k = 1; k < path.size(); ++k)
+    length += std::hypot(path[k][0] - path[k - 1][0], path[k][1] - path[k - 1][1]);
+  return length;
+}
+
+// Jumps across the fracture at the end and interfaces that part from the start: six a cell. How much of a bonded one
+// fails is not known.
 double jumps_of(const Scene& scene, const Cells& cells) {
-  constexpr double fails = 0.35;
-  double parted = scene.fracture ? way_up(scene) / scene.numerics.cell_m : 0.0;
+  double parted = scene.fracture ? longest_fracture(scene) / scene.numerics.cell_m : 0.0;
   for (const InterfacePlace& place : scene.strata.interfaces) {
-    const InterfaceLaw::Kind kind = scene.laws[place.law].kind;
-    if (kind == InterfaceLaw::Kind::perfect) continue;
-    parted += (kind == InterfaceLaw::Kind::soft ? 1.0 : fails) * cells_along(scene, cells);
+    if (scene.laws[place.law].kind == InterfaceLaw::Kind::soft) parted += cells_along(scene, cells);
   }
   return 6.0 * parted * (is_halved(scene) ? 0.5 : 1.0);
 }
@@ -111,8 +119,8 @@ struct Bytes {
 };
 
 Bytes bytes_of(const Scene& scene) {
-  if (!may_turn(scene)) return {330.0, 690.0};
-  return {refines_ahead(scene) ? 800.0 : 1090.0, 440.0};
+  if (!may_turn(scene)) return {330.0, 705.0};
+  return {refines_ahead(scene) ? 800.0 : 1090.0, 475.0};
 }
 
 }  // namespace
