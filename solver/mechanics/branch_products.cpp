@@ -23,7 +23,7 @@ void SideBySide::put(std::span<const BranchVector* const> vectors) {
     for (std::size_t e = 0; e < v.block.size(); ++e) {
       auto row = rows_.begin() + first_row_[static_cast<std::size_t>(v.block[e])];
       for (int k = v.begin[e]; k < v.begin[e + 1]; ++k, ++row)
-        (*row)[c / 8][static_cast<Eigen::Index>(c % 8)] = v.value[static_cast<std::size_t>(k)];
+        (*row)[c / half][static_cast<Eigen::Index>(c % half)] = v.value[static_cast<std::size_t>(k)];
     }
   }
 }
@@ -41,7 +41,7 @@ std::array<double, SideBySide::most> SideBySide::times(const BranchVector& v) co
   }
   std::array<double, most> products{};
   Eigen::Map<Eight>(products.data()) = low;
-  Eigen::Map<Eight>(products.data() + most / 2) = high;
+  Eigen::Map<Eight>(products.data() + half) = high;
   return products;
 }
 

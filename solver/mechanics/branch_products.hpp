@@ -26,7 +26,8 @@ class SideBySide {
   std::array<double, most> times(const BranchVector& v) const;
 
  private:
-  using Eight = Eigen::Array<double, most / 2, 1>;
+  static constexpr std::size_t half = most / 2;
+  using Eight = Eigen::Array<double, half, 1>;
   using Lanes = std::array<Eight, 2>;
 
   std::vector<int> first_row_;  // in rows_, of each block of the factor; -1: none of the vectors has values there
