@@ -143,12 +143,13 @@ template <class Lanes>
           lanes.load(p.g_xx + q), lanes.load(p.g_xy + q), lanes.load(p.g_yx + q), lanes.load(p.g_yy + q)};
 }
 
-// Moves the particles at q, which are as `is` says, by the grid's motion over a step.
+// Moves the particles at q, which are as `is` says and of the mass and area of those at `like`, by the grid's motion
+// over a step.
 template <class Lanes>
 [[gnu::always_inline]] inline void move(const Lanes lanes, const SweepArrays& p, const SweepStep& step,
                                         const BlockSpans<Lanes>& at, const Coefficients<typename Lanes::Real>& c,
                                         const PlaceWeights<typename Lanes::Real>& w, const Elasticity& rock,
-                                        std::size_t q, ParticleState<typename Lanes::Real>& is,
+                                        std::size_t q, std::size_t like, ParticleState<typename Lanes::Real>& is,
                                         LaneReport<typename Lanes::Real>& report) {
   using Real = typename Lanes::Real;
   const auto change = [&](double* array, Real& value, const Real& by) {
@@ -157,7 +158,7 @@ template <class Lanes>
   };
   const auto add = [&](double* array, const Real& by) { lanes.store(array + q, lanes.load(array + q) + by); };
   const Interpolated<Real> x = interpolate(c.v_x, w), y = interpolate(c.v_y, w);
-  const Real m = lanes.load(p.m + q), V = lanes.load(p.V + q);
+  const Real m = lanes.load(p.m + like), V = lanes.load(p.V + like);
   report.before += m * (is.v_x * is.v_x + is.v_y * is.v_y);
   is.v_x = step.keep * is.v_x + value_at(c.take_x, w), is.v_y = step.keep * is.v_y + value_at(c.take_y, w);
   lanes.store(p.v_x + q, is.v_x), lanes.store(p.v_y + q, is.v_y);
@@ -176,16 +177,16 @@ template <class Lanes>
                              rock.mu * shear * shear);  // V dsigma : de
 }
 
-// What the particles at q give as they are.
+// What particles of the mass and area of those at `like` give as they are.
 template <class Lanes>
 [[gnu::always_inline]] inline void give(const Lanes lanes, const SweepArrays& p, const BlockSpans<Lanes>& at,
-                                        const Elasticity& rock, std::size_t q,
+                                        const Elasticity& rock, std::size_t like,
                                         const ParticleState<typename Lanes::Real>& is,
                                         Given<typename Lanes::Real>& to) {
   using Real = typename Lanes::Real;
-  to.m = lanes.load(p.m + q);
+  to.m = lanes.load(p.m + like);
   to.mom_x = to.m * is.v_x, to.mom_y = to.m * is.v_y;
-  const Real V = lanes.load(p.V + q), V_x = -V * at.x.per_length, V_y = -V * at.y.per_length;
+  const Real V = lanes.load(p.V + like), V_x = -V * at.x.per_length, V_y = -V * at.y.per_length;
   const Real trace = rock.lambda * (is.g_xx + is.g_yy), s_xy = rock.mu * (is.g_xy + is.g_yx);
   to.s_xx = V_x * (trace + 2.0 * rock.mu * is.g_xx), to.s_xy_x = V_x * s_xy;
   to.s_yy = V_y * (trace + 2.0 * rock.mu * is.g_yy), to.s_xy_y = V_y * s_xy;
@@ -305,21 +306,22 @@ void sweep_block(const Lanes lanes, const std::vector<Elasticity>& rocks, const 
   int n = 0;
   for (int first = bin.first; first < bin.last; first += bin.stride) {
     const auto q = static_cast<std::size_t>(first);
+    const std::size_t like = bin.like < 0 ? q : static_cast<std::size_t>(bin.like);
     const Elasticity& rock = rocks[arrays.rock[q]];
-    const ParticleSizes<Real> size{Shape::template size<Real>(lanes, arrays.half_x + q, at.x.per_length),
-                                   Shape::template size<Real>(lanes, arrays.half_y + q, at.y.per_length)};
+    const ParticleSizes<Real> size{Shape::template size<Real>(lanes, arrays.half_x + like, at.x.per_length),
+                                   Shape::template size<Real>(lanes, arrays.half_y + like, at.y.per_length)};
     ParticleState<Real> is = load_particles(lanes, arrays, q);
     if constexpr (Move) {
       const Real off_x = (is.x - at.x.node) * at.x.per_length, off_y = (is.y - at.y.node) * at.y.per_length;
       report.farthest_cells =
           larger(report.farthest_cells, lanes.used(larger(larger(off_x, -off_x), larger(off_y, -off_y))));
       const PlaceWeights<Real> w = weights_at<Shape>(at, is.x, is.y, size);
-      move(lanes, arrays, step, at, c, w, rock, q, is, report);
+      move(lanes, arrays, step, at, c, w, rock, q, like, is, report);
     }
     if constexpr (Gather) {
       Given<Real>& to = given[n++];
       to.w = weights_at<Shape>(at, is.x, is.y, size);
-      give(lanes, arrays, at, rock, q, is, to);
+      give(lanes, arrays, at, rock, like, is, to);
       if (n == together || first + bin.stride >= bin.last) add_given(lanes, bin, given, n, arrays), n = 0;
     }
   }

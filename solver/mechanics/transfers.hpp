@@ -12,7 +12,7 @@ namespace strata {
 // each record.
 struct Uptake {
   double keep = 1.0;
-  const std::vector<double>*x = nullptr, *y = nullptr;
+  const SpreadArray *x = nullptr, *y = nullptr;
 };
 
 /// Particles to grid: m_i = sum_p N_ip m_p, mom_i = sum_p N_ip m_p v_p, f_i = - sum_p V_p sigma_p grad N_ip, where

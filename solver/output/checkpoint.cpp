@@ -150,8 +150,8 @@ class Saver {
     put(std::uint64_t{text.size()});
     raw(text.data(), text.size());
   }
-  template <class T>
-  void put(const std::vector<T>& values) {
+  template <class T, class Allocator>
+  void put(const std::vector<T, Allocator>& values) {
     put(std::uint64_t{values.size()});
     if constexpr (is_plain<T>) {
       raw(values.data(), values.size() * sizeof(T));
@@ -198,8 +198,8 @@ class Loader {
     text.resize(count());
     raw(text.data(), text.size());
   }
-  template <class T>
-  void get(std::vector<T>& values) {
+  template <class T, class Allocator>
+  void get(std::vector<T, Allocator>& values) {
     values.resize(count());
     if constexpr (is_plain<T>) {
       raw(values.data(), values.size() * sizeof(T));

@@ -130,7 +130,7 @@ ParticleFields write_particles(hdf5::Id group, const Scene& scene, const State& 
     std::transform(order.begin(), order.end(), field.begin(), [&](auto p) { return static_cast<float>(value(p)); });
     write(name, unit, field);
   };
-  const auto put_array = [&](const char* name, const char* unit, const std::vector<double>& values) {
+  const auto put_array = [&](const char* name, const char* unit, const SpreadArray& values) {
     put(name, unit, [&](std::size_t p) { return values[p]; });
   };
   const double moved = scene.numerics.keeps_places() ? 1.0 : 0.0;  // positions are where the rock now is

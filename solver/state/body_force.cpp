@@ -17,7 +17,7 @@ struct StartPlaces {
 };
 
 StartPlaces start_places(const Scene& scene, const Particles& p) {
-  StartPlaces start{p.x, p.y};
+  StartPlaces start{{p.x.begin(), p.x.end()}, {p.y.begin(), p.y.end()}};
   if (scene.numerics.keeps_places()) return start;
   for (std::size_t q = 0; q < p.size(); ++q) start.X[q] -= p.u_x[q], start.Y[q] -= p.u_y[q];
   return start;

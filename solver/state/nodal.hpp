@@ -3,7 +3,8 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
+
+#include "state/spread_array.hpp"
 
 namespace strata {
 
@@ -21,7 +22,7 @@ struct NodeMotion {
 };
 
 struct NodalSums {
-  std::vector<double> m, mom_x, mom_y, f_x, f_y;
+  SpreadArray m, mom_x, mom_y, f_x, f_y;
 
   struct Record {
     double &m, &mom_x, &mom_y, &f_x, &f_y;
@@ -44,7 +45,7 @@ struct NodalSums {
 };
 
 struct NodalMotion {
-  std::vector<double> v_x, v_y, dv_x, dv_y;
+  SpreadArray v_x, v_y, dv_x, dv_y;
 
   struct Record {
     double &v_x, &v_y, &dv_x, &dv_y;

@@ -5,23 +5,24 @@
 #include <cstdint>
 #include <vector>
 
+#include "state/spread_array.hpp"
 #include "state/types.hpp"
 
 namespace strata {
 
 struct Particles {
-  std::vector<double> x, y;            // position (m)
-  std::vector<double> u_x, u_y;        // displacement since the in-situ state (m)
-  std::vector<double> v_x, v_y;        // velocity (m/s)
-  std::vector<double> g_xx, g_xy;      // displacement gradient: g_xy = du_x/dy
-  std::vector<double> g_yx, g_yy;      //
-  std::vector<double> m;               // mass per metre of thickness (kg/m)
-  std::vector<double> V;               // area (m^2)
-  std::vector<double> half_x, half_y;  // half of the sides of a particle's rectangle (m), for uGIMP
-  std::vector<std::uint8_t> rock;      // index into Scene::rocks
-  std::vector<SideWord> sides;         // side of each surface
-  std::vector<Stress> in_situ;         // in-situ stress (Pa), tension positive
-  std::vector<std::int32_t> id;        // fixed for life; the arrays are reordered as particles change bins
+  SpreadArray x, y;                // position (m)
+  SpreadArray u_x, u_y;            // displacement since the in-situ state (m)
+  SpreadArray v_x, v_y;            // velocity (m/s)
+  SpreadArray g_xx, g_xy;          // displacement gradient: g_xy = du_x/dy
+  SpreadArray g_yx, g_yy;          //
+  SpreadArray m;                   // mass per metre of thickness (kg/m)
+  SpreadArray V;                   // area (m^2)
+  SpreadArray half_x, half_y;      // half of the sides of a particle's rectangle (m), for uGIMP
+  std::vector<std::uint8_t> rock;  // index into Scene::rocks
+  std::vector<SideWord> sides;     // side of each surface
+  std::vector<Stress> in_situ;     // in-situ stress (Pa), tension positive
+  std::vector<std::int32_t> id;    // fixed for life; the arrays are reordered as particles change bins
   std::int32_t next_id = 0;
 
   std::size_t size() const { return x.size(); }

@@ -431,6 +431,7 @@ void rebuild_copies(const Scene& scene, State& state) {
     make_blocks(state.particles.rock, state.bins, order);
   }
   sort_particles(state.particles, order);
+  if (scene.numerics.in_lanes()) find_like(state.particles, state.bins);
   find_cut_bins(state, reach);
   make_strips(state);
   make_masters(scene, state);

@@ -126,7 +126,7 @@ struct State {
   NodalSums body_sums;     // what it gives the nodes: f_x, f_y
   // Kept for their memory alone: no step allocates any.
   NodalSums filtered;                   // of XPIC(2)
-  std::vector<double> take_x, take_y;   // the same
+  SpreadArray take_x, take_y;           // the same
   std::vector<ParticleReport> reports;  // of each strip
   std::vector<SplitPlace> places;       // of the solve for reactions
   std::vector<InterfaceLaw> tie_laws;   // the same

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scene/scene.hpp"
+#include "state/spread_array.hpp"
 #include "state/types.hpp"
 
 namespace strata {
@@ -120,11 +121,11 @@ struct TotalMotion {
   // Derived.
   bool based = false;                         // whether what follows belongs to the particles as they are
   std::shared_ptr<const StencilOperator> op;  // none: the copies have changed
-  std::vector<double> m;                      // kg/m, by slots as all that follows
-  std::vector<double> base_x, base_y;         // acceleration at the base (m/s^2)
-  std::vector<double> a_x, a_y;               // and now
-  std::vector<double> v_x, v_y;               // velocity (m/s)
-  std::vector<double> u_x, u_y;               // displacement since the base (m)
+  SpreadArray m;                              // kg/m, by slots as all that follows
+  SpreadArray base_x, base_y;                 // acceleration at the base (m/s^2)
+  SpreadArray a_x, a_y;                       // and now
+  SpreadArray v_x, v_y;                       // velocity (m/s)
+  SpreadArray u_x, u_y;                       // displacement since the base (m)
   TotalSurfaces surfaces;
   std::vector<BondSensor> bonds;
 };

@@ -65,7 +65,7 @@ inline Scene made_scene() {
 
 inline Particles made_particles(std::size_t n, Numbers& number) {
   Particles p;
-  const auto fill = [&](std::vector<double>& array) {
+  const auto fill = [&](SpreadArray& array) {
     for (std::size_t k = 0; k < n; ++k) array.push_back(number.next());
   };
   fill(p.x), fill(p.y), fill(p.u_x), fill(p.u_y), fill(p.v_x), fill(p.v_y);

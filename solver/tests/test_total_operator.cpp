@@ -39,13 +39,13 @@ void stir_nodes(State& state, unsigned seed) {
   }
 }
 
-double largest_of(const std::vector<double>& values) {
+double largest_of(const SpreadArray& values) {
   double most = 0.0;
   for (const double value : values) most = std::max(most, std::abs(value));
   return most;
 }
 
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+double largest_difference(const SpreadArray& a, const SpreadArray& b) {
   double most = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) most = std::max(most, std::abs(a[k] - b[k]));
   return most;
