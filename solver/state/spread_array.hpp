@@ -19,7 +19,6 @@ constexpr std::size_t page_bytes = 4096, line_bytes = 64;
 template <class T>
 struct SpreadAllocator {
   using value_type = T;
-  static constexpr std::size_t lines_in_page = page_bytes / line_bytes;
 
   SpreadAllocator() = default;
   template <class Other>
@@ -41,6 +40,7 @@ struct SpreadAllocator {
   // Programming 3, section 6.4).
   static std::size_t start(std::uint64_t page) {
     constexpr std::uint64_t golden = 0x9E3779B97F4A7C15;
+    static_assert(page_bytes / line_bytes == 64, "the six highest bits choose a line");
     return line_bytes * static_cast<std::size_t>((page * golden) >> 58);
   }
 };

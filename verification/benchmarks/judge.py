@@ -135,13 +135,15 @@ def marks(record: Record) -> list[Mark]:
     rate, total, step = "particle-steps of `updated`", "particle-steps of `total`, equivalent", "step/updated/{}/threads{}"
     at = [step.format(f"{block}/cells80", threads) for threads in (1, 2)]
     small, large = sizes(record, "updated"), sizes(record, "total")
-    beyond = [_rate(record, f"scaling/updated/{block}/cells320/threads{threads}") for threads in (1, 2)]  # the caches
-    drop = beyond[0] / _rate(record, at[0])
+    beyond = [f"scaling/updated/{block}/cells320/threads{threads}" for threads in (1, 2)]  # the caches
+    drop = _rate(record, beyond[0]) / _rate(record, at[0])
     every: list[tuple[bool, Callable[[], Mark]]] = [
         (record.figure(at[0]) is not None, lambda: Mark(f"{rate}, 1 thread", 60.0, _rate(record, at[0]), "million/s", True)),
         (record.figure(at[1]) is not None, lambda: Mark(f"{rate}, 2 threads", 110.0, _rate(record, at[1]), "million/s", True)),
-        (beyond[0] > 0.0, lambda: Mark("at 320 x 320 cells, 80 % of the mark, 1 thread", 48.0, beyond[0], "million/s", True)),
-        (beyond[1] > 0.0, lambda: Mark("at 320 x 320 cells, 80 % of the mark, 2 threads", 88.0, beyond[1], "million/s", True)),
+        (record.figure(beyond[0]) is not None,
+         lambda: Mark("at 320 x 320 cells, 80 % of the mark, 1 thread", 48.0, _rate(record, beyond[0]), "million/s", True)),
+        (record.figure(beyond[1]) is not None,
+         lambda: Mark("at 320 x 320 cells, 80 % of the mark, 2 threads", 88.0, _rate(record, beyond[1]), "million/s", True)),
         (math.isfinite(drop), lambda: Mark("at 320 x 320 cells, of what is found at 80 x 80", 0.8, drop, "", True)),
         (record.figure(at[0].replace("updated", "total")) is not None,
          lambda: Mark(f"{total}, 1 thread", 300.0, _rate(record, at[0].replace("updated", "total")), "million/s", True)),

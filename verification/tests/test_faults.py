@@ -132,13 +132,24 @@ def test_a_disc_that_is_full_ends_the_run_and_loses_nothing(small_disc: Path, al
     assert differences(alone, folder) == []
 
 
+def make_read_only(disc: Path, process: subprocess.Popen[str]) -> None:
+    """Make a disc read-only under a run, at a moment at which it has no file open to write: otherwise the disc is busy."""
+    for _ in range(100):
+        process.send_signal(signal.SIGSTOP)
+        done = subprocess.run(["mount", "-o", "remount,ro", str(disc)], capture_output=True, text=True, check=False)
+        process.send_signal(signal.SIGCONT)
+        if done.returncode == 0:
+            return
+        assert "busy" in done.stderr, done.stderr
+        time.sleep(0.01)
+    raise AssertionError(f"{disc} is busy at all times")
+
+
 def test_a_disc_that_becomes_read_only_ends_the_run_and_loses_nothing(small_disc: Path, alone: Path) -> None:
     subprocess.run(["mount", "-o", "remount,size=64m", str(small_disc)], check=True)
     folder = small_disc / "X"
     process = started(LONG, folder, "checkpoint.bin")
-    process.send_signal(signal.SIGSTOP)
-    subprocess.run(["mount", "-o", "remount,ro", str(small_disc)], check=True)
-    process.send_signal(signal.SIGCONT)
+    make_read_only(small_disc, process)
     said = process.communicate(timeout=60)[1]
     assert process.returncode == 2
     assert "Read-only file system" in said
