@@ -205,7 +205,7 @@ TEST_CASE("particles are in lanes") {
 // Requires that particles are said to be like others exactly where the whole block has one mass, area and size: nearly
 // everywhere on a uniform grid, at a handful of places in memory; not in a block of which one particle has another
 // area, and on a graded grid only where they are. Mutations that fail: the area not compared, the last particle of a
-// block left out, a place with fewer lanes taken for a wider block.
+// block left out.
 TEST_CASE("particles are read from others only where these are alike") {
   Scene scene = block(80, 80);
   hold_edges(scene);
@@ -268,7 +268,7 @@ TEST_CASE("a wide block does not read from a narrow one") {
 }
 
 // Requires that arrays of the same size start at different places of their pages, each at the start of a line, so that
-// going through ten of them side by side no set of a cache is asked for more of them than it has ways (8 of 64 lines).
+// going through 15 of them side by side no set of a cache is asked for more of them than it has ways (8 of 64 lines).
 // Mutation that fails: all start with the page.
 TEST_CASE("arrays that are read side by side start in different lines") {
   for (const std::size_t n : {std::size_t{512}, std::size_t{25600}, std::size_t{102400}, std::size_t{25601}}) {
