@@ -268,7 +268,7 @@ TEST_CASE("a wide block does not read from a narrow one") {
 }
 
 // Requires that 15 arrays at equal steps of pages, whatever the step, ask no line of the page for more than 8 of them.
-// Mutations that fail: spread once only (steps of 2584 pages have all in one line), not at all.
+// Mutations that fail: spread once only (steps of 610 pages have all in one line), not at all.
 TEST_CASE("arrays of all sizes start in different lines") {
   for (std::uint64_t step = 1; step < 3000; ++step) {
     std::map<std::size_t, int> in_line;
