@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include "state/copies.hpp"
 #include "state/elasticity.hpp"
@@ -33,6 +34,26 @@ struct SweepStep {
   double dt = 0.0;    // s
   double keep = 1.0;  // share of their own velocity that particles keep
 };
+
+// How far ahead memory is asked for what a sweep goes through: about three blocks of 4 particles a cell. Its two dozen
+// arrays are more than the hardware foresees.
+constexpr std::size_t particles_ahead = 12 * most_lanes, nodes_ahead = 3 * most_lanes, bins_ahead = 3 * most_lanes;
+
+// What is read and written of particles to come.
+[[gnu::always_inline]] inline void fetch_particles(const SweepArrays& p, std::size_t q) {
+  for (const double* array : {p.x, p.y, p.u_x, p.u_y, p.v_x, p.v_y, p.g_xx, p.g_xy, p.g_yx, p.g_yy}) fetch(array, q);
+}
+
+// What is read and written of nodes to come; blocks of the rows before have used all but the last row of a stencil.
+template <bool Move, bool Gather>
+[[gnu::always_inline]] inline void fetch_nodes(const SweepArrays& to, std::size_t record) {
+  if constexpr (Move) {
+    for (const double* array : {to.node_v_x, to.node_v_y, to.take_x, to.take_y}) fetch(array, record);
+  }
+  if constexpr (Gather) {
+    for (const double* array : {to.sum_m, to.sum_mom_x, to.sum_mom_y, to.sum_f_x, to.sum_f_y}) fetch(array, record);
+  }
+}
 
 // Sums and maxima over the particles of a lane.
 template <class Real>
@@ -297,6 +318,8 @@ void sweep_block(const Lanes lanes, const std::vector<Elasticity>& rocks, const 
                  LaneReport<typename Lanes::Real>& report) {
   using Real = typename Lanes::Real;
   constexpr int together = 4;  // particles of a lane whose weights are kept until their sums are formed
+  constexpr bool block = !std::is_same_v<Lanes, OneLane>;
+  if constexpr (block) fetch_nodes<Move, Gather>(arrays, static_cast<std::size_t>(bin.record[6]) + nodes_ahead);
   Coefficients<Real> c;
   if constexpr (Move) {
     load_coefficients(lanes, bin, arrays.node_v_x, c.v_x), load_coefficients(lanes, bin, arrays.node_v_y, c.v_y);
@@ -310,6 +333,7 @@ void sweep_block(const Lanes lanes, const std::vector<Elasticity>& rocks, const 
     const Elasticity& rock = rocks[arrays.rock[q]];
     const ParticleSizes<Real> size{Shape::template size<Real>(lanes, arrays.half_x + like, at.x.per_length),
                                    Shape::template size<Real>(lanes, arrays.half_y + like, at.y.per_length)};
+    if constexpr (block) fetch_particles(arrays, q + particles_ahead);
     ParticleState<Real> is = load_particles(lanes, arrays, q);
     if constexpr (Move) {
       const Real off_x = (is.x - at.x.node) * at.x.per_length, off_y = (is.y - at.y.node) * at.y.per_length;

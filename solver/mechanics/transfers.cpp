@@ -53,6 +53,7 @@ ParticleReport sweep_strip(const std::vector<Elasticity>& rocks, const SweepStep
   LaneReport<double> of_bins;
   for (int b = strip.first; b < strip.last;) {
     const Bin& bin = state.bins[static_cast<std::size_t>(b)];
+    fetch(&bin, bins_ahead);
     const auto sweep = [&](const auto lanes, auto& report) {
       const auto at = spans_of(lanes, state.x_spans, state.y_spans, bin);
       sweep_block<Shape, Move, Gather>(lanes, rocks, step, at, bin, arrays, report);
