@@ -76,7 +76,7 @@ def test_layers_are_mirrored() -> None:
 
 def test_fine_cells_are_mirrored() -> None:
     """Where fine cells end above the symmetry line they end as far below it; a scene without such an end gets none."""
-    for name, ends in (("exp6_stress_reversal", ("numerics.fine_top_m=120.0", "numerics.fine_bottom_m=40.0")), ("exp5_parallel_interface", ())):
+    for name, ends in (("exp6_stress_reversal", ("numerics.fine_top_m=112.0", "numerics.fine_bottom_m=48.0")), ("exp5_parallel_interface", ())):
         content = content_of(EXPERIMENTS / f"{name}.toml", "perfect", ())
         both = next(one for one in ingredients_of(content) if one.id == "symmetry")
         assert tuple(key for key in both.settings if ".fine_" in key) == ends
