@@ -9,6 +9,7 @@
 
 #include "scene/scene.hpp"
 #include "state/grid.hpp"
+#include "state/spread_array.hpp"
 #include "state/surfaces.hpp"
 
 namespace strata {
@@ -37,13 +38,14 @@ struct Copies {
 // lanes.hpp), the k-th particles of all of them stand side by side and are of the same rock. A bin of a block of n has
 // every n-th particle from its first one on; the block's bins stand side by side too, each with stride n. A bin takes a
 // line of memory of its own: sweeps read the first of each block alone, one of eight lines, which they ask for in time.
-struct alignas(64) Bin {
+struct alignas(line_bytes) Bin {
   int first = 0, last = 0;  // particles first, first + stride, ... below last
   int stride = 1;           // bins of its block
   int i = 0, j = 0;         // column and row of the middle node of the 3 x 3 stencil
   int like = -1;  // the first of particles side by side that have the mass, area and sides of all its block's; -1: none
   std::array<int, 9> record{};  // records of the stencil's nodes, row by row from the lower left
 };
+static_assert(sizeof(Bin) == line_bytes);
 
 // A split place with its stencil folded to master records: jump = sum_k (c_x v_x, c_y v_y).
 struct SplitPlace {

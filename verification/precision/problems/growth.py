@@ -198,8 +198,8 @@ def kgd_methods(variant: str) -> tuple[Method, ...]:
     """The curves above in steps of a cell, and increments of parts of one: a fracture that has just grown is ahead of its fluid by half
     an increment in the mean, which is most of the error of length."""
     graded = replace(STILL, graded=FAR)
-    half = Curve("qs_graded_half", "quasi-static, graded, increments of half a cell", graded, KGD_M, True)
-    quarter = Curve("qs_graded_quarter", "quasi-static, graded, increments of a quarter of a cell", graded, KGD_M[:3], True)
+    half = Curve("qs_graded_half", "quasi-static, graded, increments of 1/2 cell", graded, KGD_M, True)
+    quarter = Curve("qs_graded_quarter", "quasi-static, graded, increments of 1/4 cell", graded, KGD_M[:3], True)
     return (
         *methods(kgd.SCENE, fed(variant), kgd_curves()),
         *methods(kgd.SCENE, fed(variant, 0.5), [half]),
