@@ -103,7 +103,7 @@ void check_far_cell(const Scene& scene, const Positions& positions, Faults& faul
 
 // Ends of the fine cells: on the far side of the initial fracture, and of a graded grid.
 void check_fine_ends(const Scene& scene, const Positions& positions, Faults& faults) {
-  if (!scene.fracture || !positions.sound("fracture.path_m")) return;
+  if (!scene.fracture) return;
   const Numerics& n = scene.numerics;
   struct End {
     std::string_view key;
@@ -122,6 +122,7 @@ void check_fine_ends(const Scene& scene, const Positions& positions, Faults& fau
                       "of cell_m. Give it, or leave {} out.",
                       end.key, number_text(*end.at), end.key.substr(end.key.find('.') + 1)));
     }
+    if (!usable(positions, "fracture.path_m")) continue;
     const auto [low, high] =
         std::ranges::minmax_element(scene.fracture->path_m, {}, [&](const auto& x) { return x[end.axis]; });
     const double fracture = (end.is_least ? *low : *high)[end.axis];
