@@ -39,9 +39,13 @@ struct SweepStep {
 // arrays are more than the hardware foresees.
 constexpr std::size_t particles_ahead = 12 * most_lanes, nodes_ahead = 3 * most_lanes, bins_ahead = 3 * most_lanes;
 
-// What is read and written of particles to come.
+// What is read and written of particles to come; displacements only where they move.
+template <bool Move>
 [[gnu::always_inline]] inline void fetch_particles(const SweepArrays& p, std::size_t q) {
-  for (const double* array : {p.x, p.y, p.u_x, p.u_y, p.v_x, p.v_y, p.g_xx, p.g_xy, p.g_yx, p.g_yy}) fetch(array, q);
+  for (const double* array : {p.x, p.y, p.v_x, p.v_y, p.g_xx, p.g_xy, p.g_yx, p.g_yy}) fetch(array, q);
+  if constexpr (Move) {
+    for (const double* array : {p.u_x, p.u_y}) fetch(array, q);
+  }
 }
 
 // What is read and written of nodes to come; blocks of the rows before have used all but the last row of a stencil.
@@ -333,7 +337,7 @@ void sweep_block(const Lanes lanes, const std::vector<Elasticity>& rocks, const 
     const Elasticity& rock = rocks[arrays.rock[q]];
     const ParticleSizes<Real> size{Shape::template size<Real>(lanes, arrays.half_x + like, at.x.per_length),
                                    Shape::template size<Real>(lanes, arrays.half_y + like, at.y.per_length)};
-    if constexpr (block) fetch_particles(arrays, q + particles_ahead);
+    if constexpr (block) fetch_particles<Move>(arrays, q + particles_ahead);
     ParticleState<Real> is = load_particles(lanes, arrays, q);
     if constexpr (Move) {
       const Real off_x = (is.x - at.x.node) * at.x.per_length, off_y = (is.y - at.y.node) * at.y.per_length;
