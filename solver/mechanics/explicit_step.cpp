@@ -7,26 +7,23 @@
 #include <cmath>
 
 #include "state/lanes.hpp"
+#include "state/parts.hpp"
 
 namespace strata {
 
 namespace {
 
-// Calls work(lanes, r, sum) for all of n records, some lanes from record r on at a time, and returns the sum; parts of
-// it are formed over fixed ranges of records, so that its digits do not depend on the number of threads.
+// Calls work(lanes, r, sum) for all of n records, some lanes from record r on at a time, and returns the sum over the
+// parts.
 template <class Sum, class Work>
 Sum over_records(std::size_t n, Work work) {
-  constexpr std::size_t parts = 32, W = most_lanes;
-  constexpr std::size_t worth_threads = 8192;  // records; threads that have less to do wait longer than they work
-  const std::size_t length = (n + W * parts - 1) / (W * parts) * W;
-  std::array<Sum, parts> sums{};
-#pragma omp parallel for schedule(static) if (n > worth_threads)
-  for (std::size_t part = 0; part < parts; ++part) {
-    const std::size_t last = std::min(n, (part + 1) * length);
-    std::size_t r = part * length;
-    for (; r + W <= last; r += W) work(AllLanes{}, r, sums[part]);
-    if (r < last) work(FirstLanes{static_cast<int>(last - r)}, r, sums[part]);
-  }
+  constexpr std::size_t W = most_lanes;
+  std::array<Sum, record_parts> sums{};
+  for_each_part(n, [&](std::size_t part, const Part& range) {
+    std::size_t r = range.first;
+    for (; r + W <= range.last; r += W) work(AllLanes{}, r, sums[part]);
+    if (r < range.last) work(FirstLanes{static_cast<int>(range.last - r)}, r, sums[part]);
+  });
   Sum total;
   for (const Sum& sum : sums) total += sum;
   return total;
@@ -85,12 +82,11 @@ GridEnergyAfter grid_energy(const State& state) {
 }
 
 void spread_to_tied(State& state) {
-  for (const int record : state.tied) {
-    const Master& master = state.masters[static_cast<std::size_t>(record)];
+  for_each_tied(state, [&](std::size_t record, const Master& master) {
     const NodeMotion from = state.motion[static_cast<std::size_t>(master.record)];
-    state.motion[static_cast<std::size_t>(record)] =
+    state.motion[record] =
         NodeMotion{master.x * from.v_x, master.y * from.v_y, master.x * from.dv_x, master.y * from.dv_y};
-  }
+  });
 }
 
 double body_work(const State& state) {
@@ -111,16 +107,17 @@ Uptake prepare_transfer(const Scene& scene, State& state) {
   filter_velocity(scene, state);
   const NodalSums& filtered = state.filtered;
   state.take_x.resize(motion.size()), state.take_y.resize(motion.size());
-  for (std::size_t r = 0; r < motion.size(); ++r) {
-    const double per_m = filtered.m[r] > 0.0 ? 1.0 / filtered.m[r] : 0.0;
-    state.take_x[r] = 2.0 * motion.v_x[r] - motion.dv_x[r] - per_m * filtered.mom_x[r];
-    state.take_y[r] = 2.0 * motion.v_y[r] - motion.dv_y[r] - per_m * filtered.mom_y[r];
-  }
-  for (const int record : state.tied) {  // filtered velocities came back at the masters
-    const Master& master = state.masters[static_cast<std::size_t>(record)];
-    const auto r = static_cast<std::size_t>(record), from = static_cast<std::size_t>(master.record);
+  for_each_part(motion.size(), [&](std::size_t /*part*/, const Part& part) {
+    for (std::size_t r = part.first; r < part.last; ++r) {
+      const double per_m = filtered.m[r] > 0.0 ? 1.0 / filtered.m[r] : 0.0;
+      state.take_x[r] = 2.0 * motion.v_x[r] - motion.dv_x[r] - per_m * filtered.mom_x[r];
+      state.take_y[r] = 2.0 * motion.v_y[r] - motion.dv_y[r] - per_m * filtered.mom_y[r];
+    }
+  });
+  for_each_tied(state, [&](std::size_t r, const Master& master) {  // filtered velocities came back at the masters
+    const auto from = static_cast<std::size_t>(master.record);
     state.take_x[r] = master.x * state.take_x[from], state.take_y[r] = master.y * state.take_y[from];
-  }
+  });
   return {0.0, &state.take_x, &state.take_y};
 }
 

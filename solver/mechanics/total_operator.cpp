@@ -1,8 +1,11 @@
 #include "mechanics/total_operator.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "mechanics/stencil_rows.hpp"
 #include "mechanics/transfers.hpp"
@@ -17,7 +20,8 @@ typedef double EightAnywhere __attribute__((vector_size(64), aligned(8), may_ali
 
 constexpr int lanes = 8;
 constexpr int shortest_run = lanes;
-constexpr int blocks_per_task = 2048;  // about 8,000 multiply-adds of vectors, some 2 us
+constexpr std::size_t stencil_parts = 32;
+constexpr int worth_threads = 2048;  // slots; threads that have less to do wait longer than they work
 
 Eight load(const double* from) {
   return *reinterpret_cast<const EightAnywhere*>(from);
@@ -38,6 +42,7 @@ struct RunMaker {
 
   int row(int slot) const { return rows.row_of_slot[static_cast<std::size_t>(slot)]; }
   const StencilRow& of(int slot) const { return rows.rows[static_cast<std::size_t>(row(slot))]; }
+  bool is_single(int slot) const { return row(slot) >= 0 && taken[static_cast<std::size_t>(slot)] == 0; }
   bool extends(int run_row, int slot) const {
     if (slot < 0 || slot >= slots.size || row(slot) < 0 || taken[static_cast<std::size_t>(slot)] != 0) return false;
     return same_by_images(grid, slots, slot, rows.rows[static_cast<std::size_t>(run_row)], of(slot));
@@ -105,48 +110,6 @@ void add_segments(const StencilRow& row, std::vector<StencilSegment>& segments) 
   }
 }
 
-// All slots that no run has, those of the same row together.
-void find_groups(const RunMaker& make) {
-  std::vector<std::vector<int>> slots_of_row(make.rows.rows.size());
-  for (int slot = 0; slot < make.slots.size; ++slot) {
-    if (make.row(slot) >= 0 && make.taken[static_cast<std::size_t>(slot)] == 0)
-      slots_of_row[static_cast<std::size_t>(make.row(slot))].push_back(slot);
-  }
-  StencilOperator& op = make.op;
-  for (std::size_t k = 0; k < slots_of_row.size(); ++k) {
-    if (slots_of_row[k].empty()) continue;
-    StencilGroup group;
-    group.first = static_cast<int>(op.segments.size());
-    std::vector<StencilSegment> segments;
-    add_segments(make.rows.rows[k], segments);
-    op.segments.insert(op.segments.end(), segments.begin(), segments.end());
-    group.last = static_cast<int>(op.segments.size());
-    group.slot = static_cast<int>(op.grouped.size());
-    group.slots = static_cast<int>(slots_of_row[k].size());
-    op.grouped.insert(op.grouped.end(), slots_of_row[k].begin(), slots_of_row[k].end());
-    op.groups.push_back(group);
-  }
-}
-
-// Work is counted in blocks of eight slots by one coefficient block: a run's entry takes one for eight slots, a segment
-// of a group, with the sum over its eight blocks, about four for a slot. Estimates: they only even out the tasks.
-void find_tasks(StencilOperator& op) {
-  int blocks = blocks_per_task;
-  const auto add = [&](std::size_t k, int more) {
-    if (blocks >= blocks_per_task) op.tasks.push_back(k), blocks = 0;
-    blocks += more;
-  };
-  for (std::size_t k = 0; k < op.runs.size(); ++k) {
-    const StencilRun& run = op.runs[k];
-    add(k, (run.slots.last - run.slots.first) / 4 * (run.full + run.diagonal) / 2);
-  }
-  for (std::size_t k = 0; k < op.groups.size(); ++k) {
-    const StencilGroup& group = op.groups[k];
-    add(op.runs.size() + k, group.slots * (group.last - group.first) * 4);
-  }
-  op.tasks.push_back(op.runs.size() + op.groups.size());
-}
-
 // A row of a plane each, from its first slot in use to its last.
 void find_ranges(StencilOperator& op) {
   std::vector<int> used = op.slots.of_record;
@@ -156,6 +119,104 @@ void find_ranges(StencilOperator& op) {
     if (!same) op.ranges.push_back({slot, slot + 1});
     op.ranges.back().last = std::max(op.ranges.back().last, slot + 1);
   }
+}
+
+// The segments of the rows that slots have without being in a run, by row.
+std::vector<IndexRange> find_segments(const RunMaker& make) {
+  std::vector<char> wanted(make.rows.rows.size(), 0);
+  for (int slot = 0; slot < make.slots.size; ++slot) {
+    if (make.is_single(slot)) wanted[static_cast<std::size_t>(make.row(slot))] = 1;
+  }
+  std::vector<IndexRange> of_row(make.rows.rows.size());
+  for (std::size_t row = 0; row < of_row.size(); ++row) {
+    if (wanted[row] == 0) continue;
+    std::vector<StencilSegment> segments;
+    add_segments(make.rows.rows[row], segments);
+    const std::size_t first = make.op.segments.size();
+    make.op.segments.insert(make.op.segments.end(), segments.begin(), segments.end());
+    of_row[row] = {first, make.op.segments.size()};
+  }
+  return of_row;
+}
+
+// The slots at which parts begin, and the end. Work is counted in vectors of eight slots by one coefficient block: a
+// run's entry takes one for eight slots, a segment of a group, with the sum over its eight blocks, about four for a
+// slot, and what is done once for each node about eight for eight. Estimates: they only even out the parts.
+std::vector<int> find_borders(const RunMaker& make, const std::vector<IndexRange>& segments) {
+  const int stride = make.slots.stride;
+  std::vector<std::size_t> work(static_cast<std::size_t>(make.slots.size / stride + 1), 0);
+  const auto add = [&](int slot, std::size_t more) { work[static_cast<std::size_t>(slot / stride)] += more; };
+  for (const StencilRun& run : make.op.runs)
+    add(run.slots.first, static_cast<std::size_t>((run.slots.last - run.slots.first) * (run.full + run.diagonal) / 8));
+  for (int slot = 0; slot < make.slots.size; ++slot) {
+    if (!make.is_single(slot)) continue;
+    const IndexRange& of_row = segments[static_cast<std::size_t>(make.row(slot))];
+    add(slot, 4 * (of_row.last - of_row.first));
+  }
+  for (const SlotRange& range : make.op.ranges) add(range.first, static_cast<std::size_t>(range.last - range.first));
+  const std::size_t all = std::accumulate(work.begin(), work.end(), std::size_t{0});
+  std::vector<int> borders{0};
+  std::size_t done = 0;
+  for (std::size_t row = 0; row < work.size(); ++row) {
+    while (borders.size() < stencil_parts && done * stencil_parts >= all * borders.size())
+      borders.push_back(static_cast<int>(row) * stride);
+    done += work[row];
+  }
+  borders.resize(stencil_parts, make.slots.size);
+  borders.push_back(make.slots.size);
+  return borders;
+}
+
+// All slots that no run has, those of the same row together, part by part.
+void find_groups(const RunMaker& make, const std::vector<IndexRange>& segments, const std::vector<int>& borders) {
+  StencilOperator& op = make.op;
+  for (std::size_t part = 0; part < stencil_parts; ++part) {
+    std::vector<std::pair<int, int>> singles;  // row, slot
+    for (int slot = borders[part]; slot < borders[part + 1]; ++slot) {
+      if (make.is_single(slot)) singles.emplace_back(make.row(slot), slot);
+    }
+    std::sort(singles.begin(), singles.end());
+    op.parts[part].groups.first = op.groups.size();
+    for (std::size_t k = 0; k < singles.size(); ++k) {
+      if (k == 0 || singles[k].first != singles[k - 1].first) {
+        const IndexRange& of_row = segments[static_cast<std::size_t>(singles[k].first)];
+        op.groups.push_back(
+            {static_cast<int>(of_row.first), static_cast<int>(of_row.last), static_cast<int>(op.grouped.size()), 0});
+      }
+      op.grouped.push_back(singles[k].second);
+      ++op.groups.back().slots;
+    }
+    op.parts[part].groups.last = op.groups.size();
+  }
+}
+
+// Those of a list, by ascending slots, that each part has.
+template <class List, class SlotOf>
+void deal(const List& list, const std::vector<int>& borders, SlotOf slot_of, IndexRange StencilPart::*of_part,
+          std::vector<StencilPart>& parts) {
+  std::size_t k = 0;
+  for (std::size_t part = 0; part < stencil_parts; ++part) {
+    const std::size_t first = k;
+    while (k < list.size() && slot_of(list[k]) < borders[part + 1]) ++k;
+    parts[part].*of_part = {first, k};
+  }
+}
+
+void find_parts(const RunMaker& make) {
+  StencilOperator& op = make.op;
+  op.parts.resize(stencil_parts);
+  const std::vector<IndexRange> segments = find_segments(make);
+  const std::vector<int> borders = find_borders(make, segments);
+  find_groups(make, segments, borders);
+  std::sort(op.held_x.begin(), op.held_x.end());
+  const auto first = [](const auto& of_slots) { return of_slots.first; };
+  deal(
+      op.images, borders, [](const SlotImage& image) { return image.to; }, &StencilPart::images, op.parts);
+  deal(
+      op.runs, borders, [](const StencilRun& run) { return run.slots.first; }, &StencilPart::runs, op.parts);
+  deal(
+      op.held_x, borders, [](int slot) { return slot; }, &StencilPart::held_x, op.parts);
+  deal(op.ranges, borders, first, &StencilPart::ranges, op.parts);
 }
 
 // --- applying
@@ -226,24 +287,18 @@ void apply_group(const StencilOperator& op, const StencilGroup& group, TotalMoti
   }
 }
 
-void apply_tasks(const StencilOperator& op, TotalMotion& t) {
-  for (const SlotImage& image : op.images) {
-    const auto to = static_cast<std::size_t>(image.to), from = static_cast<std::size_t>(image.from);
+void mirror(const StencilOperator& op, const StencilPart& part, TotalMotion& t) {
+  for (std::size_t k = part.images.first; k < part.images.last; ++k) {
+    const auto to = static_cast<std::size_t>(op.images[k].to), from = static_cast<std::size_t>(op.images[k].from);
     t.u_x[to] = -t.u_x[from], t.u_y[to] = t.u_y[from];
   }
-  const int tasks = static_cast<int>(op.tasks.size()) - 1;
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int task = 0; task < tasks; ++task) {
-    const auto k = static_cast<std::size_t>(task);
-    for (std::size_t n = op.tasks[k]; n < op.tasks[k + 1]; ++n) {
-      if (n < op.runs.size()) {
-        apply_run(op, op.runs[n], t);
-      } else {
-        apply_group(op, op.groups[n - op.runs.size()], t);
-      }
-    }
-  }
-  for (const int slot : op.held_x) t.a_x[static_cast<std::size_t>(slot)] = 0.0;
+}
+
+void apply(const StencilOperator& op, const StencilPart& part, TotalMotion& t) {
+  for (std::size_t k = part.runs.first; k < part.runs.last; ++k) apply_run(op, op.runs[k], t);
+  for (std::size_t k = part.groups.first; k < part.groups.last; ++k) apply_group(op, op.groups[k], t);
+  for (std::size_t k = part.held_x.first; k < part.held_x.last; ++k)
+    t.a_x[static_cast<std::size_t>(op.held_x[k])] = 0.0;
 }
 
 // The same by particles: f_i = -sum_p V_p sigma(grad u) grad N_ip, folded to masters.
@@ -277,54 +332,26 @@ void apply_particles(const Scene& scene, const std::vector<Elasticity>& rocks, S
   }
 }
 
-// Calls work(range, its own totals) for all ranges in use and adds the totals in their order.
-template <class Work>
-NodeTotals over_ranges(const StencilOperator& op, Work work) {
-  constexpr int per_task = 16;
-  const int n = static_cast<int>(op.ranges.size());
-  std::vector<NodeTotals> of_task(static_cast<std::size_t>((n + per_task - 1) / per_task));
-#pragma omp parallel for schedule(static)
-  for (int task = 0; task < static_cast<int>(of_task.size()); ++task) {
-    NodeTotals& totals = of_task[static_cast<std::size_t>(task)];
-    for (int k = per_task * task; k < std::min(n, per_task * (task + 1)); ++k)
-      work(op.ranges[static_cast<std::size_t>(k)], totals);
+double power(const StencilOperator& op, const StencilPart& part, const TotalMotion& t) {
+  Eight sum_m_v_a{};
+  for (std::size_t k = part.ranges.first; k < part.ranges.last; ++k) {
+    for (auto s = static_cast<std::size_t>(op.ranges[k].first); s < static_cast<std::size_t>(op.ranges[k].last);
+         s += lanes) {
+      sum_m_v_a += load(&t.m[s]) * (load(&t.v_x[s]) * load(&t.a_x[s]) + load(&t.v_y[s]) * load(&t.a_y[s]));
+    }
   }
-  NodeTotals all;
-  for (const NodeTotals& totals : of_task) {
-    all.kinetic += totals.kinetic;
-    all.increment += totals.increment;
-    all.power += totals.power;
-    all.product += totals.product;
-    all.largest_speed2 = std::max(all.largest_speed2, totals.largest_speed2);
-  }
-  return all;
+  return sum(sum_m_v_a);
 }
 
 Eight larger(const Eight& a, const Eight& b) {
   return a > b ? a : b;
 }
 
-}  // namespace
-
-StencilOperator make_operator(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
-  StencilOperator op;
-  op.slots = make_slots(state);
-  const StencilRows rows = make_stencil_rows(scene, rocks, state, op.slots);
-  RunMaker make{state.grid, op.slots, rows, op, std::vector<char>(static_cast<std::size_t>(op.slots.size), 0)};
-  find_runs(make);
-  find_groups(make);
-  find_tasks(op);
-  find_ranges(op);
-  return op;
-}
-
-// Ranges are widened to whole vectors: slots between those in use have no mass and stay at rest.
-NodeTotals move_nodes(double keep, State& state) {
-  TotalMotion& t = state.total;
-  const double dt = state.dt;
-  return over_ranges(*t.op, [&](const SlotRange& range, NodeTotals& totals) {
-    Eight kinetic{}, increment{}, power{}, product{}, fastest{};
-    for (auto s = static_cast<std::size_t>(range.first); s < static_cast<std::size_t>(range.last); s += lanes) {
+NodeTotals move_part(const StencilOperator& op, const StencilPart& part, double keep, double dt, TotalMotion& t) {
+  Eight kinetic{}, increment{}, power{}, product{}, fastest{};
+  for (std::size_t k = part.ranges.first; k < part.ranges.last; ++k) {
+    for (auto s = static_cast<std::size_t>(op.ranges[k].first); s < static_cast<std::size_t>(op.ranges[k].last);
+         s += lanes) {
       const Eight a_x = load(&t.a_x[s]), a_y = load(&t.a_y[s]), m = load(&t.m[s]);
       const Eight before_x = load(&t.v_x[s]), before_y = load(&t.v_y[s]);
       const Eight v_x = keep * before_x + dt * a_x, v_y = keep * before_y + dt * a_y;
@@ -337,29 +364,63 @@ NodeTotals move_nodes(double keep, State& state) {
       product += m * (before_x * v_x + before_y * v_y);
       fastest = larger(fastest, speed2);
     }
-    totals.kinetic += 0.5 * sum(kinetic);
-    totals.increment += 0.5 * dt * dt * sum(increment);
-    totals.power += sum(power);
-    totals.product += sum(product);
-    for (int k = 0; k < lanes; ++k) totals.largest_speed2 = std::max(totals.largest_speed2, fastest[k]);
-  });
+  }
+  NodeTotals totals{0.5 * sum(kinetic), 0.5 * dt * dt * sum(increment), sum(power), sum(product), 0.0};
+  for (int k = 0; k < lanes; ++k) totals.largest_speed2 = std::max(totals.largest_speed2, fastest[k]);
+  return totals;
+}
+
+}  // namespace
+
+StencilOperator make_operator(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
+  StencilOperator op;
+  op.slots = make_slots(state);
+  const StencilRows rows = make_stencil_rows(scene, rocks, state, op.slots);
+  RunMaker make{state.grid, op.slots, rows, op, std::vector<char>(static_cast<std::size_t>(op.slots.size), 0)};
+  find_runs(make);
+  find_ranges(op);
+  find_parts(make);
+  return op;
+}
+
+// Ranges are widened to whole vectors: slots between those in use have no mass and stay at rest.
+NodeTotals move_nodes(double keep, State& state) {
+  TotalMotion& t = state.total;
+  const StencilOperator& op = *t.op;
+  std::array<NodeTotals, stencil_parts> of_part;
+#pragma omp parallel for schedule(static) if (op.slots.size > worth_threads)
+  for (std::size_t part = 0; part < stencil_parts; ++part)
+    of_part[part] = move_part(op, op.parts[part], keep, state.dt, t);
+  NodeTotals all;
+  for (const NodeTotals& totals : of_part) {
+    all.kinetic += totals.kinetic;
+    all.increment += totals.increment;
+    all.power += totals.power;
+    all.product += totals.product;
+    all.largest_speed2 = std::max(all.largest_speed2, totals.largest_speed2);
+  }
+  return all;
 }
 
 double find_accelerations(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
   TotalMotion& t = state.total;
-  if (scene.numerics.kernels == Numerics::Kernels::fast) {
-    apply_tasks(*t.op, t);
-  } else {
-    apply_particles(scene, rocks, state);
-  }
-  const NodeTotals sums = over_ranges(*t.op, [&](const SlotRange& range, NodeTotals& totals) {
-    Eight power{};
-    for (auto s = static_cast<std::size_t>(range.first); s < static_cast<std::size_t>(range.last); s += lanes) {
-      power += load(&t.m[s]) * (load(&t.v_x[s]) * load(&t.a_x[s]) + load(&t.v_y[s]) * load(&t.a_y[s]));
+  const StencilOperator& op = *t.op;
+  const bool fast = scene.numerics.kernels == Numerics::Kernels::fast;
+  if (!fast) apply_particles(scene, rocks, state);
+  std::array<double, stencil_parts> of_part{};
+#pragma omp parallel if (op.slots.size > worth_threads)
+  {
+    if (fast) {
+#pragma omp for schedule(static)
+      for (std::size_t part = 0; part < stencil_parts; ++part) mirror(op, op.parts[part], t);
     }
-    totals.power += sum(power);
-  });
-  return sums.power;
+#pragma omp for schedule(static)
+    for (std::size_t part = 0; part < stencil_parts; ++part) {
+      if (fast) apply(op, op.parts[part], t);
+      of_part[part] = power(op, op.parts[part], t);
+    }
+  }
+  return std::accumulate(of_part.begin(), of_part.end(), 0.0);
 }
 
 }  // namespace strata

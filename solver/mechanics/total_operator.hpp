@@ -12,7 +12,7 @@ namespace strata {
 /// particles' own weights, and slots with the same surroundings share them. Its copies and masters must be built.
 StencilOperator make_operator(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state);
 
-// Sums over the nodes of a step, taken range by range so that they do not depend on the number of threads.
+// Sums over the nodes of a step, taken part by part so that they do not depend on the number of threads.
 struct NodeTotals {
   double kinetic = 0.0;    // sum m v^2/2 (J/m)
   double increment = 0.0;  // sum m dv^2/2, dv what all forces added in the step (J/m)

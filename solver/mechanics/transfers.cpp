@@ -3,19 +3,31 @@
 #include <algorithm>
 
 #include "mechanics/sweep.hpp"
+#include "state/parts.hpp"
 
 namespace strata {
 
 namespace {
 
-// Calls work(strip index) for all strips, one colour after the other; strips of a colour run on any number of threads.
+// Sets `sums`, if any, to 0 and then calls work(strip index) for all strips, one colour after the other; strips of a
+// colour run on any number of threads.
 template <class Work>
-void for_each_strip(const State& state, Work work) {
+void for_each_strip(const State& state, NodalSums* sums, Work work) {
   const int n = static_cast<int>(state.strips.size());
+  if (sums != nullptr && sums->size() != state.masters.size()) sums->clear(state.masters.size());
 #pragma omp parallel
-  for (int colour = 0; colour < 2; ++colour) {
+  {
+    if (sums != nullptr) {
 #pragma omp for schedule(static)
-    for (int k = colour; k < n; k += 2) work(static_cast<std::size_t>(k));
+      for (std::size_t k = 0; k < record_parts; ++k) {
+        const Part part = part_of(sums->size(), k);
+        sums->clear(part.first, part.last);
+      }
+    }
+    for (int colour = 0; colour < 2; ++colour) {
+#pragma omp for schedule(static)
+      for (int k = colour; k < n; k += 2) work(static_cast<std::size_t>(k));
+    }
   }
 }
 
@@ -85,26 +97,25 @@ ParticleReport total_of(const std::vector<ParticleReport>& strips) {
 
 template <bool Move, bool Gather>
 ParticleReport sweep(const Scene& scene, const std::vector<Elasticity>& rocks, const Uptake& uptake, State& state) {
-  if (Gather) state.sums.clear(state.sums.size());
   state.reports.assign(state.strips.size(), {});
   const SweepArrays arrays = arrays_of(uptake, state);
   const SweepStep step{state.dt, uptake.keep};
   with_shape(scene.numerics.shape, [&](auto shape) {
-    for_each_strip(state, [&](std::size_t k) {
+    for_each_strip(state, Gather ? &state.sums : nullptr, [&](std::size_t k) {
       state.reports[k] = sweep_strip<decltype(shape), Move, Gather>(rocks, step, state, arrays, state.strips[k]);
     });
   });
   return total_of(state.reports);
 }
 
-// Calls visit(q, N, record) for each particle q of each bin, strip by strip, with its weights at the bin's nine
-// records.
+// Sets `sums` to 0 and then calls visit(q, N, record) for each particle q of each bin, strip by strip, with its weights
+// at the bin's nine records.
 template <class Visit>
-void for_each_stencil(const Scene& scene, State& state, Visit visit) {
+void for_each_stencil(const Scene& scene, NodalSums& sums, State& state, Visit visit) {
   with_shape(scene.numerics.shape, [&](auto shape) {
     using Shape = decltype(shape);
     const Particles& p = state.particles;
-    for_each_strip(state, [&](std::size_t k) {
+    for_each_strip(state, &sums, [&](std::size_t k) {
       for (int b = state.strips[k].first; b < state.strips[k].last; ++b) {
         const Bin& bin = state.bins[static_cast<std::size_t>(b)];
         for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
@@ -144,22 +155,23 @@ ParticleReport sweep_particles(const Scene& scene, const std::vector<Elasticity>
 void add_body_force(const Scene& scene, State& state) {
   if (state.body.empty()) return;
   NodalSums& to = state.body_sums;
-  to.clear(state.sums.size());
-  for_each_stencil(scene, state, [&](std::size_t q, const std::array<double, 9>& N, const std::array<int, 9>& record) {
+  const auto add_force = [&](std::size_t q, const std::array<double, 9>& N, const std::array<int, 9>& record) {
     const Vec2 f = state.particles.m[q] * state.body[q];
     for (std::size_t n = 0; n < 9; ++n) {
       const auto r = static_cast<std::size_t>(record[n]);
       to.f_x[r] += N[n] * f.x(), to.f_y[r] += N[n] * f.y();
     }
+  };
+  for_each_stencil(scene, to, state, add_force);
+  for_each_part(to.size(), [&](std::size_t /*part*/, const Part& part) {
+    for (std::size_t r = part.first; r < part.last; ++r) state.sums.f_x[r] += to.f_x[r], state.sums.f_y[r] += to.f_y[r];
   });
-  for (std::size_t r = 0; r < to.size(); ++r) state.sums.f_x[r] += to.f_x[r], state.sums.f_y[r] += to.f_y[r];
 }
 
 void filter_velocity(const Scene& scene, State& state) {
   NodalSums& to = state.filtered;
-  to.clear(state.sums.size());
   const NodalMotion& v = state.motion;
-  for_each_stencil(scene, state, [&](std::size_t q, const std::array<double, 9>& N, const std::array<int, 9>& record) {
+  const auto add_filtered = [&](std::size_t q, const std::array<double, 9>& N, const std::array<int, 9>& record) {
     double v_x = 0.0, v_y = 0.0;
     for (std::size_t n = 0; n < 9; ++n) {
       const auto r = static_cast<std::size_t>(record[n]);
@@ -170,26 +182,27 @@ void filter_velocity(const Scene& scene, State& state) {
       const double m = N[n] * state.particles.m[q];
       to.m[r] += m, to.mom_x[r] += m * v_x, to.mom_y[r] += m * v_y;
     }
-  });
+  };
+  for_each_stencil(scene, to, state, add_filtered);
   fold_to_masters(state, to);
 }
 
 void fold_to_masters(const State& state, NodalSums& sums) {
-  for (const int record : state.tied) {
-    const Master& master = state.masters[static_cast<std::size_t>(record)];
-    NodeSums own = sums[static_cast<std::size_t>(record)];
+  for_each_tied(state, [&](std::size_t record, const Master& master) {
+    const auto to = static_cast<std::size_t>(master.record);
+    NodeSums own = sums[record];
     own.mom_x *= master.x, own.f_x *= master.x;
     own.mom_y *= master.y, own.f_y *= master.y;
-    if (master.record == record) {
-      sums[static_cast<std::size_t>(record)] = own;
-      continue;
+    if (to == record) {
+      sums[record] = own;
+      return;
     }
-    const NodalSums::Record inside = sums[static_cast<std::size_t>(master.record)];
+    const NodalSums::Record inside = sums[to];
     inside.m += own.m;
     inside.mom_x += own.mom_x, inside.mom_y += own.mom_y;
     inside.f_x += own.f_x, inside.f_y += own.f_y;
-    sums[static_cast<std::size_t>(record)] = NodeSums{};
-  }
+    sums[record] = NodeSums{};
+  });
 }
 
 }  // namespace strata

@@ -114,7 +114,10 @@ struct State {
   std::vector<std::size_t> cut_bins;  // of which a node is cut
   std::vector<Strip> strips;
   std::vector<Master> masters;  // of each record
-  std::vector<int> tied;        // the records whose master is another one or has a factor 0
+  // The records whose master is another one or has a factor 0, by masters, and where those of each part begin and the
+  // last end (see parts.hpp): a master's tied records are all in its part.
+  std::vector<int> tied;
+  std::vector<std::size_t> tied_of_part;
   std::vector<std::vector<std::vector<StressSample>>>
       stress_samples;  // of each surface's points; empty where it never fails
   std::vector<std::vector<SurfaceStencil>> point_stencils, vertex_stencils;  // of each surface

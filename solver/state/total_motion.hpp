@@ -59,6 +59,17 @@ struct SlotImage {
   int to = 0, from = 0;
 };
 
+// Indices [first, last) into a list.
+struct IndexRange {
+  std::size_t first = 0, last = 0;
+};
+
+// What of the operator concerns some whole rows of slots: about as much work in each part. A thread has the same parts
+// in each step, so that nodes stay in its cache.
+struct StencilPart {
+  IndexRange images, runs, groups, held_x, ranges;
+};
+
 // -M^-1 K of the masters, by slots.
 struct StencilOperator {
   Slots slots;
@@ -68,9 +79,9 @@ struct StencilOperator {
   std::vector<StencilGroup> groups;
   std::vector<int> grouped;
   std::vector<SlotImage> images;
-  std::vector<int> held_x;         // slots of runs that a side holds
-  std::vector<SlotRange> ranges;   // slots in use, a row of a plane each; sums are taken range by range
-  std::vector<std::size_t> tasks;  // runs and groups of about equal work: runs, then groups, [tasks[k], tasks[k + 1])
+  std::vector<int> held_x;        // slots of runs that a side holds
+  std::vector<SlotRange> ranges;  // slots in use, a row of a plane each
+  std::vector<StencilPart> parts;
 };
 
 // A split place with its jump over slots, w = sum c u: what add_net_tractions(), solve_reactions() and

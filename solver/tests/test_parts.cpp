@@ -1,0 +1,147 @@
+// Parts of records and slots that threads share a step by: each is done once, and blocks with enough nodes for threads
+// end with the same digits on any number of them.
+#include <catch2/catch.hpp>
+
+#include "mechanics/total_base.hpp"
+#include "small_scenes.hpp"
+#include "state/parts.hpp"
+
+using namespace strata;
+using namespace strata::test;
+
+namespace {
+
+// A block with held edges, a fracture and an interface, of more nodes than threads are worth.
+Scene busy_block() {
+  Scene scene = block(50, 60);
+  hold_edges(scene);
+  add_interface(scene, soft_law(5e9, 2e9), 40.0);
+  add_fracture(scene, {{25.0, 20.3}, {25.0, 39.1}}, 1e6);
+  scene.body.acceleration_m_s2 = Formulas{"100*sin(X)*cos(500*t)", "-30*Y"};
+  return scene;
+}
+
+State after(const Scene& scene, int threads, int steps) {
+  Run run(scene);
+  omp_set_num_threads(threads);
+  stir(run.state, {0.0, 0.0}, 0.01);
+  run.advance(steps);
+  omp_set_num_threads(threads_of_tests);
+  return run.state;
+}
+
+// Requires the items of a list, dealt to parts, to be all of them, each once and in their order.
+template <class Of>
+void check_dealt(const StencilOperator& op, std::size_t size, Of of) {
+  std::size_t next = 0;
+  for (const StencilPart& part : op.parts) {
+    CHECK(of(part).first == next);
+    CHECK(of(part).last >= of(part).first);
+    next = of(part).last;
+  }
+  CHECK(next == size);
+}
+
+}  // namespace
+
+// Mutations that fail: a part that ends a vector earlier, parts that begin anywhere.
+TEST_CASE("parts are all records, each once, and begin at whole lanes") {
+  for (const std::size_t n : {0U, 1U, 7U, 255U, 256U, 257U, 6561U, 100000U}) {
+    std::size_t next = 0;
+    for (std::size_t k = 0; k < record_parts; ++k) {
+      const Part part = part_of(n, k);
+      CHECK(part.first == next);
+      CHECK((part.first % most_lanes == 0 || part.first == n));
+      next = part.last;
+    }
+    CHECK(next == n);
+  }
+}
+
+// Requires each tied record to be in the part of its master. Mutation that fails: tied records in their own order.
+TEST_CASE("tied records are in the part of their master") {
+  const Run run(busy_block());
+  const State& state = run.state;
+  std::size_t count = 0;
+  for (std::size_t record = 0; record < state.masters.size(); ++record) {
+    const Master& master = state.masters[record];
+    if (master.record != static_cast<int>(record) || master.x == 0.0 || master.y == 0.0) ++count;
+  }
+  CHECK(count > 200);
+  REQUIRE(state.tied.size() == count);
+  REQUIRE(state.tied_of_part.size() == record_parts + 1);
+  CHECK(state.tied_of_part.front() == 0);
+  CHECK(state.tied_of_part.back() == count);
+  for (std::size_t k = 0; k < record_parts; ++k) {
+    const Part part = part_of(state.masters.size(), k);
+    for (std::size_t t = state.tied_of_part[k]; t < state.tied_of_part[k + 1]; ++t) {
+      const auto master = static_cast<std::size_t>(state.masters[static_cast<std::size_t>(state.tied[t])].record);
+      CHECK(master >= part.first);
+      CHECK(master < part.last);
+    }
+  }
+}
+
+// Mutations that fail: a part's last item left out, all work in the first part.
+TEST_CASE("parts of the operator are all of it, and none has much more work than others") {
+  Scene scene = busy_block();
+  scene.numerics.kinematics = Numerics::Kinematics::total;
+  Run run(scene);
+  start_base(run.scene, run.rocks, run.state);
+  const StencilOperator& op = *run.state.total.op;
+  CHECK(op.images.size() > 100);
+  CHECK(op.held_x.size() > 50);
+  check_dealt(op, op.images.size(), [](const StencilPart& part) { return part.images; });
+  check_dealt(op, op.runs.size(), [](const StencilPart& part) { return part.runs; });
+  check_dealt(op, op.groups.size(), [](const StencilPart& part) { return part.groups; });
+  check_dealt(op, op.held_x.size(), [](const StencilPart& part) { return part.held_x; });
+  check_dealt(op, op.ranges.size(), [](const StencilPart& part) { return part.ranges; });
+  int last = -1;
+  for (const StencilPart& part : op.parts) {
+    CHECK(part.ranges.last - part.ranges.first <= 5);  // of 61 rows and copies' in 32 parts
+    if (part.ranges.first == part.ranges.last) continue;
+    const int first_row = op.ranges[part.ranges.first].first / op.slots.stride;
+    const int last_row = op.ranges[part.ranges.last - 1].first / op.slots.stride;
+    CHECK(first_row > last);
+    for (std::size_t k = part.runs.first; k < part.runs.last; ++k) {
+      CHECK(op.runs[k].slots.first / op.slots.stride >= first_row);
+      CHECK(op.runs[k].slots.first / op.slots.stride <= last_row);
+    }
+    for (std::size_t k = part.groups.first; k < part.groups.last; ++k) {
+      for (int s = op.groups[k].slot; s < op.groups[k].slot + op.groups[k].slots; ++s) {
+        CHECK(op.grouped[static_cast<std::size_t>(s)] / op.slots.stride >= first_row);
+        CHECK(op.grouped[static_cast<std::size_t>(s)] / op.slots.stride <= last_row);
+      }
+    }
+    last = last_row;
+  }
+}
+
+// Requires the same digits from one, two and three threads; the thread sanitizer looks for races here. Mutations that
+// fail: a power that knows the number of threads, and, with the sanitizer, threads that do not wait until all sums are
+// 0 or all images are set.
+TEST_CASE("enough nodes for threads: their number does not change a digit") {
+  using Transfer = Numerics::Transfer;
+  using Kinematics = Numerics::Kinematics;
+  for (const auto& [kinematics, transfer] :
+       {std::pair{Kinematics::updated, Transfer::flip}, std::pair{Kinematics::updated, Transfer::xpic2},
+        std::pair{Kinematics::total, Transfer::flip}}) {
+    Scene scene = busy_block();
+    scene.numerics.kinematics = kinematics;
+    scene.numerics.transfer = transfer;
+    const State one = after(scene, 1, 40);
+    CHECK(one.masters.size() > worth_threads);
+    CHECK(one.ledger.kinetic > 0.0);
+    for (const int threads : {2, 3}) {
+      const State more = after(scene, threads, 40);
+      CAPTURE(static_cast<int>(kinematics), static_cast<int>(transfer), threads);
+      CHECK(one.particles.x == more.particles.x);
+      CHECK(one.particles.v_x == more.particles.v_x);
+      CHECK(one.particles.v_y == more.particles.v_y);
+      CHECK(one.particles.g_yy == more.particles.g_yy);
+      CHECK(one.ledger.kinetic == more.ledger.kinetic);
+      CHECK(one.ledger.integration == more.ledger.integration);
+      CHECK(one.ledger.body_work == more.ledger.body_work);
+    }
+  }
+}
