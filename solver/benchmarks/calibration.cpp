@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 
 namespace strata::bench {
@@ -18,7 +19,7 @@ double seconds_since(Clock::time_point start) {
 }
 
 constexpr std::size_t chains = 12;
-constexpr double window_s = 0.01;
+constexpr double window_s = 0.01, trip_window_s = 0.001;
 
 // Vectors of the widths that the processor has.
 typedef double Two __attribute__((vector_size(16)));
@@ -94,8 +95,37 @@ double Calibration::byte_s() const {
   return 3.0 * sizeof(double) * static_cast<double>(elements_) * passes / seconds_since(start);
 }
 
+double Calibration::round_trip_s() const {
+  if (threads_ < 2) return 0.0;
+  enum : int { here, there, done };
+  alignas(128) std::atomic<int> ball{here};
+  long trips = 0;
+  double seconds = 0.0;
+#pragma omp parallel num_threads(threads_)
+  {
+    const int last = omp_get_num_threads() - 1, own = omp_get_thread_num();
+    if (own == 0 && last > 0) {
+      const Clock::time_point start = Clock::now();
+      while (seconds < trip_window_s) {
+        for (int k = 0; k < 100; ++k) {
+          ball.store(there, std::memory_order_release);
+          while (ball.load(std::memory_order_acquire) == there) {
+          }
+        }
+        trips += 100, seconds = seconds_since(start);
+      }
+      ball.store(done, std::memory_order_release);
+    } else if (own == last && last > 0) {
+      for (int at = here; at != done; at = ball.load(std::memory_order_acquire)) {
+        if (at == there) ball.store(here, std::memory_order_release);
+      }
+    }
+  }
+  return trips > 0 ? seconds / static_cast<double>(trips) : 0.0;
+}
+
 Rates Calibration::measure() const {
-  return {flop_s(), byte_s()};
+  return {flop_s(), byte_s(), round_trip_s()};
 }
 
 }  // namespace strata::bench

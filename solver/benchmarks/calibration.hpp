@@ -10,6 +10,9 @@ namespace strata::bench {
 struct Rates {
   double flop_s = 0.0;  // double-precision fused multiply-adds, each two flop (flop/s)
   double byte_s = 0.0;  // to and from memory, far beyond the caches (B/s)
+  // A line of memory from the first thread to the last and back (s): 1e-8 to 1e-7 where their processors share a cache,
+  // three times as much and more where they do not. 0 of one thread.
+  double round_trip_s = 0.0;
 };
 
 class Calibration {
@@ -18,9 +21,10 @@ class Calibration {
   /// will use them, and finds the width of vector that multiplies and adds fastest.
   explicit Calibration(int threads);
 
-  /// Measures both for a hundredth of a second each. flop_s: twelve independent chains a = a b + c a thread, enough to
-  /// hide a latency of six cycles at two a cycle. byte_s: a = a/2 + b, which reads two arrays and writes one of them,
-  /// 24 B an element (after McCalpin's STREAM, 1995, but without a write that first reads). Throws nothing.
+  /// Measures the first two for a hundredth of a second each, the third for a thousandth. flop_s: twelve independent
+  /// chains a = a b + c a thread, enough to hide a latency of six cycles at two a cycle. byte_s: a = a/2 + b, which
+  /// reads two arrays and writes one of them, 24 B an element (after McCalpin's STREAM, 1995, but without a write that
+  /// first reads). Throws nothing.
   Rates measure() const;
 
   int threads() const { return threads_; }
@@ -28,6 +32,7 @@ class Calibration {
  private:
   double flop_s() const;
   double byte_s() const;
+  double round_trip_s() const;
   int threads_ = 1;
   bool widest_ = true;  // 512-bit vectors rather than 256-bit ones, where the processor has both
   long rounds_ = 0;     // of the chains, for a hundredth of a second

@@ -42,6 +42,7 @@ void tell(benchmark::State& bench, const About& about, const Rates& before, cons
   bench.counters["byte_a_unit"] = about.bytes;
   bench.counters["peak_flop_s"] = 0.5 * (before.flop_s + after.flop_s);
   bench.counters["stream_B_s"] = 0.5 * (before.byte_s + after.byte_s);
+  bench.counters["round_trip_s"] = 0.5 * (before.round_trip_s + after.round_trip_s);
 }
 
 }  // namespace

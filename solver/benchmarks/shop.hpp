@@ -59,7 +59,8 @@ struct About {
 };
 
 /// Times `work` (one iteration) between two measurements of the machine's rates, whose mean is told as counters
-/// peak_flop_s and stream_B_s beside those of `about`. A first call is not timed: caches are cold after a measurement.
+/// peak_flop_s, stream_B_s and round_trip_s beside those of `about`. A first call is not timed: caches are cold after a
+/// measurement.
 void time_work(benchmark::State& bench, Shop& shop, const About& about, const std::function<void()>& work);
 
 /// The same for work that says itself how long (s) the part of it took that counts; needs UseManualTime().

@@ -16,7 +16,8 @@ class Figure:
     """A cost, the less the better: seconds or bytes a unit of work (`per`), one value a repetition.
 
     peak_flop_s and stream_B_s: the machine's rates beside each repetition, on as many threads; bound: which of them the cost is
-    taken relative to. about: what was run, as words and numbers. problem: why there is no value, or no good one.
+    taken relative to. round_trip_s: what a line of memory takes from one thread's processor to the other's and back, of figures
+    on several threads: a virtual machine may find its processors on one cache now and on two later. about: what was run, as words and numbers. problem: why there is no value, or no good one.
     """
 
     name: str
@@ -27,6 +28,7 @@ class Figure:
     bound: str = CORE
     peak_flop_s: tuple[float, ...] = ()
     stream_B_s: tuple[float, ...] = ()
+    round_trip_s: tuple[float, ...] = ()
     about: dict[str, Any] = field(default_factory=dict)
     problem: str = ""
 
@@ -47,6 +49,11 @@ class Figure:
         if not self.values or len(rates) != len(self.values):
             return math.nan
         return statistics.median(value * rate for value, rate in zip(self.values, rates))
+
+    @property
+    def distance(self) -> float:
+        """The median round trip between processors (s); NaN of one thread or where none was measured."""
+        return statistics.median(self.round_trip_s) if self.threads > 1 and self.round_trip_s else math.nan
 
     @property
     def share_of_peak(self) -> float | None:

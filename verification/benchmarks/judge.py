@@ -11,6 +11,7 @@ from verification.benchmarks.records import Record, check_machine
 # A figure is slower where its calibrated cost is more than this times the last record's, and faster below its inverse. On an
 # idle machine medians of five repetitions keep within a few per cent; virtual machines drift by a tenth.
 BAND = 1.25
+FARTHER = 2.0  # times the round trip between processors: figures on several threads are then those of another machine
 ENOUGH = 5  # repetitions on both sides; of fewer a median is no median
 
 SLOWER, FASTER, SAME, NEW, GONE, BROKEN, UNJUDGED = "slower", "faster", "same", "new", "gone", "broken", "not judged"
@@ -48,6 +49,10 @@ def compare_figure(now: Figure | None, then: Figure | None) -> Line:
     few = min(len(now.values), len(then.values))
     if now.bound != NONE and few < ENOUGH:
         return Line(now.name, ratio, UNJUDGED, f"{few} repetitions are too few")
+    apart = now.distance / then.distance
+    if not 1.0 / FARTHER < apart < FARTHER and math.isfinite(apart):
+        why = f"processors are {1e9 * now.distance:.0f} ns apart and back, {1e9 * then.distance:.0f} when it was recorded"
+        return Line(now.name, ratio, UNJUDGED, why)
     if ratio > BAND:
         return Line(now.name, ratio, SLOWER, f"{ratio:.2f} times the recorded cost, more than {BAND:g}")
     return Line(now.name, ratio, FASTER if ratio < 1.0 / BAND else SAME)
@@ -93,10 +98,11 @@ def _rate(record: Record, name: str) -> float:
     return 1e-6 / figure.median if figure is not None and figure.values and figure.median > 0.0 else math.nan
 
 
-def _seconds(record: Record, name: str) -> float:
-    """A figure's median; NaN where there is none."""
+def _apart(record: Record, name: str) -> str:
+    """How far apart a figure's processors were."""
     figure = record.figure(name)
-    return figure.median if figure is not None else math.nan
+    known = figure is not None and math.isfinite(figure.distance)
+    return f"processors {1e9 * figure.distance:.0f} ns apart and back" if figure is not None and known else ""
 
 
 def sizes(record: Record, kinematics: str) -> list[tuple[float, float]]:
@@ -139,11 +145,13 @@ def marks(record: Record) -> list[Mark]:
     drop = _rate(record, beyond[0]) / _rate(record, at[0])
     every: list[tuple[bool, Callable[[], Mark]]] = [
         (record.figure(at[0]) is not None, lambda: Mark(f"{rate}, 1 thread", 60.0, _rate(record, at[0]), "million/s", True)),
-        (record.figure(at[1]) is not None, lambda: Mark(f"{rate}, 2 threads", 110.0, _rate(record, at[1]), "million/s", True)),
+        (record.figure(at[1]) is not None, lambda: Mark(f"{rate}, 2 threads", 110.0, _rate(record, at[1]), "million/s", True,
+                                                            _apart(record, at[1]))),
         (record.figure(beyond[0]) is not None,
          lambda: Mark("at 320 x 320 cells, 80 % of the mark, 1 thread", 48.0, _rate(record, beyond[0]), "million/s", True)),
         (record.figure(beyond[1]) is not None,
-         lambda: Mark("at 320 x 320 cells, 80 % of the mark, 2 threads", 88.0, _rate(record, beyond[1]), "million/s", True)),
+         lambda: Mark("at 320 x 320 cells, 80 % of the mark, 2 threads", 88.0, _rate(record, beyond[1]), "million/s", True,
+                      _apart(record, beyond[1]))),
         (math.isfinite(drop), lambda: Mark("at 320 x 320 cells, of what is found at 80 x 80", 0.8, drop, "", True)),
         (record.figure(at[0].replace("updated", "total")) is not None,
          lambda: Mark(f"{total}, 1 thread", 300.0, _rate(record, at[0].replace("updated", "total")), "million/s", True)),

@@ -114,7 +114,7 @@ def figure_of(name: str, entries: list[dict[str, Any]]) -> Figure:
     return Figure(
         name, per, seconds, threads=int(entries[0]["threads_used"]), bound=MEMORY if large else CORE,
         peak_flop_s=tuple(float(e["peak_flop_s"]) for e in entries), stream_B_s=tuple(float(e["stream_B_s"]) for e in entries),
-        about=about,
+        round_trip_s=tuple(float(e["round_trip_s"]) for e in entries) if int(entries[0]["threads_used"]) > 1 else (), about=about,
     )  # fmt: skip
 
 

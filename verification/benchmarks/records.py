@@ -82,6 +82,7 @@ def from_json(line: str, where: str = "record") -> Record:
 def _figure(content: dict[str, Any]) -> Figure:
     """A figure from its table."""
     lists = {key: tuple(float(value) for value in content[key]) for key in ("values", "peak_flop_s", "stream_B_s")}
+    lists["round_trip_s"] = tuple(float(value) for value in content.get("round_trip_s", ()))  # no records before 0.13.0 have it
     plain = {key: content[key] for key in ("name", "per", "unit", "threads", "bound", "about", "problem")}
     return Figure(**plain, **lists)
 

@@ -74,8 +74,14 @@ def calibration_line(record: Record) -> str:
         stream = sorted(value for figure in own for value in figure.stream_B_s)
         parts.append(f"{threads} thread{'s' if threads > 1 else ''}: {peak[len(peak) // 2] / 1e9:.1f} GFlop/s "
                      f"({peak[0] / 1e9:.1f} to {peak[-1] / 1e9:.1f}), {stream[len(stream) // 2] / 1e9:.1f} GB/s "
-                     f"({stream[0] / 1e9:.1f} to {stream[-1] / 1e9:.1f})")  # fmt: skip
+                     f"({stream[0] / 1e9:.1f} to {stream[-1] / 1e9:.1f})" + _trips(own))  # fmt: skip
     return "calibration beside the figures, median (range): " + "; ".join(parts)
+
+
+def _trips(figures: Sequence[Figure]) -> str:
+    """What a line of memory took from one processor to the other and back."""
+    trips = sorted(1e9 * value for figure in figures for value in figure.round_trip_s if figure.threads > 1)
+    return f", {trips[len(trips) // 2]:.0f} ns between processors and back ({trips[0]:.0f} to {trips[-1]:.0f})" if trips else ""
 
 
 def mark_row(mark: Mark) -> list[str]:

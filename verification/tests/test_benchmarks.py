@@ -44,7 +44,7 @@ def an_entry(name: str, real_time: float, **more: Any) -> dict[str, Any]:
     """A repetition as Google Benchmark writes it."""
     return {
         "name": name, "run_type": "iteration", "real_time": real_time, "time_unit": "ms", "units": 100.0, "threads_used": 2.0,
-        "peak_flop_s": 5e10, "stream_B_s": 4e10, "flop_a_unit": 340.0, "byte_a_unit": 200.0, "particles": 100.0,
+        "peak_flop_s": 5e10, "stream_B_s": 4e10, "round_trip_s": 6e-8, "flop_a_unit": 340.0, "byte_a_unit": 200.0, "particles": 100.0,
         "label": "kinematics=updated shape=bspline2", **more,
     }  # fmt: skip
 
@@ -93,6 +93,9 @@ def test_repetitions_of_google_benchmark_become_one_figure() -> None:
     small, large = kernels.parse(content)
     assert small.name == "step/updated/x" and small.values == pytest.approx((2e-5, 3e-5, 4e-5)) and small.bound == CORE
     assert small.per == "particle-step" and small.threads == 2 and small.peak_flop_s == (5e10,) * 3
+    assert small.round_trip_s == (6e-8,) * 3 and small.distance == pytest.approx(6e-8)
+    alone = kernels.figure_of("step/x", [an_entry("step/x", 1.0, threads_used=1.0, round_trip_s=0.0)])
+    assert alone.round_trip_s == () and math.isnan(alone.distance)
     assert small.about["kinematics"] == "updated" and small.about["flop_a_unit"] == 340.0
     call = kernels.figure_of("stage/surfaces/threads1", [an_entry("stage/surfaces/threads1", 1.0)])
     assert call.per == "call" and call.values == (1e-3,)
@@ -128,6 +131,15 @@ def test_a_machine_at_half_speed_makes_nothing_slower() -> None:
     twice = replace(then, values=tuple(2.0 * value for value in then.values))
     for rate, verdict in ((25e9, SAME), (50e9, SLOWER), (12e9, FASTER)):
         assert compare_figure(replace(twice, peak_flop_s=(rate,) * 5), then).verdict == verdict
+
+
+@pytest.mark.parametrize("trip, verdict", [(6e-8, SLOWER), (1e-7, SLOWER), (3.3e-7, UNJUDGED), (2e-8, UNJUDGED), (None, SLOWER)])
+def test_threads_far_apart_are_not_judged_by_threads_close_by(trip: float | None, verdict: str) -> None:
+    """Twice the cost on two threads counts where their processors are as far apart as then, or where that is not known."""
+    then = a_figure(seconds=4e-8, threads=2, round_trip_s=(6e-8,) * 5)
+    twice = replace(then, values=tuple(2.0 * value for value in then.values), round_trip_s=(trip,) * 5 if trip else ())
+    assert compare_figure(twice, then).verdict == verdict
+    assert compare_figure(replace(twice, threads=1), replace(then, threads=1)).verdict == SLOWER
 
 
 def test_few_repetitions_missing_figures_and_failures_are_told_apart() -> None:
