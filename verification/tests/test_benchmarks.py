@@ -265,6 +265,11 @@ def test_batches_are_all_default_variants() -> None:
     assert len(settings) == len(set(settings)) == 23
     for setting in settings:
         assert f"[variants.{setting.variant}]" in setting.scene.read_text(encoding="utf-8")
+    assert not any("fine_" in key for setting in settings for key in setting.settings)
+    small = runs.settings_of(runs.Batch("quasistatic", 0.25, 1, 10.0))
+    wide = sorted((setting.scene.stem[:4], setting.variant) for setting in small if "numerics.fine_right_m=80" in setting.settings)
+    assert wide == [("exp1", "weak"), ("exp2", "weak"), ("exp3", "soft_weak"), ("exp3", "weak_soft"), ("exp4", "weak")]
+    assert len(small) == 23 and small[0].scene.stem in runs.TURNING
 
 
 def test_a_run_is_timed_and_one_that_takes_too_long_is_ended(tmp_path: Path) -> None:
