@@ -58,7 +58,8 @@ double chain_rate(int threads, long rounds) {
 #pragma omp parallel num_threads(threads) reduction(+ : sum)
   sum += multiply_add<Vector>(rounds);
   const double seconds = seconds_since(start);
-  const double flop = 2.0 * (sizeof(Vector) / sizeof(double)) * chains * static_cast<double>(rounds) * threads;
+  constexpr std::size_t doubles = sizeof(Vector) / sizeof(double);
+  const double flop = 2.0 * static_cast<double>(doubles * chains) * static_cast<double>(rounds) * threads;
   return sum > 0.0 ? flop / seconds : 0.0;
 }
 

@@ -37,7 +37,8 @@ struct SweepStep {
 
 // How far ahead memory is asked for what a sweep goes through: about three blocks of 4 particles a cell. Its two dozen
 // arrays are more than the hardware foresees.
-constexpr std::size_t particles_ahead = 12 * most_lanes, nodes_ahead = 3 * most_lanes, bins_ahead = 3 * most_lanes;
+constexpr std::size_t particles_ahead = std::size_t{12} * most_lanes;
+constexpr std::size_t nodes_ahead = std::size_t{3} * most_lanes, bins_ahead = nodes_ahead;
 
 // What is read and written of particles to come; displacements only where they move.
 template <bool Move>

@@ -224,13 +224,14 @@ void find_parts(const RunMaker& make) {
 // `count` vectors of eight slots from `at` on.
 template <int count>
 void apply_block(const StencilEntry* entries, const StencilRun& run, std::size_t at, TotalMotion& t) {
+  constexpr std::ptrdiff_t W = lanes;
   Eight x[count], y[count];
-  for (int k = 0; k < count; ++k) x[k] = load(&t.base_x[at] + lanes * k), y[k] = load(&t.base_y[at] + lanes * k);
+  for (std::ptrdiff_t k = 0; k < count; ++k) x[k] = load(&t.base_x[at] + W * k), y[k] = load(&t.base_y[at] + W * k);
   const double *u_x = t.u_x.data() + at, *u_y = t.u_y.data() + at;
   const StencilEntry *e = entries, *const full = entries + run.full, *const end = full + run.diagonal;
   for (; e != full; ++e) {
-    for (int k = 0; k < count; ++k) {
-      const Eight a = load(u_x + e->offset + lanes * k), b = load(u_y + e->offset + lanes * k);
+    for (std::ptrdiff_t k = 0; k < count; ++k) {
+      const Eight a = load(u_x + e->offset + W * k), b = load(u_y + e->offset + W * k);
       x[k] += e->xx * a;
       y[k] += e->yx * a;
       x[k] += e->xy * b;
@@ -238,19 +239,19 @@ void apply_block(const StencilEntry* entries, const StencilRun& run, std::size_t
     }
   }
   for (; e != end; ++e) {
-    for (int k = 0; k < count; ++k) {
-      x[k] += e->xx * load(u_x + e->offset + lanes * k);
-      y[k] += e->yy * load(u_y + e->offset + lanes * k);
+    for (std::ptrdiff_t k = 0; k < count; ++k) {
+      x[k] += e->xx * load(u_x + e->offset + W * k);
+      y[k] += e->yy * load(u_y + e->offset + W * k);
     }
   }
-  for (int k = 0; k < count; ++k) store(&t.a_x[at] + lanes * k, x[k]), store(&t.a_y[at] + lanes * k, y[k]);
+  for (std::ptrdiff_t k = 0; k < count; ++k) store(&t.a_x[at] + W * k, x[k]), store(&t.a_y[at] + W * k, y[k]);
 }
 
 void apply_run(const StencilOperator& op, const StencilRun& run, TotalMotion& t) {
   const StencilEntry* entries = op.entries.data() + run.entry;
   auto at = static_cast<std::size_t>(run.slots.first);
   const auto last = static_cast<std::size_t>(run.slots.last);
-  constexpr std::size_t four = 4 * lanes;
+  constexpr std::size_t W = lanes, four = 4 * W;
   for (; at + four <= last; at += four) apply_block<4>(entries, run, at, t);
   // What is left in as few vectors as hold it; they begin before it where it does not fill them.
   const std::size_t vectors = (last - at + lanes - 1) / lanes;
@@ -260,8 +261,8 @@ void apply_run(const StencilOperator& op, const StencilRun& run, TotalMotion& t)
     return;
   }
   if (vectors == 4) apply_block<4>(entries, run, last - four, t);
-  if (vectors == 3) apply_block<3>(entries, run, last - 3 * lanes, t);
-  if (vectors == 2) apply_block<2>(entries, run, last - 2 * lanes, t);
+  if (vectors == 3) apply_block<3>(entries, run, last - 3 * W, t);
+  if (vectors == 2) apply_block<2>(entries, run, last - 2 * W, t);
   if (vectors == 1) apply_block<1>(entries, run, last - lanes, t);
 }
 

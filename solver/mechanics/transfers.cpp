@@ -43,7 +43,7 @@ SweepArrays arrays_of(const Uptake& uptake, State& state) {
 
 template <class Lanes>
 BlockSpans<Lanes> spans_of(const Lanes lanes, const SpanTable& x, const SpanTable& y, const Bin& bin) {
-  const auto i = static_cast<std::size_t>(bin.i + 1), j = static_cast<std::size_t>(bin.j + 1);
+  const auto i = static_cast<std::size_t>(bin.i) + 1, j = static_cast<std::size_t>(bin.j) + 1;
   const auto load = [&](const std::vector<double>& table) { return lanes.load(table.data() + i); };
   return {{load(x.node), load(x.per_length), {load(x.share_before), load(x.share_after)}},
           {y.node[j], y.per_length[j], {y.share_before[j], y.share_after[j]}}};

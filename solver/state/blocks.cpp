@@ -30,7 +30,9 @@ struct Builder {
   std::vector<Bin> bins{};
   std::vector<std::size_t> order{};
 
-  std::uint8_t rock_of(const Bin& bin, int k) const { return rock[from[static_cast<std::size_t>(bin.first + k)]]; }
+  std::uint8_t rock_of(const Bin& bin, int k) const {
+    return rock[from[static_cast<std::size_t>(bin.first) + static_cast<std::size_t>(k)]];
+  }
 
   // How many particles, from the first one on, all bins have with the same rocks.
   int shared(const Bin* run, int lanes) const {
@@ -45,7 +47,8 @@ struct Builder {
   void add_block(const Bin* run, int lanes, int n) {
     const auto start = static_cast<int>(order.size());
     for (int k = 0; k < n; ++k) {
-      for (int l = 0; l < lanes; ++l) order.push_back(from[static_cast<std::size_t>(run[l].first + k)]);
+      for (int l = 0; l < lanes; ++l)
+        order.push_back(from[static_cast<std::size_t>(run[l].first) + static_cast<std::size_t>(k)]);
     }
     for (int l = 0; l < lanes; ++l) {
       Bin bin = run[l];
@@ -89,7 +92,8 @@ bool alike(const Particles& p, std::size_t a, std::size_t b) {
 
 // Whether all particles of the block that a bin is the first of are.
 bool all_alike(const Particles& p, const Bin& bin) {
-  const auto first = static_cast<std::size_t>(bin.first), last = static_cast<std::size_t>(bin.last + bin.stride - 1);
+  const auto first = static_cast<std::size_t>(bin.first),
+             last = static_cast<std::size_t>(bin.last) + static_cast<std::size_t>(bin.stride) - 1;
   for (std::size_t q = first + 1; q < last; ++q) {
     if (!alike(p, first, q)) return false;
   }

@@ -58,11 +58,11 @@ struct Grid {
 
  private:
   double node_at(const std::vector<double>& t, int i) const {
-    const auto k = static_cast<std::size_t>(i + 1);
+    const auto k = static_cast<std::size_t>(i) + 1;
     return t.empty() ? i * h : 0.5 * (t[k] + t[k + 1]);
   }
   double span(const std::vector<double>& t, int i) const {
-    const auto k = static_cast<std::size_t>(i + 1);
+    const auto k = static_cast<std::size_t>(i) + 1;
     return t.empty() ? h : t[k + 1] - t[k];
   }
   int holding(const std::vector<double>& t, double x) const {
@@ -70,7 +70,7 @@ struct Grid {
     return static_cast<int>(std::upper_bound(t.begin() + 1, t.end() - 1, x) - t.begin()) - 2;
   }
   int holding(const std::vector<double>& t, double x, int guess) const {
-    const auto k = static_cast<std::size_t>(guess + 1);
+    const auto k = static_cast<std::size_t>(guess) + 1;
     return k + 1 < t.size() && t[k] <= x && x < t[k + 1] ? guess : holding(t, x);
   }
   bool fine(const std::vector<double>& t, int n, double from, double to) const {
