@@ -9,6 +9,7 @@
 
 #include "mechanics/stencil_rows.hpp"
 #include "mechanics/transfers.hpp"
+#include "state/parts.hpp"
 #include "state/shape_functions.hpp"
 
 namespace strata {
@@ -20,8 +21,6 @@ typedef double EightAnywhere __attribute__((vector_size(64), aligned(8), may_ali
 
 constexpr int lanes = 8;
 constexpr int shortest_run = lanes;
-constexpr std::size_t stencil_parts = 32;
-constexpr int worth_threads = 2048;  // slots; threads that have less to do wait longer than they work
 
 Eight load(const double* from) {
   return *reinterpret_cast<const EightAnywhere*>(from);
@@ -158,11 +157,11 @@ std::vector<int> find_borders(const RunMaker& make, const std::vector<IndexRange
   std::vector<int> borders{0};
   std::size_t done = 0;
   for (std::size_t row = 0; row < work.size(); ++row) {
-    while (borders.size() < stencil_parts && done * stencil_parts >= all * borders.size())
+    while (borders.size() < record_parts && done * record_parts >= all * borders.size())
       borders.push_back(static_cast<int>(row) * stride);
     done += work[row];
   }
-  borders.resize(stencil_parts, make.slots.size);
+  borders.resize(record_parts, make.slots.size);
   borders.push_back(make.slots.size);
   return borders;
 }
@@ -170,7 +169,7 @@ std::vector<int> find_borders(const RunMaker& make, const std::vector<IndexRange
 // All slots that no run has, those of the same row together, part by part.
 void find_groups(const RunMaker& make, const std::vector<IndexRange>& segments, const std::vector<int>& borders) {
   StencilOperator& op = make.op;
-  for (std::size_t part = 0; part < stencil_parts; ++part) {
+  for (std::size_t part = 0; part < record_parts; ++part) {
     std::vector<std::pair<int, int>> singles;  // row, slot
     for (int slot = borders[part]; slot < borders[part + 1]; ++slot) {
       if (make.is_single(slot)) singles.emplace_back(make.row(slot), slot);
@@ -195,7 +194,7 @@ template <class List, class SlotOf>
 void deal(const List& list, const std::vector<int>& borders, SlotOf slot_of, IndexRange StencilPart::*of_part,
           std::vector<StencilPart>& parts) {
   std::size_t k = 0;
-  for (std::size_t part = 0; part < stencil_parts; ++part) {
+  for (std::size_t part = 0; part < record_parts; ++part) {
     const std::size_t first = k;
     while (k < list.size() && slot_of(list[k]) < borders[part + 1]) ++k;
     parts[part].*of_part = {first, k};
@@ -204,7 +203,7 @@ void deal(const List& list, const std::vector<int>& borders, SlotOf slot_of, Ind
 
 void find_parts(const RunMaker& make) {
   StencilOperator& op = make.op;
-  op.parts.resize(stencil_parts);
+  op.parts.resize(record_parts);
   const std::vector<IndexRange> segments = find_segments(make);
   const std::vector<int> borders = find_borders(make, segments);
   find_groups(make, segments, borders);
@@ -388,9 +387,9 @@ StencilOperator make_operator(const Scene& scene, const std::vector<Elasticity>&
 NodeTotals move_nodes(double keep, State& state) {
   TotalMotion& t = state.total;
   const StencilOperator& op = *t.op;
-  std::array<NodeTotals, stencil_parts> of_part;
-#pragma omp parallel for schedule(static) if (op.slots.size > worth_threads)
-  for (std::size_t part = 0; part < stencil_parts; ++part)
+  std::array<NodeTotals, record_parts> of_part;
+#pragma omp parallel for schedule(static) if (t.m.size() > worth_threads)
+  for (std::size_t part = 0; part < record_parts; ++part)
     of_part[part] = move_part(op, op.parts[part], keep, state.dt, t);
   NodeTotals all;
   for (const NodeTotals& totals : of_part) {
@@ -408,15 +407,15 @@ double find_accelerations(const Scene& scene, const std::vector<Elasticity>& roc
   const StencilOperator& op = *t.op;
   const bool fast = scene.numerics.kernels == Numerics::Kernels::fast;
   if (!fast) apply_particles(scene, rocks, state);
-  std::array<double, stencil_parts> of_part{};
-#pragma omp parallel if (op.slots.size > worth_threads)
+  std::array<double, record_parts> of_part{};
+#pragma omp parallel if (t.m.size() > worth_threads)
   {
     if (fast) {
 #pragma omp for schedule(static)
-      for (std::size_t part = 0; part < stencil_parts; ++part) mirror(op, op.parts[part], t);
+      for (std::size_t part = 0; part < record_parts; ++part) mirror(op, op.parts[part], t);
     }
 #pragma omp for schedule(static)
-    for (std::size_t part = 0; part < stencil_parts; ++part) {
+    for (std::size_t part = 0; part < record_parts; ++part) {
       if (fast) apply(op, op.parts[part], t);
       of_part[part] = power(op, op.parts[part], t);
     }

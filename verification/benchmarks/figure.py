@@ -17,7 +17,8 @@ class Figure:
 
     peak_flop_s and stream_B_s: the machine's rates beside each repetition, on as many threads; bound: which of them the cost is
     taken relative to. round_trip_s: what a line of memory takes from one thread's processor to the other's and back, of figures
-    on several threads: a virtual machine may find its processors on one cache now and on two later. about: what was run, as words and numbers. problem: why there is no value, or no good one.
+    on several threads: a virtual machine may find its processors on one cache now and on two later. about: what was run, as words
+    and numbers. problem: why there is no value, or no good one.
     """
 
     name: str

@@ -101,8 +101,9 @@ def _rate(record: Record, name: str) -> float:
 def _apart(record: Record, name: str) -> str:
     """How far apart a figure's processors were."""
     figure = record.figure(name)
-    known = figure is not None and math.isfinite(figure.distance)
-    return f"processors {1e9 * figure.distance:.0f} ns apart and back" if figure is not None and known else ""
+    if figure is None or not math.isfinite(figure.distance):
+        return ""
+    return f"processors {1e9 * figure.distance:.0f} ns apart and back"
 
 
 def sizes(record: Record, kinematics: str) -> list[tuple[float, float]]:
