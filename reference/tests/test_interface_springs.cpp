@@ -153,7 +153,7 @@ TEST_CASE("a closed frictionless interface by the same elements") {
   CHECK(extrapolated == near(K_near(kInfinite, 0), 2e-3));
 }
 
-TEST_CASE("the crack faces carry the pressure at points between those that were solved for") {
+TEST_CASE("the crack faces beside springs carry the pressure at points between those that were solved for") {
   const double E_prime = stiff.E_prime();
   for (double d : {0.01, 1.0, 30.0})
     for (const auto& [normal, shear] :

@@ -44,7 +44,12 @@ double multiply_add(long rounds) {
   Vector b = Vector{} + 0.999999, c = Vector{} + 1e-9;
   for (long n = 0; n < rounds; ++n) {
     for (std::size_t k = 0; k < chains; ++k) a[k] = a[k] * b + c;
-    asm volatile("" : "+x"(b), "+x"(c));  // neither is known, so the rounds cannot be done at once
+      // Neither is known from one round to the next, so the rounds cannot be done at once.
+#if defined(__x86_64__)
+    asm volatile("" : "+x"(b), "+x"(c));
+#else
+    asm volatile("" : "+m"(b), "+m"(c));
+#endif
   }
   Vector sum = Vector{};
   for (const Vector& chain : a) sum += chain;

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "mechanics/stencil_rows.hpp"
 #include "mechanics/transfers.hpp"
+#include "state/lanes.hpp"
 #include "state/parts.hpp"
 #include "state/shape_functions.hpp"
 
@@ -16,17 +16,14 @@ namespace strata {
 
 namespace {
 
-typedef double Eight __attribute__((vector_size(64)));
-typedef double EightAnywhere __attribute__((vector_size(64), aligned(8), may_alias));
+constexpr int lanes = most_lanes;
+constexpr int shortest_run = 8;  // slots: below, what a run needs beside its sums is more than sharing them saves
 
-constexpr int lanes = 8;
-constexpr int shortest_run = lanes;
-
-Eight load(const double* from) {
-  return *reinterpret_cast<const EightAnywhere*>(from);
+Lane load(const double* from) {
+  return AllLanes{}.load(from);
 }
-void store(double* to, const Eight& value) {
-  *reinterpret_cast<EightAnywhere*>(to) = value;
+void store(double* to, const Lane& value) {
+  AllLanes{}.store(to, value);
 }
 
 // --- building
@@ -138,15 +135,17 @@ std::vector<IndexRange> find_segments(const RunMaker& make) {
   return of_row;
 }
 
-// The slots at which parts begin, and the end. Work is counted in vectors of eight slots by one coefficient block: a
-// run's entry takes one for eight slots, a segment of a group, with the sum over its eight blocks, about four for a
-// slot, and what is done once for each node about eight for eight. Estimates: they only even out the parts.
+// The slots at which parts begin, and the end. Work is counted in products of a vector of slots and a coefficient
+// block: a run's entry takes one for as many slots as there are lanes, a segment of a group, with the sum over its
+// lanes, about four for a slot, and what is done once for each node about one for a slot. Estimates: they only even out
+// the parts.
 std::vector<int> find_borders(const RunMaker& make, const std::vector<IndexRange>& segments) {
   const int stride = make.slots.stride;
   std::vector<std::size_t> work(static_cast<std::size_t>(make.slots.size / stride + 1), 0);
   const auto add = [&](int slot, std::size_t more) { work[static_cast<std::size_t>(slot / stride)] += more; };
   for (const StencilRun& run : make.op.runs)
-    add(run.slots.first, static_cast<std::size_t>((run.slots.last - run.slots.first) * (run.full + run.diagonal) / 8));
+    add(run.slots.first,
+        static_cast<std::size_t>((run.slots.last - run.slots.first) * (run.full + run.diagonal) / lanes));
   for (int slot = 0; slot < make.slots.size; ++slot) {
     if (!make.is_single(slot)) continue;
     const IndexRange& of_row = segments[static_cast<std::size_t>(make.row(slot))];
@@ -220,17 +219,17 @@ void find_parts(const RunMaker& make) {
 
 // --- applying
 
-// `count` vectors of eight slots from `at` on.
+// `count` vectors of slots from `at` on.
 template <int count>
 void apply_block(const StencilEntry* entries, const StencilRun& run, std::size_t at, TotalMotion& t) {
   constexpr std::ptrdiff_t W = lanes;
-  Eight x[count], y[count];
+  Lane x[count], y[count];
   for (std::ptrdiff_t k = 0; k < count; ++k) x[k] = load(&t.base_x[at] + W * k), y[k] = load(&t.base_y[at] + W * k);
   const double *u_x = t.u_x.data() + at, *u_y = t.u_y.data() + at;
   const StencilEntry *e = entries, *const full = entries + run.full, *const end = full + run.diagonal;
   for (; e != full; ++e) {
     for (std::ptrdiff_t k = 0; k < count; ++k) {
-      const Eight a = load(u_x + e->offset + W * k), b = load(u_y + e->offset + W * k);
+      const Lane a = load(u_x + e->offset + W * k), b = load(u_y + e->offset + W * k);
       x[k] += e->xx * a;
       y[k] += e->yx * a;
       x[k] += e->xy * b;
@@ -265,25 +264,21 @@ void apply_run(const StencilOperator& op, const StencilRun& run, TotalMotion& t)
   if (vectors == 1) apply_block<1>(entries, run, last - lanes, t);
 }
 
-double sum(const Eight& v) {
-  return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
-}
-
 void apply_group(const StencilOperator& op, const StencilGroup& group, TotalMotion& t) {
   for (int k = group.slot; k < group.slot + group.slots; ++k) {
     const auto slot = static_cast<std::size_t>(op.grouped[static_cast<std::size_t>(k)]);
     const double *u_x = t.u_x.data() + slot, *u_y = t.u_y.data() + slot;
-    Eight x{}, y{};
+    Lane x{}, y{};
     for (int s = group.first; s < group.last; ++s) {
       const StencilSegment& segment = op.segments[static_cast<std::size_t>(s)];
-      const Eight a = load(u_x + segment.offset), b = load(u_y + segment.offset);
-      x += std::bit_cast<Eight>(segment.xx) * a;
-      y += std::bit_cast<Eight>(segment.yx) * a;
-      x += std::bit_cast<Eight>(segment.xy) * b;
-      y += std::bit_cast<Eight>(segment.yy) * b;
+      const Lane a = load(u_x + segment.offset), b = load(u_y + segment.offset);
+      x += load(segment.xx.data()) * a;
+      y += load(segment.yx.data()) * a;
+      x += load(segment.xy.data()) * b;
+      y += load(segment.yy.data()) * b;
     }
-    t.a_x[slot] = t.base_x[slot] + sum(x);
-    t.a_y[slot] = t.base_y[slot] + sum(y);
+    t.a_x[slot] = t.base_x[slot] + sum_of_lanes(x);
+    t.a_y[slot] = t.base_y[slot] + sum_of_lanes(y);
   }
 }
 
@@ -333,31 +328,27 @@ void apply_particles(const Scene& scene, const std::vector<Elasticity>& rocks, S
 }
 
 double power(const StencilOperator& op, const StencilPart& part, const TotalMotion& t) {
-  Eight sum_m_v_a{};
+  Lane sum_m_v_a{};
   for (std::size_t k = part.ranges.first; k < part.ranges.last; ++k) {
     for (auto s = static_cast<std::size_t>(op.ranges[k].first); s < static_cast<std::size_t>(op.ranges[k].last);
          s += lanes) {
       sum_m_v_a += load(&t.m[s]) * (load(&t.v_x[s]) * load(&t.a_x[s]) + load(&t.v_y[s]) * load(&t.a_y[s]));
     }
   }
-  return sum(sum_m_v_a);
-}
-
-Eight larger(const Eight& a, const Eight& b) {
-  return a > b ? a : b;
+  return sum_of_lanes(sum_m_v_a);
 }
 
 NodeTotals move_part(const StencilOperator& op, const StencilPart& part, double keep, double dt, TotalMotion& t) {
-  Eight kinetic{}, increment{}, power{}, product{}, fastest{};
+  Lane kinetic{}, increment{}, power{}, product{}, fastest{};
   for (std::size_t k = part.ranges.first; k < part.ranges.last; ++k) {
     for (auto s = static_cast<std::size_t>(op.ranges[k].first); s < static_cast<std::size_t>(op.ranges[k].last);
          s += lanes) {
-      const Eight a_x = load(&t.a_x[s]), a_y = load(&t.a_y[s]), m = load(&t.m[s]);
-      const Eight before_x = load(&t.v_x[s]), before_y = load(&t.v_y[s]);
-      const Eight v_x = keep * before_x + dt * a_x, v_y = keep * before_y + dt * a_y;
+      const Lane a_x = load(&t.a_x[s]), a_y = load(&t.a_y[s]), m = load(&t.m[s]);
+      const Lane before_x = load(&t.v_x[s]), before_y = load(&t.v_y[s]);
+      const Lane v_x = keep * before_x + dt * a_x, v_y = keep * before_y + dt * a_y;
       store(&t.v_x[s], v_x), store(&t.v_y[s], v_y);
       store(&t.u_x[s], load(&t.u_x[s]) + dt * v_x), store(&t.u_y[s], load(&t.u_y[s]) + dt * v_y);
-      const Eight speed2 = v_x * v_x + v_y * v_y;
+      const Lane speed2 = v_x * v_x + v_y * v_y;
       kinetic += m * speed2;
       increment += m * (a_x * a_x + a_y * a_y);
       power += m * (v_x * a_x + v_y * a_y);
@@ -365,9 +356,8 @@ NodeTotals move_part(const StencilOperator& op, const StencilPart& part, double 
       fastest = larger(fastest, speed2);
     }
   }
-  NodeTotals totals{0.5 * sum(kinetic), 0.5 * dt * dt * sum(increment), sum(power), sum(product), 0.0};
-  for (int k = 0; k < lanes; ++k) totals.largest_speed2 = std::max(totals.largest_speed2, fastest[k]);
-  return totals;
+  return {0.5 * sum_of_lanes(kinetic), 0.5 * dt * dt * sum_of_lanes(increment), sum_of_lanes(power),
+          sum_of_lanes(product), largest_lane(fastest)};
 }
 
 }  // namespace

@@ -115,14 +115,15 @@ Real larger(const Real& a, const Real& b) {
   return a > b ? a : b;
 }
 
-// The sum of all lanes, first to last, and the largest of them.
+// The sum of all lanes, halves added to halves, and the largest of them.
 inline double sum_of_lanes(double value) {
   return value;
 }
-inline double sum_of_lanes(const Lane& value) {
-  double sum = 0.0;
-  for (int l = 0; l < most_lanes; ++l) sum += value[l];
-  return sum;
+inline double sum_of_lanes(Lane value) {
+  for (int half = most_lanes / 2; half > 0; half /= 2) {
+    for (int l = 0; l < half; ++l) value[l] += value[l + half];
+  }
+  return value[0];
 }
 inline double largest_lane(double value) {
   return value;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scene/scene.hpp"
+#include "state/lanes.hpp"
 #include "state/spread_array.hpp"
 #include "state/types.hpp"
 
@@ -42,9 +43,9 @@ struct StencilRun {
   int entry = 0, full = 0, diagonal = 0;
 };
 
-// Blocks of up to eight slots in a row, from `offset` slots ahead on.
+// Blocks of as many slots in a row as there are lanes, from `offset` slots ahead on.
 struct alignas(64) StencilSegment {
-  std::array<double, 8> xx{}, xy{}, yx{}, yy{};
+  std::array<double, most_lanes> xx{}, xy{}, yx{}, yy{};
   int offset = 0;
 };
 
