@@ -4,6 +4,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "mechanics/held_reactions.hpp"
 #include "mechanics/interface_laws.hpp"
 #include "mechanics/surface_law.hpp"
 #include "state/shape_functions.hpp"
@@ -13,13 +14,6 @@ namespace strata {
 namespace {
 
 using Kind = InterfaceLaw::Kind;
-
-template <class AnyState>
-auto& point_of(AnyState& state, const TotalPlace& place) {
-  const auto k = static_cast<std::size_t>(place.point);
-  if (place.surface < 0) return state.ties[k].s;
-  return state.surfaces[static_cast<std::size_t>(place.surface)].points[k];
-}
 
 // --- building
 
@@ -157,12 +151,7 @@ double relax(double dt, std::size_t k, SurfacePoint& s, TotalSurfaces& surfaces)
   const Reaction next = over_relax(surfaces.laws[place.law], place.k, free, now);
   if (next.n == now.n && next.t == now.t) return 0.0;
   const Vec2 change = next.n * s.n + next.t * tangent - s.reaction;
-  for (const TotalPlace::Neighbour& other : place.neighbours) {
-    const auto at = static_cast<std::size_t>(other.place);
-    surfaces.rate_x[at] += other.per_x * change.x();
-    surfaces.rate_y[at] += other.per_y * change.y();
-  }
-  s.reaction += change;
+  add_reaction(place, change, s, surfaces);
   return change.norm();
 }
 
@@ -213,6 +202,15 @@ double pass_to_nodes(TotalMotion& t, double dt) {
 
 }  // namespace
 
+void add_reaction(const TotalPlace& place, const Vec2& change, SurfacePoint& s, TotalSurfaces& surfaces) {
+  for (const TotalPlace::Neighbour& other : place.neighbours) {
+    const auto at = static_cast<std::size_t>(other.place);
+    surfaces.rate_x[at] += other.per_x * change.x();
+    surfaces.rate_y[at] += other.per_y * change.y();
+  }
+  s.reaction += change;
+}
+
 TotalSurfaces make_total_surfaces(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
   Builder build{state, {}, {}};
   build.out.laws = scene.laws;
@@ -253,6 +251,7 @@ double step_surfaces(double keep, State& state) {
     surfaces.r_t_start[k] = s.reaction.dot(tangent_of(s.n));
   }
   push_all(state, surfaces);
+  solve_held_reactions(state, surfaces);
   find_reactions(state, surfaces);
   push_all(state, surfaces);
   for (std::size_t k = 0; k < surfaces.places.size(); ++k) {

@@ -8,6 +8,18 @@
 
 namespace strata {
 
+/// The point of a surface, or the spring of a tip, that a place is.
+template <class AnyState>
+auto& point_of(AnyState& state, const TotalPlace& place) {
+  const auto k = static_cast<std::size_t>(place.point);
+  if (place.surface < 0) return state.ties[k].s;
+  return state.surfaces[static_cast<std::size_t>(place.surface)].points[k];
+}
+
+/// Adds `change` (Pa, on the + face) to the reaction of a place, whose point is s, and what it does in a step to the
+/// rates of the jumps of all places that share nodes with it.
+void add_reaction(const TotalPlace& place, const Vec2& change, SurfacePoint& s, TotalSurfaces& surfaces);
+
 /// The split places of a state and what they reach, over slots. Weights of stencils must be known
 /// (update_stencil_weights()), and state.total.m.
 TotalSurfaces make_total_surfaces(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state);

@@ -106,6 +106,8 @@ struct TotalPlace {
   std::vector<Neighbour> neighbours;  // itself among them
 };
 
+struct HeldFactor;
+
 struct TotalSurfaces {
   std::vector<int> touched;  // slots that places reach
   std::vector<TotalPlace> places;
@@ -113,6 +115,7 @@ struct TotalSurfaces {
   std::vector<double> free_x, free_y, v_x, v_y;  // of touched slots: velocity without and with what places exert (m/s)
   std::vector<double> rate_x, rate_y;            // of each place's jump (m/s)
   std::vector<double> r_t_start;                 // tangential reaction at the step's start (Pa)
+  std::shared_ptr<const HeldFactor> held;        // of the places held last (solve_held_reactions())
 };
 
 // A bonded place that may fail: its traction is `base` + sum of T u over slots.
