@@ -158,8 +158,8 @@ TEST_CASE("positions are written where the rock is") {
 
 // Requires that places which contact, stick or a spring holds are solved together: while waves run past a closed
 // interface all of them stand at the jump of their law, w + r/k = rest, to 1e-9 of the largest closure, after the four
-// sweeps that a step takes at least. Mutations that fail: solve_held_reactions() left out, rest 0 or doubled, compliance
-// doubled, the change of the other sign.
+// sweeps that a step takes at least. Mutations that fail: solve_held_reactions() left out, rest 0 or doubled,
+// compliance doubled, the change of the other sign.
 TEST_CASE("what holds places is solved together") {
   const InterfaceLaw law =
       GENERATE(soft_law(0.5e6, 0.5e6), friction_law(50.0), soft_law(1e9, 1e9, Compression::spring));
