@@ -136,9 +136,8 @@ std::vector<IndexRange> find_segments(const RunMaker& make) {
 }
 
 // The slots at which parts begin, and the end. Work is counted in products of a vector of slots and a coefficient
-// block: a run's entry takes one for as many slots as there are lanes, a segment of a group, with the sum over its
-// lanes, about four for a slot, and what is done once for each node about one for a slot. Estimates: they only even out
-// the parts.
+// block: a run's entry takes one a vector, a segment of a group, with the sum over its lanes, about four a slot, and
+// what is done once for each node about eight a vector. Estimates: they only even out the parts.
 std::vector<int> find_borders(const RunMaker& make, const std::vector<IndexRange>& segments) {
   const int stride = make.slots.stride;
   std::vector<std::size_t> work(static_cast<std::size_t>(make.slots.size / stride + 1), 0);
@@ -151,7 +150,8 @@ std::vector<int> find_borders(const RunMaker& make, const std::vector<IndexRange
     const IndexRange& of_row = segments[static_cast<std::size_t>(make.row(slot))];
     add(slot, 4 * (of_row.last - of_row.first));
   }
-  for (const SlotRange& range : make.op.ranges) add(range.first, static_cast<std::size_t>(range.last - range.first));
+  for (const SlotRange& range : make.op.ranges)
+    add(range.first, static_cast<std::size_t>(8 * (range.last - range.first) / lanes));
   const std::size_t all = std::accumulate(work.begin(), work.end(), std::size_t{0});
   std::vector<int> borders{0};
   std::size_t done = 0;
