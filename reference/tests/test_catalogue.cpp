@@ -1,6 +1,8 @@
 // What the command line offers: every entry answers with its defaults, and bad input is refused with all its problems.
 // Changes that were made to the catalogue and fail here: a file's comments, line ends, line numbers, blank lines or
 // count of bad lines mistaken, the two stiffnesses exchanged, distance_at_K_Ic_m doubled.
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
@@ -196,8 +198,8 @@ TEST_CASE("a stiffness that the interface's law does not have is refused") {
 }
 
 TEST_CASE("a list may come from a file, one number a line") {
-  const auto folder = std::filesystem::temp_directory_path() / "strata_reference_lists";
-  std::filesystem::create_directories(folder);
+  std::string name = (std::filesystem::temp_directory_path() / "strata-reference-XXXXXX").string();
+  const std::filesystem::path folder = ::mkdtemp(name.data());  // another test may run at the same time
   const auto file = [&](const std::string& name, const std::string& content) {
     std::ofstream(folder / name, std::ios::binary) << content;
     return (folder / name).string();

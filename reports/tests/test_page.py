@@ -11,6 +11,7 @@ import pytest
 
 from reports.make_page import main
 from reports.tests.synthetic import STEMS, Plan, write_all, write_run
+from verification.stability.store import RECORDS
 
 STUDY_FIGURES = tuple(f"fig{number}" for number in range(1, 9))
 MECHANICS = ("explicit", "quasistatic")
@@ -69,15 +70,18 @@ def links_of(page: Path) -> Links:
 
 
 def make(runs: Path, out: Path, experiments: Path | None = None) -> int:
-    """Make a page of these runs alone, without the chart of errors against time that is kept beside them; its exit status."""
-    where, chart = experiments or runs.parent / "no_scenes", runs.parent / "no_chart"
-    return main(["--runs", str(runs), "--out", str(out), "--experiments", str(where), "--precision", str(chart), "--strict"])
+    """Make a page of these runs, and of what is kept in atlas/ beside them, without the chart of errors against time; its exit status."""
+    folders = {"runs": runs, "out": out, "experiments": experiments or runs.parent / "no_scenes",
+               "precision": runs.parent / "no_chart", "stability": runs.parent / "atlas"}  # fmt: skip
+    return main(["--strict", *(word for name, folder in folders.items() for word in (f"--{name}", str(folder)))])
 
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A page of all six experiments, one run of which failed."""
     root = tmp_path_factory.mktemp("page")
+    (root / "atlas").mkdir()
+    shutil.copy(RECORDS / "flow_explicit.json", root / "atlas")
     assert make(write_all(root), root / "out", write_scenes(root)) == 0
     return root / "out"
 
@@ -94,7 +98,7 @@ def test_every_figure_is_written_and_shown(made: Path) -> None:
 def test_every_link_is_relative_and_leads_somewhere(made: Path) -> None:
     """Nothing on the page needs a network or a place outside its folder."""
     links = links_of(made / "index.html")
-    assert len(links.targets) > 60
+    assert len(links.targets) > 60 and "stability.html" in links.targets
     for target in links.targets:
         if target.startswith("#"):
             assert target[1:] in links.anchors, target

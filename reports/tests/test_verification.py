@@ -182,10 +182,15 @@ def test_cases_that_hold_to_round_off_are_folded_while_they_do(tmp_path: Path) -
     assert "Cases that hold to round-off" not in page and page.count('class="mark ') == 6
 
 
+def none_of(*names: str) -> list[str]:
+    """Options that name folders which are not there."""
+    return [word for name in names for word in (f"--{name}", "/nothing")]
+
+
 def test_every_link_leads_somewhere(tmp_path: Path) -> None:
     """Figures and anchors exist; the page of the experiments and this one link to each other."""
     runs, out = write_ladder(tmp_path, some_rows()), tmp_path / "out"
-    assert make_page(["--runs", str(runs), "--out", str(out), "--experiments", str(tmp_path / "none"), "--strict"]) == 0
+    assert make_page(["--runs", str(runs), "--out", str(out), *none_of("experiments", "precision", "stability"), "--strict"]) == 0
     links = links_of(out / "verification.html")
     assert "index.html" in links.targets and len(links.targets) > 6
     for target in links.targets:
@@ -198,7 +203,7 @@ def test_nothing_run_is_no_page(tmp_path: Path) -> None:
     """Without a ladder and parts there is neither a page nor a link to it."""
     assert main(["--runs", str(tmp_path), "--out", str(tmp_path / "out")]) == 1
     assert not (tmp_path / "out" / "verification.html").exists()
-    assert make_page(["--runs", str(tmp_path), "--out", str(tmp_path / "out"), "--experiments", str(tmp_path / "none")]) == 0
+    assert make_page(["--runs", str(tmp_path), "--out", str(tmp_path / "out"), *none_of("experiments", "precision", "stability")]) == 0
     assert "verification.html" not in (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
 
 

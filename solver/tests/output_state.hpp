@@ -1,8 +1,6 @@
 // A made-up scene and state for the tests of the output: every number is different and none is round.
 #pragma once
 
-#include <unistd.h>
-
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -12,20 +10,9 @@
 #include "output/checkpoint.hpp"
 #include "scene/scene.hpp"
 #include "state/state.hpp"
+#include "temporary_folder.hpp"
 
 namespace strata::test {
-
-// A folder of its own for one test, removed with the object.
-struct TemporaryFolder {
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "strata-test-XXXXXX").string();
-    path = ::mkdtemp(name.data());
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() { std::filesystem::remove_all(path); }
-  std::filesystem::path path;
-};
 
 inline std::string content_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);

@@ -1,5 +1,6 @@
 #include "scene/check.hpp"
 #include "scene_text.hpp"
+#include "temporary_folder.hpp"
 
 #include <cstdio>
 #include <filesystem>
@@ -105,10 +106,10 @@ TEST_CASE("A rock that only --set names is a slip, unless a layer uses it") {
 }
 
 TEST_CASE("check reports every file and every variant, and says which variant is to blame") {
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / "strata_test_scene_check.toml";
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path / "scene.toml";
   std::ofstream(file) << layered << "[variants.coarse]\nnumerics.cell_m = 16\n";
   const std::vector<std::string> lines = check({"no/such.toml", file.string()});
-  std::filesystem::remove(file);
   REQUIRE(lines.size() == 2);
   CHECK_THAT(lines[0], Catch::StartsWith("no/such.toml: there is no such file"));
   CHECK_THAT(lines[1],

@@ -4,18 +4,18 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from verification.harness import paths
 from verification.ablation.effects import Tried, effects_of, tried
 from verification.ablation.ingredients import LEFT_OUT, Ingredient, ingredients_of, named
 from verification.ablation.store import Table
 from verification.harness.budget import followed
 from verification.harness.load import LoadError, Run, load
-from verification.harness.paths import ROOT
 from verification.harness.quantities import turns
 from verification.harness.refine import REFUSED, content_of
 from verification.harness.run import Job, Outcome, run
 from verification.precision.measure import timed
 
-RUNS = ROOT / "runs" / "ablation"
+RUNS = paths.RUNS / "ablation"
 LIMIT_S = 900.0  # a run that takes longer says nothing
 
 # How much of a scene is tried: all ingredients, those that it has, or its interfaces alone.

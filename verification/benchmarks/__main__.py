@@ -18,9 +18,9 @@ from verification.benchmarks.records import (
     BadRecord, OtherMachine, Record, append, as_json, broken, last_record, why_not_recorded,
 )  # fmt: skip
 from verification.benchmarks.table import report
-from verification.harness.paths import ROOT
+from verification.harness.paths import RUNS
 
-LAST = ROOT / "runs" / "bench" / "last.json"
+LAST = RUNS / "bench" / "last.json"
 REPETITIONS = 5
 OK, WORSE, WRONG_USE, NOT_RECORDED = 0, 1, 2, 4
 

@@ -19,7 +19,7 @@ from typing import Any
 
 from verification.harness.factors import Alternative, Factor, factors_of
 from verification.harness.load import Run
-from verification.harness.paths import EXPERIMENTS, ROOT, solver
+from verification.harness.paths import EXPERIMENTS, RUNS, solver
 from verification.harness.quantities import HEIGHTS_M, Quantity, path_gap, quantities_of, turns
 from verification.harness.refine import (
     LIMIT_MIN, REFINE_RUNS, REFUSED, affordable, chosen, content_of, job_of, make_all, scene_of, value_words,
@@ -27,7 +27,7 @@ from verification.harness.refine import (
 from verification.harness.run import Job, Outcome
 from verification.harness.scenes import MECHANICS, mechanics_of, scenes_of
 
-BUDGET_RUNS = ROOT / "runs" / "budget"
+BUDGET_RUNS = RUNS / "budget"
 
 # What is run without --variants: the perfect case and interfaces that act. Experiment 3 with perfect interfaces is Experiment 1's.
 VARIANTS: dict[str, tuple[str, ...]] = {

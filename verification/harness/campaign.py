@@ -1,28 +1,31 @@
-"""The runs of all experiments as a list: which there are, which are done, and one of them with a line of progress.
+"""The runs of all experiments: makes them side by side, longest first, then judges the claims and makes the page.
 
-A run's folder is RUNS/MECHANICS/EXPERIMENT/VARIANT. A variant that only one mechanics can run is made in that one only.
+usage: ci/reproduce [--only exp1[,exp2...]] [--mechanics explicit|quasistatic|both] [--cell METRES] [--jobs N]
 
-usage: python3 -m verification.harness.campaign prepare --runs DIR [--only exp1,exp2] [--mechanics both] [--settings "KEY=VALUE ..."]
-       python3 -m verification.harness.campaign run MECHANICS EXPERIMENT VARIANT --runs DIR [--settings "KEY=VALUE ..."]
-       python3 -m verification.harness.campaign failed --runs DIR
-       python3 -m verification.harness.campaign list --runs DIR
+A run's folder is RUNS/MECHANICS/EXPERIMENT/VARIANT. A variant that only one mechanics can run is made in that one only. What is there
+for the same scene and solver is not run again; a run that was interrupted goes on.
 """
 from __future__ import annotations
 
 import argparse
-import json
+import subprocess
 import sys
+import threading
 import time
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
+from verification.harness import claims
+from verification.harness.cost import cost_of
 from verification.harness.load import LoadError, load
-from verification.harness.paths import EXPERIMENTS, ROOT, solver
+from verification.harness.paths import EXPERIMENTS, ROOT, RUNS, solver
+from verification.harness.refine import content_of
 from verification.harness.run import Job, Outcome, done_before, key_of, load_outcome, run
 from verification.harness.scenes import MECHANICS, mechanics_of, scenes_of, variants_of
+from verification.harness.side_by_side import Task, duration, side_by_side
 
-PROGRESS = "progress.jsonl"
-DONE = ".done"
+PAGE = ROOT / "reports" / "make_page.py"  # reads what is there and is not imported here
 
 
 @dataclass(frozen=True)
@@ -33,60 +36,39 @@ class Campaign:
     only: tuple[str, ...] = ()
     settings: tuple[str, ...] = ()
     mechanics: tuple[str, ...] = MECHANICS
+    experiments: Path = EXPERIMENTS
 
     def scenes(self) -> list[Path]:
         """The scene files of the campaign."""
-        return [path for path in scenes_of(EXPERIMENTS) if not self.only or path.stem.startswith(self.only)]
+        return [path for path in scenes_of(self.experiments) if not self.only or path.stem.startswith(self.only)]
 
     def jobs(self) -> list[Job]:
         """All jobs of the campaign, but for variants that the mechanics cannot run."""
         return [
-            self.job(mechanics, scene.stem, variant)
+            self.job(mechanics, scene, variant)
             for mechanics in self.mechanics
             for scene in self.scenes()
             for variant in variants_of(scene)
             if mechanics in mechanics_of(scene, variant)
         ]
 
-    def job(self, mechanics: str, experiment: str, variant: str) -> Job:
+    def name(self, job: Job) -> str:
+        """A job's mechanics, experiment and variant."""
+        return str(job.out.relative_to(self.runs))
+
+    def job(self, mechanics: str, scene: Path, variant: str) -> Job:
         """One job of the campaign."""
         settings = (f"numerics.mechanics={mechanics}", *self.settings)
-        return Job(EXPERIMENTS / f"{experiment}.toml", variant, self.runs / mechanics / experiment / variant, settings)
+        return Job(scene, variant, self.runs / mechanics / scene.stem / variant, settings)
 
 
-def prepare(campaign: Campaign) -> tuple[int, int]:
-    """Mark the runs that are done for this scene and solver, unmark the others; returns how many there are of both."""
-    done, remaining, binary = 0, 0, solver()
-    campaign.runs.mkdir(parents=True, exist_ok=True)
-    for job in campaign.jobs():
-        marker = job.out / DONE
-        if done_before(job, key_of(job, binary)):
-            marker.touch()
-            done += 1
-        else:
-            marker.unlink(missing_ok=True)
-            remaining += 1
-    (campaign.runs / PROGRESS).write_text(json.dumps({"total": remaining, "start": time.time()}) + "\n", encoding="utf-8")
-    return done, remaining
-
-
-def duration(seconds: float) -> str:
-    """A time span (s) as minutes and seconds."""
-    return f"{int(seconds) // 60}:{int(seconds) % 60:02d} min"
-
-
-def progress(runs: Path, name: str) -> str:
-    """Note a finished run; says how many of how many are done and how much time (by the pace so far) is left."""
-    path = runs / PROGRESS
-    if not path.is_file():
-        return ""
-    with path.open("a", encoding="utf-8") as stream:
-        stream.write(json.dumps({"run": name}) + "\n")
-    head, *finished = path.read_text(encoding="utf-8").splitlines()
-    total, start = json.loads(head)["total"], json.loads(head)["start"]
-    elapsed = time.time() - start
-    left = elapsed / len(finished) * max(total - len(finished), 0)
-    return f"[{len(finished):2d}/{total}] {duration(elapsed)}, {duration(left)} left  "
+def expected_s(job: Job) -> float:
+    """How long a run will take on one thread: as long as the last time, or by what its scene says, s."""
+    before = load_outcome(job.out)
+    if before is not None and before.ok:
+        return before.wall_s
+    content = content_of(job.scene, job.variant, job.settings)
+    return cost_of(content, str(content["numerics"]["mechanics"])).seconds
 
 
 def result_line(job: Job, outcome: Outcome) -> str:
@@ -100,58 +82,60 @@ def result_line(job: Job, outcome: Outcome) -> str:
     start = next((event.inlet_Pa for event in found.summary.events if event.kind == "start"), None)
     begun = f"starts at {start / 1e6:.3f} MPa" if start is not None else "never starts"
     top = float(found.history["tip_y_m"].max())
-    how = "done before" if outcome.skipped else f"{outcome.wall_s:.0f} s"
-    return f"{begun}, tip at {top:.1f} m at {found.summary.inlet_Pa / 1e6:.3f} MPa ({how})"
+    return f"{begun}, tip at {top:.1f} m at {found.summary.inlet_Pa / 1e6:.3f} MPa ({outcome.wall_s:.1f} s)"
 
 
-def run_one(campaign: Campaign, mechanics: str, experiment: str, variant: str) -> int:
-    """Run one job and print its line; 0 whatever came of it, unless it was interrupted."""
-    job = campaign.job(mechanics, experiment, variant)
-    outcome = run(job)
-    print(f"{progress(campaign.runs, f'{mechanics}/{experiment}/{variant}')}{mechanics} {experiment} {variant}: {result_line(job, outcome)}", flush=True)
-    return 130 if outcome.exit_status in (130, -2) else 0
+def made(job: Job, stop: threading.Event) -> Outcome:
+    """Make a run; a folder that cannot be used fails it alone."""
+    try:
+        return run(job, stop=stop)
+    except OSError as error:
+        return Outcome(job.scene.stem, job.variant, "failed", 2, str(error), 0.0, "")
 
 
-def report_failed(campaign: Campaign) -> int:
-    """Print the runs that did not complete; 3 if there are any."""
-    bad = [(job, outcome) for job in campaign.jobs() if (outcome := load_outcome(job.out)) is None or not outcome.ok]
-    for job, outcome in bad:
-        print(f"failed: {job.out}: {outcome.reason if outcome else 'not run'}")
-    return 3 if bad else 0
+def make_runs(campaign: Campaign, at_a_time: int) -> int:
+    """Make all runs with a line each; 3 where some did not complete, which are named at the end."""
+    binary = solver()
+    before = {job: done_before(job, key_of(job, binary)) for job in campaign.jobs()}
+    rest = [job for job, outcome in before.items() if outcome is None]
+    print(f"{len(rest)} runs to make, {len(before) - len(rest)} done before for the same scene and solver", flush=True)
+    tasks = [
+        Task(campaign.name(job), partial(made, job), partial(result_line, job), expected_s(job)) for job in rest
+    ]
+    outcomes = before | dict(zip(rest, side_by_side(tasks, at_a_time)))
+    failed = [f"failed: {campaign.name(job)}: {outcome.reason}" for job, outcome in outcomes.items() if not outcome.ok]
+    print("\n".join(failed), end="\n" if failed else "")
+    return 3 if failed else 0
 
 
 def main(arguments: list[str] | None = None) -> int:
     """The campaign from the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("action", choices=("prepare", "run", "failed", "list"))
-    parser.add_argument("names", nargs="*", metavar="MECHANICS EXPERIMENT VARIANT")
-    parser.add_argument("--runs", type=Path, default=ROOT / "runs")
+    parser.add_argument("--experiments", type=Path, default=EXPERIMENTS)
+    parser.add_argument("--runs", type=Path, default=RUNS)
+    parser.add_argument("--out", type=Path, default=ROOT / "reports" / "out", help="folder for the page")
     parser.add_argument("--only", default="", help="beginnings of names of experiments, comma-separated")
     parser.add_argument("--mechanics", default="both", choices=(*MECHANICS, "both"))
-    parser.add_argument("--settings", default="", help="scene keys for all runs, KEY=VALUE separated by spaces")
+    parser.add_argument("--set", dest="settings", action="append", default=[], metavar="KEY=VALUE", help="a scene key, in all runs")
+    parser.add_argument("--jobs", type=int, default=2, help="runs at a time, each on one thread")
+    parser.add_argument("--list", action="store_true", help="name the runs, make none")
     options = parser.parse_args(arguments)
     only = tuple(filter(None, options.only.split(",")))
     mechanics = MECHANICS if options.mechanics == "both" else (options.mechanics,)
-    campaign = Campaign(options.runs.resolve(), only, tuple(options.settings.split()), mechanics)
+    campaign = Campaign(options.runs.resolve(), only, tuple(options.settings), mechanics, options.experiments)
     if not campaign.scenes():
-        parser.error(f"no experiment begins with {options.only}; there are {', '.join(experiment_names())}")
-    if options.action == "run":
-        if len(options.names) != 3:
-            parser.error("run takes a mechanics, an experiment and a variant")
-        return run_one(campaign, *options.names)
-    if options.action == "failed":
-        return report_failed(campaign)
-    if options.action == "list":
-        print("\n".join(str(job.out.relative_to(campaign.runs)) for job in campaign.jobs()))
+        parser.error(f"no experiment begins with {options.only}; there are {', '.join(path.stem for path in scenes_of(options.experiments))}")
+    if options.list:
+        print("\n".join(campaign.name(job) for job in campaign.jobs()))
         return 0
-    done, remaining = prepare(campaign)
-    print(f"{remaining} runs to make, {done} done before for the same scene and solver")
-    return 0
-
-
-def experiment_names() -> list[str]:
-    """The names of all experiments."""
-    return [path.stem for path in scenes_of(EXPERIMENTS)]
+    start = time.monotonic()
+    status = make_runs(campaign, options.jobs)
+    folders = ["--experiments", str(options.experiments), "--runs", str(campaign.runs)]
+    claims.main(folders)
+    if subprocess.run([sys.executable, str(PAGE), *folders, "--out", str(options.out)], check=False).returncode != 0:
+        return 1
+    print(f"page: {options.out.resolve() / 'index.html'}  (runs and page: {duration(time.monotonic() - start)})")
+    return status
 
 
 if __name__ == "__main__":

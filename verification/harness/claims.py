@@ -23,7 +23,7 @@ from verification.harness.claim_data import (
 )  # fmt: skip
 from verification.harness.load import LoadError, Run, load
 from verification.harness.observables import OBSERVABLES, Measured, measure
-from verification.harness.paths import EXPERIMENTS, ROOT
+from verification.harness.paths import EXPERIMENTS, RUNS
 from verification.harness.scenes import MECHANICS, mechanics_of, read_scene, scenes_of
 
 # Keys of a case that are not parameters of its observable.
@@ -229,7 +229,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Evaluate from the command line, print a line a claim and write the JSON."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--experiments", type=Path, default=EXPERIMENTS)
-    parser.add_argument("--runs", type=Path, default=ROOT / "runs")
+    parser.add_argument("--runs", type=Path, default=RUNS)
     parser.add_argument("--out", type=Path, help="default: claims.json among the runs")
     options = parser.parse_args(arguments)
     results = evaluate_each(options.experiments, options.runs)

@@ -8,6 +8,9 @@ ROOT = Path(__file__).resolve().parents[2]
 EXPERIMENTS = ROOT / "experiments"
 ANALYTIC = ROOT / "verification" / "analytic"
 
+# Where runs go: $STRATA_RUNS, or runs/ in the project. Tests have a folder of their own.
+RUNS = Path(os.environ.get("STRATA_RUNS", ROOT / "runs"))
+
 
 def solver() -> Path:
     """The solver to run: $STRATA, or that of the release build."""

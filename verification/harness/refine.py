@@ -13,23 +13,26 @@ import argparse
 import json
 import math
 import sys
+import threading
 import tomllib
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from verification.harness.cost import cost_of, nearest
+from verification.harness import paths
+from verification.harness.cost import Cost, cost_of, nearest
 from verification.harness.load import LoadError, Run, load
 from verification.harness.observables import Measured
-from verification.harness.paths import EXPERIMENTS, ROOT, solver
+from verification.harness.paths import EXPERIMENTS, solver
 from verification.harness.quantities import HEIGHTS_M, Quantity, noise_of, path_gap, quantities_of, turns
 from verification.harness.richardson import Estimate, estimate, estimate_of_changes
 from verification.harness.run import Job, Outcome, done_before, key_of, run
 from verification.harness.scenes import MECHANICS, STUDY_VARIANTS, mechanics_of, merged, resolved, scenes_of, variants_of
+from verification.harness.side_by_side import Task, side_by_side
 
-REFINE_RUNS = ROOT / "runs" / "refine"
+REFINE_RUNS = paths.RUNS / "refine"
 NAME = "refine.json"
 CELLS_M = (2.0, 1.0, 0.5, 0.25)
 LIMIT_MIN = 30.0
@@ -123,27 +126,36 @@ def job_of(scene: Path, mechanics: str, variant: str, cell_m: float, settings: S
     return Job(scene, variant, root / scene.stem / mechanics / variant / f"{cell_m:g}m", tuple(own))
 
 
+def cost_to_make(job: Job) -> Cost:
+    """What a job will cost: as in a run of the same variant where there is one."""
+    content = content_of(job.scene, job.variant, job.settings)
+    mechanics, cell = str(content["numerics"]["mechanics"]), float(content["numerics"]["cell_m"])
+    beside = [*job.out.parent.glob("*/"), paths.RUNS / mechanics / job.scene.stem / job.variant]
+    return cost_of(content, mechanics, *(nearest(beside, cell) or ()))
+
+
+def expected_s(job: Job) -> float:
+    """How long a job will take, s; nothing where it is done."""
+    return 0.0 if done_before(job, key_of(job, solver())) is not None else cost_to_make(job).seconds
+
+
 def cost_lines(jobs: Sequence[Job]) -> tuple[list[str], float]:
     """What the jobs that are still to be made will cost, in words a job, and in seconds on one thread together."""
     lines, total, binary = [], 0.0, solver()
     for job in jobs:
         if done_before(job, key_of(job, binary)) is not None:
             continue
-        content = content_of(job.scene, job.variant, job.settings)
-        mechanics, cell = str(content["numerics"]["mechanics"]), float(content["numerics"]["cell_m"])
-        beside = [*job.out.parent.glob("*/"), ROOT / "runs" / mechanics / job.scene.stem / job.variant]
-        like = nearest(beside, cell)
-        cost = cost_of(content, mechanics, *(like or ()))
+        cost = cost_to_make(job)
         total += cost.seconds
         basis = "as in a run of this variant" if cost.measured else "by experience"
-        lines.append(f"  {mechanics} {job.variant} {job.out.name}: {cost.particles:.3g} particles x {cost.steps:.3g} steps:"
+        lines.append(f"  {job.out.relative_to(job.out.parents[2])}: {cost.particles:.3g} particles x {cost.steps:.3g} steps:"
                      f" {cost.seconds:.0f} s ({basis})")  # fmt: skip
     return lines, total
 
 
-def make(job: Job) -> tuple[Outcome, Run | None]:
+def make(job: Job, stop: threading.Event | None = None) -> tuple[Outcome, Run | None]:
     """Run a job and read what it wrote; a run that failed is read as far as it came, one that was refused is not."""
-    outcome = run(job)
+    outcome = run(job, stop=stop)
     if outcome.exit_status == REFUSED:
         return outcome, None
     try:
@@ -152,17 +164,17 @@ def make(job: Job) -> tuple[Outcome, Run | None]:
         return outcome, None
 
 
+def made_words(made: tuple[Outcome, Run | None]) -> str:
+    """How a run ended, in words."""
+    outcome = made[0]
+    how = "done before" if outcome.skipped else f"{outcome.wall_s:.0f} s"
+    return f"{outcome.status} ({how}) {outcome.reason[:160]}".rstrip()
+
+
 def make_all(jobs: Sequence[Job], at_a_time: int) -> list[tuple[Outcome, Run | None]]:
     """Make all jobs, so many at a time, each on one thread, with a line for each."""
-
-    def one(job: Job) -> tuple[Outcome, Run | None]:
-        outcome, found = make(job)
-        how = "done before" if outcome.skipped else f"{outcome.wall_s:.0f} s"
-        print(f"  {job.out.relative_to(job.out.parents[2])}: {outcome.status} ({how}) {outcome.reason[:160]}".rstrip(), flush=True)
-        return outcome, found
-
-    with ThreadPoolExecutor(max_workers=at_a_time) as pool:
-        return list(pool.map(one, jobs))
+    tasks = [Task(str(job.out.relative_to(job.out.parents[2])), partial(make, job), made_words, expected_s(job)) for job in jobs]
+    return side_by_side(tasks, at_a_time)
 
 
 # --- what the runs say

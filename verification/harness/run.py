@@ -8,8 +8,10 @@ import argparse
 import hashlib
 import json
 import shutil
+import signal
 import subprocess
 import sys
+import threading
 import time
 import tomllib
 from dataclasses import asdict, dataclass
@@ -21,9 +23,13 @@ from verification.harness.paths import solver
 OUTCOME = "outcome.json"
 
 # What the solver's exit status means (0 done, 3 numerics failed); only these two are the solver's word on the scene.
-MEANING = {0: "completed", 1: "a bug in the solver", 2: "bad input", 3: "numerics failed", 130: "interrupted"}
+INTERRUPTED = 130
+MEANING = {0: "completed", 1: "a bug in the solver", 2: "bad input", 3: "numerics failed", INTERRUPTED: "interrupted"}
 FINAL = (0, 3)
 TOO_LONG = 124  # a run that was killed since it took longer than was asked for
+
+# How often a run that may be interrupted is looked at, and how long it then has to write its checkpoint, s.
+LOOK_S, GRACE_S = 0.1, 30.0
 
 
 @dataclass(frozen=True)
@@ -107,7 +113,7 @@ def done_before(job: Job, key: str) -> Outcome | None:
 def clear(folder: Path) -> None:
     """Empty a run's folder; refuses a folder that holds something else than a run."""
     names = {item.name for item in folder.iterdir()} if folder.is_dir() else set()
-    if names and not names & {OUTCOME, "scene.toml", "summary.json", "log.txt", ".done"}:
+    if names and not names & {OUTCOME, "scene.toml", "summary.json", "log.txt"}:
         raise FileExistsError(f"{folder} holds files but no run; name another folder")
     if folder.is_dir():
         shutil.rmtree(folder)
@@ -124,28 +130,48 @@ def reason_of(folder: Path, exit_status: int, log: str) -> str:
     return reason or " / ".join(log.strip().splitlines()[-3:]) or meaning
 
 
-def ended(command: list[str], limit_s: float | None) -> tuple[int, str]:
-    """Exit status and what was said; a command that takes longer than the limit is killed (TOO_LONG, with that as its word)."""
-    try:
-        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False, timeout=limit_s)
-    except subprocess.TimeoutExpired:
-        return TOO_LONG, f"not done after {limit_s:g} s"
-    return done.returncode, done.stdout
+def ended(command: list[str], limit_s: float | None, stop: threading.Event | None = None) -> tuple[int, str]:
+    """Exit status and what was said; a command that takes longer than the limit is killed (TOO_LONG, with that as its word).
+
+    Once `stop` is set it is interrupted as by Ctrl-C, and killed where that does not end it.
+    """
+    begun, asked = time.monotonic(), False
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
+        while True:
+            try:
+                said, _ = process.communicate(timeout=limit_s if stop is None else LOOK_S)
+                return process.returncode, said
+            except subprocess.TimeoutExpired:
+                spent = time.monotonic() - begun
+            if limit_s is not None and spent >= limit_s:
+                process.kill()
+                process.communicate()
+                return TOO_LONG, f"not done after {limit_s:g} s"
+            if stop is not None and stop.is_set() and not asked:
+                process.send_signal(signal.SIGINT)
+                limit_s, asked = spent + GRACE_S, True
 
 
-def run(job: Job, binary: Path | None = None, force: bool = False, limit_s: float | None = None) -> Outcome:
+def run(job: Job, binary: Path | None = None, force: bool = False, limit_s: float | None = None, stop: threading.Event | None = None) -> Outcome:
     """Run a job unless its folder has it already; the outcome says how it ended and never raises for a failed run.
 
-    A run that takes longer than limit_s is killed: it failed, with exit status TOO_LONG.
+    A run that takes longer than limit_s is killed: it failed, with exit status TOO_LONG. One that `stop` interrupts goes on where it was
+    the next time.
     """
     binary = binary or solver()
     key = key_of(job, binary)
     before = None if force else done_before(job, key)
     if before is not None:
         return Outcome(**{**asdict(before), "settings": before.settings, "skipped": True})
-    clear(job.out)
+    before = None if force else load_outcome(job.out)
     start = time.monotonic()
-    exit_status, said = ended(command_of(job, binary), limit_s)
+    if before is not None and before.key == key and before.exit_status == INTERRUPTED and (job.out / "scene.toml").is_file():
+        command = [str(binary), "resume", str(job.out), "--threads", str(job.threads), "--quiet"]
+        start -= before.wall_s
+    else:
+        clear(job.out)
+        command = command_of(job, binary)
+    exit_status, said = ended(command, limit_s, stop)
     wall_s = time.monotonic() - start
     (job.out / "log.txt").write_text(said, encoding="utf-8")
     complete = exit_status == 0 and (job.out / "summary.json").is_file()

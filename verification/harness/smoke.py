@@ -2,18 +2,19 @@
 from __future__ import annotations
 
 import json
+import threading
 from pathlib import Path
 from typing import Any
 
 from verification.harness.compare import Comparison, Expected, compare
 from verification.harness.load import Run, load
 from verification.harness.observables import path_length, resample
-from verification.harness.paths import EXPERIMENTS, ROOT
-from verification.harness.run import Job, Outcome, run
+from verification.harness.paths import EXPERIMENTS, RUNS
+from verification.harness.run import Job, run
 from verification.harness.scenes import MECHANICS, mechanics_of
 
 EXPECTED = EXPERIMENTS / "expected"
-SMOKE_RUNS = ROOT / "runs" / "smoke"
+SMOKE_RUNS = RUNS / "smoke"
 
 # Cells and increments of 2 m: an eighth of the work of the 1 m runs, in the same block with the same events.
 SETTINGS = ("numerics.cell_m=2.0", "fracture.increment_m=2.0")
@@ -58,12 +59,6 @@ def cases(mechanics: tuple[str, ...] = MECHANICS) -> list[Case]:
 def settings_of(mechanics: str) -> tuple[str, ...]:
     """The settings of a run at smoke size."""
     return (f"numerics.mechanics={mechanics}", *SETTINGS)
-
-
-def smoke_run(case: Case, folder: Path = SMOKE_RUNS) -> Outcome:
-    """Run one case at smoke size, unless it is there already."""
-    mechanics, experiment, variant = case
-    return run(Job(EXPERIMENTS / f"{experiment}.toml", variant, folder.joinpath(*case), settings_of(mechanics)))
 
 
 def arrest_values(found: Run) -> Values:
@@ -138,12 +133,14 @@ def write_expected(mechanics: str, experiment: str, variants: dict[str, Values])
     path.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
 
 
-def measure_case(case: Case, folder: Path = SMOKE_RUNS) -> Values:
-    """Run a case and measure it; raises RuntimeError for a run that failed or was made in another mechanics."""
-    outcome = smoke_run(case, folder)
+def measure_case(case: Case, stop: threading.Event | None = None) -> Values:
+    """Run a case, unless it is there, and measure it; raises RuntimeError for a run that failed or was made in another mechanics."""
+    mechanics, experiment, variant = case
+    folder = SMOKE_RUNS.joinpath(*case)
+    outcome = run(Job(EXPERIMENTS / f"{experiment}.toml", variant, folder, settings_of(mechanics)), stop=stop)
     if not outcome.ok:
         raise RuntimeError(f"{'/'.join(case)}: {outcome.reason}")
-    found = load(folder.joinpath(*case))
-    if found.summary.mechanics != case[0]:
+    found = load(folder)
+    if found.summary.mechanics != mechanics:
         raise RuntimeError(f"{'/'.join(case)}: the solver ran {found.summary.mechanics}")
     return measured_values(found)

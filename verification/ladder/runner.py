@@ -3,18 +3,16 @@ from __future__ import annotations
 
 import fcntl
 import threading
-from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from verification.harness.paths import ROOT
+from verification.harness import paths
 from verification.harness.run import Job, Outcome, load_outcome, run
+from verification.harness.side_by_side import Task, Tell, say, side_by_side
 from verification.ladder.case import Case, Level
 from verification.ladder.catalogue import Families, folder_name
 
-RUNS = ROOT / "runs" / "ladder"
+RUNS = paths.RUNS / "ladder"
 MECHANICS_KEY = "numerics.mechanics"
 
 
@@ -58,60 +56,31 @@ def rungs_of(chosen: Families, smoke: bool = False, runs: Path = RUNS) -> list[R
     ]
 
 
-class Slots:
-    """So many threads of the machine, given out to runs; a run that wants more than there are gets all of them."""
-
-    def __init__(self, count: int) -> None:
-        self._count = self._free = count
-        self._changed = threading.Condition()
-
-    @contextmanager
-    def taken(self, wanted: int) -> Iterator[None]:
-        """Hold so many slots while the block runs."""
-        share = min(wanted, self._count)
-        with self._changed:
-            self._changed.wait_for(lambda: self._free >= share)
-            self._free -= share
-        try:
-            yield
-        finally:
-            with self._changed:
-                self._free += share
-                self._changed.notify_all()
-
-
-def make_one(rung: Rung, binary: Path | None = None) -> Made:
+def make_one(rung: Rung, binary: Path | None = None, stop: threading.Event | None = None) -> Made:
     """Make one run unless it is there; another process that wants the same one waits for it."""
     rung.folder.parent.mkdir(parents=True, exist_ok=True)
     with (rung.folder.parent / f"{rung.folder.name}.lock").open("w", encoding="utf-8") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        return Made(rung, run(rung.job(), binary))
+        return Made(rung, run(rung.job(), binary, stop=stop))
 
 
-def make_all(
-    rungs: list[Rung], jobs: int = 2, binary: Path | None = None, tell: Callable[[str], None] = lambda line: None
-) -> list[Made]:
-    """Make the runs of all rungs on `jobs` threads, those that took longest last time first; in the order given."""
-    slots, done = Slots(jobs), []
+def made_words(made: Made) -> str:
+    """How a run ended, in words."""
+    if not made.outcome.ok:
+        return f"FAILED: {made.outcome.reason}"
+    return "done before" if made.outcome.skipped else f"{made.outcome.wall_s:.1f} s"
 
-    def one(rung: Rung) -> Made:
-        with slots.taken(rung.case.threads):
-            made = make_one(rung, binary)
-        done.append(made)
-        how = "done before" if made.outcome.skipped else f"{made.outcome.wall_s:.1f} s"
-        what = how if made.outcome.ok else f"FAILED: {made.outcome.reason}"
-        tell(f"[{len(done):3d}/{len(rungs)}] {rung.name}: {what}")
-        return made
 
-    order = sorted(range(len(rungs)), key=lambda k: expected_s(rungs[k]), reverse=True)
-    with ThreadPoolExecutor(max_workers=jobs) as pool:
-        pending = {k: pool.submit(one, rungs[k]) for k in order}
-        return [pending[k].result() for k in range(len(rungs))]
+def make_all(rungs: list[Rung], jobs: int = 2, binary: Path | None = None, tell: Tell = say) -> list[Made]:
+    """Make the runs of all rungs on `jobs` threads, those that take longest first; in the order given."""
+    tasks = [
+        Task(rung.name, lambda stop, rung=rung: make_one(rung, binary, stop), made_words, expected_s(rung), rung.case.threads)
+        for rung in rungs
+    ]
+    return side_by_side(tasks, jobs, tell)
 
 
 def expected_s(rung: Rung) -> float:
-    """How long a run took last time, s; without a last time infinitely long for the finest level, less for coarser ones."""
+    """How long a run may take, s: as long as the last time, or 0.1 s at the coarsest level and 8 times more at each (points and steps)."""
     before = load_outcome(rung.folder)
-    if before is not None:
-        return before.wall_s
-    return 1e6 / (len(rung.case.levels) - rung.case.levels.index(rung.level))
+    return before.wall_s if before is not None else 0.1 * 8.0 ** rung.case.levels.index(rung.level)

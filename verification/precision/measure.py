@@ -16,6 +16,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from verification.harness import paths
 from verification.harness import run as harness
 from verification.harness.load import LoadError, Run, load
 from verification.harness.paths import ROOT, reference_program, solver
@@ -27,7 +28,7 @@ from verification.precision import machine
 from verification.precision.problem import STRATA, Answer, Method, Problem, Wanted
 from verification.precision.store import FAILED, OK, REFUSED, TOO_LONG, Found, Point
 
-RUNS = ROOT / "runs" / "precision"
+RUNS = paths.RUNS / "precision"
 WARM_S, LONG_S = 2.0, 10.0
 REPEATS, SOME = 5, 3
 # Wall time over CPU time of the quickest run, and beyond it (s), above which something else had the processor.

@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
+from verification.harness import paths
 from verification.harness import run as harness
 from verification.harness.load import LoadError, Run, load
 from verification.harness.paths import ROOT
@@ -16,7 +17,7 @@ from verification.precision.measure import timed
 from verification.stability.family import FAILED, GARBAGE, MARKED, REFUSED, STABLE, STRATA, Checked, Edge, Family, Point
 from verification.stability.store import EdgeFound, PointFound, Record
 
-RUNS = ROOT / "runs" / "atlas"
+RUNS = paths.RUNS / "atlas"
 LIMIT_S = 120.0  # a run that takes longer is garbage: nobody knows what it would say
 CPU = "cpu_s.json"
 REASON_LENGTH = 400

@@ -6,10 +6,10 @@ import hashlib
 from pathlib import Path
 
 from verification.harness.load import Run, load
-from verification.harness.paths import ROOT
+from verification.harness import paths
 from verification.harness.run import Job, Outcome, run
 
-RUNS = ROOT / "runs" / "tests"
+RUNS = paths.RUNS / "tests"
 
 
 def folder_of(scene: Path, variant: str, settings: tuple[str, ...]) -> Path:

@@ -1,7 +1,9 @@
-"""Puts the project's root on the path of the tests and keeps their runs together."""
+"""Puts the project's root on the path of the tests and keeps them to themselves."""
 from __future__ import annotations
 
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+
+import verification.tests.hermetic  # noqa: E402, F401  (before anything that reads the environment)

@@ -1,15 +1,24 @@
 """Which runs there are: both mechanics, but for variants that only one can run; choices name what exists."""
 from __future__ import annotations
 
+import json
+import os
+import signal
+import threading
+import time
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 
+from verification.harness import campaign as campaigns
 from verification.harness import choices
-from verification.harness.campaign import Campaign, main
+from verification.harness.campaign import Campaign, expected_s, main
 from verification.harness.choices import BadChoice, read_points
 from verification.harness.paths import EXPERIMENTS
+from verification.harness.run import Outcome, load_outcome
 from verification.harness.scenes import MECHANICS, mechanics_of, resolved, scenes_of, variants_of
+from verification.tests.fake_run import climb, write_run
 
 SCENE = """
 [fluid]
@@ -67,9 +76,108 @@ def test_one_mechanics_and_some_experiments(tmp_path: Path) -> None:
 
 
 def test_the_list_of_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["list", "--runs", str(tmp_path), "--only", "exp3", "--mechanics", "explicit"]) == 0
+    assert main(["--list", "--runs", str(tmp_path), "--only", "exp3", "--mechanics", "explicit"]) == 0
     lines = capsys.readouterr().out.split()
     assert "explicit/exp3_two_interfaces/perfect" in lines and not any(line.startswith("quasistatic") for line in lines)
+
+
+# Stands for the solver: as long as its variant says, then done, failed, or, of the variant `stuck`, never.
+SOLVER = """#!/bin/sh
+while [ $# -gt 0 ]; do case "$1" in --out) out=$2;; --variant) variant=$2;; esac; shift; done
+echo "$variant" >> "$(dirname "$0")/calls"
+case "$variant" in
+  friction) echo '{"reason": "the block is a mechanism"}' > "$out/summary.json"; exit 3;;
+  stuck) trap 'exit 130' INT; touch "$(dirname "$0")/stuck"; while :; do sleep 0.01; done;;
+esac
+cp "$(dirname "$0")"/made/exp/run/* "$out"
+"""
+
+
+@pytest.fixture()
+def campaign(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder for a campaign of a scene of four variants with a program in the solver's place."""
+    (tmp_path / "experiments").mkdir()
+    text = (EXPERIMENTS / "exp1_single_interface.toml").read_text().partition("[variants.")[0]
+    (tmp_path / "experiments" / "exp.toml").write_text(text + "".join(f"[variants.{name}]\n" for name in ("perfect", "friction", "weak")))
+    program = tmp_path / "solver" / "strata"
+    write_run(program.parent / "made" / "exp" / "run", climb())
+    program.write_text(SOLVER)
+    program.chmod(0o755)
+    monkeypatch.setenv("STRATA", str(program))
+    page = tmp_path / "page.py"
+    page.write_text("import sys\nfrom pathlib import Path\nPath(sys.argv[-1]).mkdir(exist_ok=True)\n(Path(sys.argv[-1]) / 'index.html').touch()\n")
+    monkeypatch.setattr(campaigns, "PAGE", page)
+    return tmp_path
+
+
+def calls(campaign: Path) -> list[str]:
+    """The variants that were run."""
+    return (campaign / "solver" / "calls").read_text().split()
+
+
+def make(campaign: Path) -> int:
+    """The campaign with inertia, from the command line."""
+    folders = [word for name in ("experiments", "runs", "out") for word in (f"--{name}", str(campaign / name))]
+    return main([*folders, "--mechanics", "explicit", "--jobs", "2"])
+
+
+def test_a_run_that_fails_is_told_and_the_others_go_on(campaign: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Exit status 3 with the reason, all others made, the page written; a second call makes nothing and says the same."""
+    assert make(campaign) == 3
+    said = capsys.readouterr().out
+    assert "3 runs to make, 0 done before" in said and "[3/3]" in said
+    assert "explicit/exp/weak: starts at 2.360 MPa, tip at 70.0 m at 3.000 MPa" in said
+    assert said.count("failed: explicit/exp/friction: the block is a mechanism") == 1
+    assert (campaign / "out" / "index.html").is_file() and (campaign / "runs" / "claims.json").is_file()
+    assert sorted(calls(campaign)) == ["friction", "perfect", "weak"]
+    assert make(campaign) == 3
+    said = capsys.readouterr().out
+    assert "0 runs to make, 3 done before" in said and "failed: explicit/exp/friction" in said
+    assert len(calls(campaign)) == 3
+
+
+def test_a_folder_that_is_no_run_s_fails_that_run_alone(campaign: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = campaign / "runs" / "explicit" / "exp" / "weak"
+    folder.mkdir(parents=True)
+    (folder / "thesis.tex").write_text("years of work")
+    assert make(campaign) == 3
+    said = capsys.readouterr().out
+    assert "failed: explicit/exp/weak" in said and "holds files but no run" in said and "[3/3]" in said
+    assert (folder / "thesis.tex").exists()
+
+
+def test_an_interrupt_ends_the_campaign_and_a_second_call_goes_on(campaign: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """By a signal to the process, as of a terminal or of `kill`: status 130, no process left, what is done is not run again."""
+    scene = campaign / "experiments" / "exp.toml"
+    scene.write_text(scene.read_text().replace("variants.friction", "variants.stuck"))
+    threading.Thread(target=lambda: (wait_for(campaign / "solver" / "stuck"), os.kill(os.getpid(), signal.SIGTERM))).start()
+    with pytest.raises(SystemExit) as how:
+        make(campaign)
+    assert how.value.code == 130 and "interrupted" in capfd.readouterr().out
+    assert load_outcome(campaign / "runs" / "explicit" / "exp" / "stuck").exit_status == 130  # type: ignore[union-attr]
+    assert not (campaign / "out" / "index.html").exists()
+    outcomes = {name: load_outcome(campaign / "runs" / "explicit" / "exp" / name) for name in ("perfect", "weak")}
+    left = {name for name, outcome in outcomes.items() if outcome is None or not outcome.ok}
+    before = len(calls(campaign))
+    scene.write_text(scene.read_text().replace("variants.stuck", "variants.other"))
+    assert make(campaign) == 0
+    assert sorted(calls(campaign)[before:]) == sorted({*left, "other"})
+
+
+def wait_for(file: Path) -> None:
+    """Wait until a file is there."""
+    while not file.exists():
+        time.sleep(0.005)
+
+
+def test_what_takes_longest_is_known_before_anything_was_run(tmp_path: Path) -> None:
+    """By the scene's cells and mechanics; by the last time where there is one."""
+    coarse, fine = (Campaign(tmp_path, ("exp1",), (f"numerics.cell_m={cell}",), ("explicit",)).jobs()[0] for cell in (2, 1))
+    assert expected_s(fine) > 3.0 * expected_s(coarse) > 0.0
+    fine.out.mkdir(parents=True)
+    outcome = Outcome("exp1", "", "completed", 0, "", 12.5, "key")
+    (fine.out / "outcome.json").write_text(json.dumps(asdict(outcome)))
+    assert expected_s(fine) == 12.5
 
 
 def test_every_variant_beside_the_study_s_types_belongs_to_a_choice() -> None:

@@ -413,13 +413,6 @@ def test_the_command_with_nothing_to_judge_is_no_pass(tmp_path: Path, ladder: Fa
         asked(tmp_path, "--jobs", "0")
 
 
-def test_slots_give_no_more_than_there_are() -> None:
-    slots = runner.Slots(2)
-    with slots.taken(4):
-        assert slots._free == 0
-    assert slots._free == 2
-
-
 @pytest.mark.parametrize(
     ("change", "why"),
     [

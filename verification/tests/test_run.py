@@ -2,11 +2,14 @@
 from __future__ import annotations
 
 import json
+import threading
+import time
 from pathlib import Path
 
 import pytest
 
-from verification.harness.run import Job, key_of, load_outcome, run
+from verification.harness import run as harness
+from verification.harness.run import Job, Outcome, key_of, load_outcome, run
 
 SCENE = """
 title = "a"
@@ -22,11 +25,14 @@ id = "1a"
 
 # Stands for the solver: counts its calls and does as the variant says.
 SOLVER = """#!/bin/sh
+echo "$*" >> "$(dirname "$0")/calls"
+[ "$1" = resume ] && out=$2
 while [ $# -gt 0 ]; do case "$1" in --out) out=$2;; --variant) variant=$2;; esac; shift; done
-echo called >> "$(dirname "$0")/calls"
 case "$variant" in
   two) echo 'the block is a mechanism' >&2; exit 3;;
   crash) kill -SEGV $$;;
+  long) trap 'echo interrupted; exit 130' INT; touch "$out/scene.toml"; while :; do sleep 0.01; done;;
+  deaf) trap '' INT; touch "$out/scene.toml"; while :; do sleep 0.01; done;;
 esac
 echo '{"status": "completed"}' > "$out/summary.json"
 """
@@ -91,6 +97,39 @@ def test_a_crash_is_told_and_tried_again(tmp_path: Path, solver: Path, scene: Pa
     assert outcome.status == "failed" and "signal 11" in outcome.reason
     run(job, solver)
     assert calls(solver) == 2
+
+
+def interrupted(job: Job, solver: Path) -> Outcome:
+    """A run that is told to stop when it has begun."""
+    stop = threading.Event()
+    threading.Thread(target=lambda: (wait_for(job.out / "scene.toml"), stop.set())).start()
+    return run(job, solver, stop=stop)
+
+
+def wait_for(file: Path) -> None:
+    """Wait until a file is there."""
+    while not file.exists():
+        time.sleep(0.005)
+
+
+def test_an_interrupted_run_ends_at_once_and_goes_on(tmp_path: Path, solver: Path, scene: Path) -> None:
+    """It is resumed by the same solver only; its time is that of both parts."""
+    job = Job(scene, "long", tmp_path / "out", threads=2)
+    first = interrupted(job, solver)
+    assert (first.ok, first.exit_status, first.reason) == (False, 130, "interrupted")
+    second = run(job, solver)
+    assert second.ok and second.wall_s > first.wall_s
+    assert (solver.parent / "calls").read_text().splitlines()[1] == f"resume {job.out} --threads 2 --quiet"
+    interrupted(job := Job(scene, "long", tmp_path / "other"), solver)
+    solver.write_text(SOLVER.replace("long)", "short)"))
+    assert run(job, solver).ok and "resume" not in (solver.parent / "calls").read_text().splitlines()[-1]
+
+
+def test_a_run_that_hears_no_interrupt_is_killed(tmp_path: Path, solver: Path, scene: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(harness, "GRACE_S", 0.3)
+    begin = time.monotonic()
+    outcome = interrupted(Job(scene, "deaf", tmp_path / "out"), solver)
+    assert not outcome.ok and time.monotonic() - begin < 10.0
 
 
 def test_a_folder_with_other_files_is_left_alone(tmp_path: Path, solver: Path, scene: Path) -> None:
