@@ -124,7 +124,7 @@ def G_over_J(run: Run) -> float | None:
     if not {"G_N_m", "G_by_J_N_m"} <= run.history.keys():
         return None
     released, by_J = run.history["G_N_m"], run.history["G_by_J_N_m"]
-    near = run.history.get("at_interface", np.zeros_like(by_J))
+    near = run.history.get("near", run.history.get("at_interface", np.zeros_like(by_J)))
     was_near = np.concatenate([near[:1], near[:-1]])  # J at the increment's start came from the row before
     known = np.isfinite(released) & (by_J > 0.0) & (near == 0) & (was_near == 0)
     ratios = released[known] / by_J[known]

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "advance_fluid.hpp"
 #include "advance_load.hpp"
@@ -197,7 +198,6 @@ void accept(const Scene& scene, const LoadPoint& before, Change change, State& s
   note_largest(monitors.contact_residual, run.equilibrium.residual);
   note_largest(monitors.largest_imbalance, std::abs(monitors.volume_balance));
   monitors.delivered_m2 += (state.time - before.time) * inflow(scene, state);
-  monitors.mirror = run.model.body->halved();
   watch_tips(scene, state);
   ++state.step;
   watch_row(scene, state);
@@ -207,30 +207,41 @@ void rebuild_all(const Scene& scene, const std::vector<Elasticity>& rocks, State
   const double fracture = state.ledger.fracture;
   for (GrowthTrial& trial : run.trials) trial.model.body.reset(), trial.model.condensed = {};
   update_model(scene, rocks, state, run.model);
+  state.monitors.mirror = run.model.body->halved();
   run.rules = make_tip_rules(scene, rocks, state);
   state.ledger.fracture = fracture;  // what springs of tips give back is in the difference of stored energy already
   make_trials(scene, rocks, state, run);
 }
 
-// Splits the columns of the worst bonded places (and of their mirror images, which are as bad but for round-off).
-// Places under friction give nothing up by splitting, so all that slide split at once.
-void fail_worst(const Scene& scene, const std::vector<BondedPlace>& places, double worst, const Quasistatic& run,
-                State& state) {
+double worst_index(const Quasistatic& run) {
+  double worst = 0.0;
+  for (const BondedPlace& place : run.model.bonds.places) worst = std::max(worst, place.index);
+  return worst;
+}
+
+// Splits the columns of the worst bonded places and, where half a block answers for the whole, their mirror images,
+// which are as bad but for round-off. Places under friction give nothing up by splitting, so all that slide split at
+// once.
+void fail_worst(const Scene& scene, const Quasistatic& run, State& state) {
   constexpr double as_bad = 1e-6;
-  for (const BondedPlace& bad : places) {
-    Surface& surface = state.surfaces[bad.surface];
+  const double worst = worst_index(run);
+  std::set<std::pair<std::size_t, int>> columns;  // of surfaces
+  for (const BondedPlace& bad : run.model.bonds.places) {
+    const Surface& surface = state.surfaces[bad.surface];
     const bool friction = scene.laws[surface.law].kind == InterfaceLaw::Kind::friction;
     if (bad.index < (friction ? 1.0 : (1.0 - as_bad) * worst)) continue;
     const int column = surface.points[bad.point].column;
-    for (const BondedPlace& other : places) {
-      if (other.surface != bad.surface || surface.points[other.point].column != column) continue;
-      SurfacePoint& s = surface.points[other.point];
-      s.split = true;
-      s.failed_s = state.time;
-      s.bonded = jump_at(run.model.condensed, state.point_stencils[bad.surface][other.point], run.equilibrium.j);
-      s.w = Vec2::Zero();
-      s.reaction = other.carried;  // friction starts from the shear it carried
-    }
+    columns.emplace(bad.surface, column);
+    if (run.model.body->halved()) columns.emplace(bad.surface, state.grid.nx - column);
+  }
+  for (const BondedPlace& place : run.model.bonds.places) {
+    SurfacePoint& s = state.surfaces[place.surface].points[place.point];
+    if (!columns.contains({place.surface, s.column})) continue;
+    s.split = true;
+    s.failed_s = state.time;
+    s.bonded = jump_at(run.model.condensed, state.point_stencils[place.surface][place.point], run.equilibrium.j);
+    s.w = Vec2::Zero();
+    s.reaction = place.carried;  // friction starts from the shear it carried
   }
 }
 
@@ -257,7 +268,7 @@ void lengthen(const Scene& scene, std::vector<Growing>& growing, State& state) {
   for (Growing& g : growing) {
     Tip& tip = state.tips[g.tip];
     const std::size_t points = state.fracture().points.size();
-    note_growth(state, tip, tip.criterion.c_str(), tip.criterion == "energy" || !tip.at_interface);
+    note_growth(state, tip, tip.criterion.c_str(), tip.criterion == "energy" || !at_interface(tip));
     g.increment = extend_tip(scene, state, tip, g.increment);
     const std::size_t added = state.fracture().points.size() - points;
     add_fluid_cells(scene, tip.at_back, added, state);
@@ -294,13 +305,10 @@ void measure_release(const Scene& scene, const std::vector<Elasticity>& rocks, d
 // What is due at the present load: the worst bonded column fails or, where none does, tips grow.
 void let_happen(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
   const LoadPoint before = load_point(state);
-  const std::vector<BondedPlace>& places = run.model.bonds.places;
-  double worst = 0.0;
-  for (const BondedPlace& place : places) worst = std::max(worst, place.index);
   std::vector<Growing> growing;
   double energy_before = 0.0;
-  if (worst >= 1.0) {
-    fail_worst(scene, places, worst, run, state);
+  if (failure_due(run)) {
+    fail_worst(scene, run, state);
   } else {
     growing = tips_that_grow(scene, rocks, state, run);
     energy_before = find_equilibrium(scene, state.time, state, run.model).energy;  // against friction's present memory
@@ -374,6 +382,10 @@ void locate_event(const Scene& scene, const std::vector<Elasticity>& rocks, cons
 }
 
 }  // namespace
+
+bool failure_due(const Quasistatic& run) {
+  return worst_index(run) >= 1.0;
+}
 
 void start_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
   run.model.factor = TangentFactor{}, run.trials.clear();  // digits go by the state alone

@@ -36,6 +36,10 @@ void start_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks,
 /// without building anew what has not changed. Throws as start_quasistatic() does.
 void restart_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run);
 
+/// Whether a bonded place carries more than it can at the present load: the next step lets it go before anything else
+/// happens, and the state is no equilibrium of its interfaces' laws yet. Throws nothing.
+bool failure_due(const Quasistatic& run);
+
 /// One step. Where something is due at the present load (the worst bonded column fails, a tip grows) it happens, and
 /// the load stays. Else time goes on, at most to `until` (s), and no further than to the load at which the next thing
 /// happens: growth where J or the energy released over a finite increment reaches J_c of the rock ahead, failure where

@@ -99,13 +99,14 @@ void make_interfaces(const Scene& scene, State& state) {
     surface.law = place.law;
     for (SurfacePoint& s : surface.points) {
       s.column = along_x ? state.grid.column_at(s.x.x()) : state.grid.row_at(s.x.y());
-      s.split = scene.laws[place.law].kind == InterfaceLaw::Kind::soft;
+      s.split = scene.laws[place.law].apart_at_start();
     }
     state.surfaces.push_back(surface);
   }
 }
 
-// A fracture's faces and soft interfaces start with what they carried in the in-situ state: fluid pressure or contact.
+// A fracture's faces and interfaces that are apart start with what they carried in the in-situ state: fluid pressure or
+// contact.
 void set_start_reactions(State& state) {
   for (Surface& surface : state.surfaces) {
     for (SurfacePoint& s : surface.points) {

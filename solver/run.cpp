@@ -105,7 +105,7 @@ void add_stop_event(State& state) {
   const Tip* tip = leading_tip(state);
   const Vec2 at = tip != nullptr ? tip_position(state, *tip) : Vec2{Vec2::Zero()};
   state.events.push_back(
-      {"stop", state.time, state.fluid.inlet_Pa, at.x(), at.y(), tip != nullptr && tip->at_interface, ""});
+      {"stop", state.time, state.fluid.inlet_Pa, at.x(), at.y(), tip != nullptr && at_interface(*tip), ""});
 }
 
 std::size_t fracture_points(const State& state) {
@@ -154,6 +154,11 @@ bool row_follows(const Run& run, double interval) {
   return stop.inlet_Pa && fluid.start_Pa + fluid.rate_Pa_s * end >= *stop.inlet_Pa * (1.0 - 1e-9);
 }
 
+// Whether all interfaces carry what they can: until then a state is neither written nor the last.
+bool settled(const Run& run) {
+  return !run.statics || !failure_due(*run.statics);
+}
+
 // Steps after each of which a state is as a resumed run finds it.
 std::int64_t steps_between_sound_states(const Run& run) {
   if (run.statics) return steps_between_copies;
@@ -170,7 +175,7 @@ void step_and_record(Run& run, double interval) {
   }
   run.particle_steps += static_cast<double>(run.state.particles.size());
   const double slack = run.statics ? 1e-9 * interval : 0.5 * run.state.dt;
-  if (run.state.time >= static_cast<double>(run.recorder.outputs()) * interval - slack) {
+  if (settled(run) && run.state.time >= static_cast<double>(run.recorder.outputs()) * interval - slack) {
     output(run);
   } else if (fracture_points(run.state) != points) {
     if (!run.statics) run.state.ledger.strain = strain_energy(run.rocks, run.state.particles);
@@ -197,9 +202,9 @@ void keep_if_sound(Run& run) {
 Outcome march(Run& run, double checkpoint_every_s, Progress& progress) {
   const double interval = output_interval(run.scene);
   Clock::time_point last_checkpoint = Clock::now();
-  if (run.recorder.outputs() == 0) output(run);
   while (true) {
-    if (auto reason = reason_to_stop(run.scene, run.state)) {
+    if (settled(run) && run.recorder.outputs() == 0) output(run);
+    if (auto reason = reason_to_stop(run.scene, run.state); reason && settled(run)) {
       add_stop_event(run.state);
       output(run);
       return {done, *reason};

@@ -315,7 +315,7 @@ bool interface_within(const Scene& scene, const State& state, const Tip& tip, do
 
 double driving_J(const Elasticity& rock, const Tip& tip) {
   if (tip.K_I <= 0.0 || tip.J <= 0.0) return 0.0;
-  if (tip.at_interface) return tip.J;
+  if (tip.near != Obstacle::none) return tip.J;
   return std::min(tip.J, 2.0 * (tip.K_I * tip.K_I + tip.K_II * tip.K_II) / rock.E_prime);
 }
 
@@ -328,7 +328,7 @@ void note_growth(State& state, Tip& tip, const char* by, bool trusted) {
   tip.last_growth_s = state.time;
   tip.last_growth_Pa = state.fluid.inlet_Pa;
   Monitors& monitors = state.monitors;
-  if (tip.at_interface) {
+  if (tip.near != Obstacle::none) {
     ++monitors.growths_apart;
   } else {
     ++monitors.growths;
@@ -355,7 +355,7 @@ bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state
       tip.stopped_by = what_stops(scene, state, tip);
       continue;
     }
-    note_growth(state, tip, "J", !tip.at_interface);
+    note_growth(state, tip, "J", !at_interface(tip));
     extend_tip(scene, state, tip, scene.fracture->increment_m);
     moved = true;
   }
@@ -371,11 +371,11 @@ void watch_tips(const Scene& scene, State& state) {
       if (distance > 0.5 * state.grid.h || std::find(tip.reached.begin(), tip.reached.end(), id) != tip.reached.end())
         continue;
       tip.reached.push_back(id);
-      record(state, "reach_interface", tip, state.time, state.fluid.inlet_Pa, tip.at_interface, "");
+      record(state, "reach_interface", tip, state.time, state.fluid.inlet_Pa, at_interface(tip), "");
     }
     if (tip.has_grown && !tip.arrested && tip.growing && state.fluid.inlet_Pa - tip.last_growth_Pa >= arrest_rise_Pa) {
       tip.arrested = true;
-      const bool doubtful = tip.criterion == "energy" ? false : tip.at_interface;
+      const bool doubtful = tip.criterion != "energy" && at_interface(tip);
       const std::string by = tip.criterion;
       record(state, "arrest", tip, tip.last_growth_s, tip.last_growth_Pa, doubtful, by.c_str());
     }

@@ -79,10 +79,11 @@ ParticleMotion motion_at(const Scene& scene, const State& state, const Frame& fr
   const Particles& p = state.particles;
   const Weights X = weights_x<QuadraticBspline>(state.grid, bin.i, p.x[q], 0.0),
                 Y = weights_y<QuadraticBspline>(state.grid, bin.j, p.y[q], 0.0);
+  const double s_x = state.grid.span_x(bin.i), s_y = state.grid.span_y(bin.j);
   for (std::size_t n = 0; n < 9; ++n) {
     const NodeMotion& node = state.motion[static_cast<std::size_t>(bin.record[n])];
     const double N = X.N[n % 3] * Y.N[n / 3];
-    const Vec2 grad = Vec2{X.dN[n % 3] * Y.N[n / 3], X.N[n % 3] * Y.dN[n / 3]} / state.grid.h;
+    const Vec2 grad{X.dN[n % 3] * Y.N[n / 3] / s_x, X.N[n % 3] * Y.dN[n / 3] / s_y};
     m.a += N * Vec2{node.dv_x, node.dv_y} / state.dt;
     m.v_1 += grad.dot(frame.e_1) * Vec2{node.v_x, node.v_y};
   }

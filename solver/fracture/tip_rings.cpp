@@ -14,10 +14,13 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// No ring is smaller than this, since the tip's own error would fill it. An interface that would ask for less flags the
-// K; an edge nearer than 3.5 cells, or a second tip nearer than 7, does not: the ring then reaches over it.
+// No ring is smaller than this, since the tip's own error would fill it: what is nearer lies within the rings. J and K
+// are trusted where a ring of that size ends a cell before it, as far as a node's functions reach, and half a cell more
+// before an interface. Between, K_I is off by up to 0.3 % near rocks, springs and edges (0.4 % where it is trusted);
+// within, by 0.3 to 0.7 % at 2 cells, 2 to 17 % at 1, and by any amount nearer.
 constexpr double narrowest_ring_cells = 2.5;
-constexpr double trusted_cells = 4.0;   // distance to an interface below which K is flagged
+constexpr double trusted_cells = narrowest_ring_cells + 1.0;
+constexpr double trusted_cells_at_interface = trusted_cells + 0.5;
 constexpr double inner_fraction = 0.6;  // q is 1 inside this fraction of a ring's radius: 0.3 costs 1 % in J
 
 // Whether all nodes around a bin lie outside the square around a ring: then q is 0 at them.
@@ -26,32 +29,79 @@ bool out_of_reach(const Grid& g, const Vec2& tip, const Ring& ring, const Bin& b
          g.y(bin.j + 1) < tip.y() - ring.outer || g.y(bin.j - 1) > tip.y() + ring.outer;
 }
 
-// The farthest a ring may reach from the tip, and whether an interface limits it.
-double ring_radius(const Scene& scene, const State& state, const Tip& tip, const Vec2& at, bool& near_interface) {
-  const double h = state.grid.h;
-  double radius = scene.numerics.ring_cells * h;
-  const auto keep_off = [&](double distance) {
-    radius = std::min(radius, distance - h);
-  };  // a node's function reaches on
-  const Stretch along_x = scene.domain.along_x(), along_y = scene.domain.along_y();
-  keep_off(at.x() - along_x.from), keep_off(along_x.to - at.x());
-  keep_off(at.y() - along_y.from), keep_off(along_y.to - at.y());
-  for (const Tip& other : state.tips) {
-    if (other.at_back != tip.at_back) keep_off(0.5 * state.fracture().length());
+// How far a ring may reach from a tip (m), and the nearest thing that is too near.
+struct Room {
+  double h;
+  double radius;
+  double nearest = HUGE_VAL;
+  Obstacle near = Obstacle::none;
+
+  // Keeps the ring off what is so far from the tip (m).
+  void keep_off(double distance) { radius = std::min(radius, distance - h); }
+  // Notes what is nearer than so many cells.
+  void note(double distance, Obstacle what, double cells) {
+    constexpr double round_off = 1e-3;  // of a cell: a tip that stands so many cells off is clear
+    if (distance >= std::min(nearest, (cells - round_off) * h)) return;
+    nearest = distance, near = what;
   }
-  near_interface = false;
+};
+
+void keep_off_edges(const Scene& scene, const Vec2& at, Room& room) {
+  const Stretch along_x = scene.domain.along_x(), along_y = scene.domain.along_y();
+  const Obstacle below = scene.domain.bottom == Edge::symmetry ? Obstacle::symmetry_line : Obstacle::edge;
+  for (const auto& [distance, what] :
+       {std::pair{at.x() - along_x.from, Obstacle::edge}, std::pair{along_x.to - at.x(), Obstacle::edge},
+        std::pair{at.y() - along_y.from, below}, std::pair{along_y.to - at.y(), Obstacle::edge}}) {
+    room.keep_off(distance);
+    room.note(distance, what, trusted_cells);
+  }
+}
+
+// The other tip, and where the path comes back to the tip: farther along it than any that only bends on its way.
+void keep_off_fracture(const State& state, const Tip& tip, const Vec2& at, Room& room) {
+  const Surface& fracture = state.fracture();
+  for (const Tip& other : state.tips) {
+    if (other.at_back == tip.at_back) continue;
+    room.keep_off(0.5 * fracture.length());
+    room.note(0.5 * fracture.length(), Obstacle::fracture, trusted_cells);
+  }
+  for (const SurfacePoint& s : fracture.points) {
+    const double along = tip.at_back ? fracture.length() - s.arc : s.arc, distance = (s.x - at).norm();
+    if (along < 2.0 * distance || along < 2.0 * trusted_cells * room.h) continue;
+    room.keep_off(distance);
+    room.note(distance, Obstacle::fracture, trusted_cells);
+  }
+}
+
+// An interface between like rocks disturbs nothing as long as it is bonded; rings keep off it all the same, since it
+// may fail at any time. One whose faces are apart is met where they are.
+void keep_off_interfaces(const Scene& scene, const State& state, const Vec2& at, Room& room) {
+  const auto across = [&](const Vec2& x) { return scene.strata.along == Strata::Along::y ? x.y() : x.x(); };
+  for (const Surface& surface : state.surfaces) {
+    const double distance = std::abs(across(at - surface.vertices.front().x));
+    if (surface.kind != Surface::Kind::interface || distance > trusted_cells_at_interface * room.h) continue;
+    for (const SurfacePoint& s : surface.points) {
+      const double off = (s.x - at).norm() - 0.5 * s.A;
+      if (s.split) room.note(std::max(distance, off), Obstacle::interface, trusted_cells_at_interface);
+    }
+  }
   for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
     const InterfacePlace& place = scene.strata.interfaces[k];
-    const bool nothing_there = scene.laws[place.law].kind == InterfaceLaw::Kind::perfect &&
-                               scene.strata.layers[k].rock == scene.strata.layers[k + 1].rock;
-    if (nothing_there) continue;
-    const double distance = std::abs((scene.strata.along == Strata::Along::y ? at.y() : at.x()) - place.at_m);
-    near_interface = near_interface || distance < (trusted_cells - 1e-3) * h;
-    keep_off(distance);
+    const bool like = scene.strata.layers[k].rock == scene.strata.layers[k + 1].rock;
+    if (like && scene.laws[place.law].kind == InterfaceLaw::Kind::perfect) continue;
+    const double distance = std::abs(across(at) - place.at_m);
+    room.keep_off(distance);
+    if (!like) room.note(distance, Obstacle::rock_border, trusted_cells_at_interface);
   }
-  // Too near to an edge, the symmetry line or the other tip: the ring reaches over it, so K is flagged as well.
-  near_interface = near_interface || radius < narrowest_ring_cells * h;
-  return std::max(radius, narrowest_ring_cells * h);
+}
+
+Room ring_room(const Scene& scene, const State& state, const Tip& tip, const Vec2& at) {
+  const double h = state.grid.h;
+  Room room{h, scene.numerics.ring_cells * h};
+  keep_off_interfaces(scene, state, at, room);  // the first that is noted stands for all as near as it
+  keep_off_fracture(state, tip, at, room);
+  keep_off_edges(scene, at, room);
+  return room;
 }
 
 // The share of the maximum-hoop kink that one increment turns by. A kink over less than about three cells is not
@@ -92,7 +142,10 @@ TipGeometry tip_geometry(const Scene& scene, const std::vector<Elasticity>& rock
   TipGeometry at;
   at.frame.tip = tip.at_back ? fracture.vertices.back().x : fracture.vertices.front().x;
   at.frame.sign = tip.at_back ? 1.0 : -1.0;
-  const double radius = ring_radius(scene, state, tip, at.frame.tip, at.near_interface);
+  const Room room = ring_room(scene, state, tip, at.frame.tip);
+  const double radius = std::max(room.radius, narrowest_ring_cells * state.grid.h);
+  at.near = room.near;
+  at.crossed = room.nearest < radius - 1e-3 * state.grid.h;
   at.frame.e_1 = mean_direction(fracture, tip.at_back, radius);
   at.frame.e_2 = {-at.frame.e_1.y(), at.frame.e_1.x()};
   for (std::size_t k = 0; k < at.rings.size(); ++k)
@@ -112,14 +165,14 @@ NodalWeights nodal_weights(const Grid& g, const Vec2& tip, const Ring& ring, int
   return q;
 }
 
-// Spans are h where q is not 0: rings lie among fine cells.
 Weight weight_at(const Grid& g, const Frame& frame, const NodalWeights& nodes, int i, int j, const Vec2& x) {
   const Weights X = weights_x<QuadraticBspline>(g, i, x.x(), 0.0), Y = weights_y<QuadraticBspline>(g, j, x.y(), 0.0);
+  const double s_x = g.span_x(i), s_y = g.span_y(j);  // rings may reach into growing cells
   double q = 0.0;
   Vec2 grad = Vec2::Zero();
   for (std::size_t n = 0; n < 9; ++n) {
     q += X.N[n % 3] * Y.N[n / 3] * nodes[n];
-    grad += nodes[n] / g.h * Vec2{X.dN[n % 3] * Y.N[n / 3], X.N[n % 3] * Y.dN[n / 3]};
+    grad += Vec2{nodes[n] / s_x * (X.dN[n % 3] * Y.N[n / 3]), nodes[n] / s_y * (X.N[n % 3] * Y.dN[n / 3])};
   }
   return {q, frame.local(grad)};
 }
@@ -202,6 +255,28 @@ void add_face(const Surface& fracture, const Frame& frame, const FacePlace& plac
   }
 }
 
+namespace {
+
+// Faces that touch at the tip, and so do not open there, have no K_I; what drives such a tip is their sliding alone, J
+// = K_II^2/E'. What the rings see of faces that open farther back is no release of energy at the tip. A K_I below zero
+// says the same as touching faces.
+void close_where_faces_touch(const Scene& scene, const State& state, const TipGeometry& at, Tip& tip) {
+  constexpr double slides = 1e-6;  // of the largest jump: above the round-off of a symmetric block
+  const auto& points = state.fracture().points;
+  const SurfacePoint& last = tip.at_back ? points.back() : points.front();
+  const bool overlap = scene.fracture->faces == Fracture::Faces::contact && !tip.crossed;
+  tip.closed = last.reaction.dot(last.n) > 0.0 || (overlap && tip.K_I <= 0.0);
+  if (!tip.closed) return;
+  double largest = 0.0;
+  for (const SurfacePoint& s : points) largest = std::max(largest, s.w.norm());
+  tip.K_I = 0.0;
+  if (std::abs(last.w.dot(Vec2{last.n.y(), -last.n.x()})) <= slides * largest) tip.K_II = 0.0;
+  tip.J = tip.K_II * tip.K_II / at.rock.E_prime;
+  tip.J_spread = 0.0;
+}
+
+}  // namespace
+
 void finish_tip(const Scene& scene, const TipGeometry& at, const State& state, const RingSums& sums, Tip& tip) {
   double mean = 0.0, K_I = 0.0, K_II = 0.0, least = sums[0].J, most = sums[0].J;
   for (const RingSum& sum : sums) {
@@ -218,15 +293,13 @@ void finish_tip(const Scene& scene, const TipGeometry& at, const State& state, c
   }
   tip.J = mean;
   tip.J_spread = mean != 0.0 ? (most - least) / std::abs(mean) : 0.0;
-  const SurfacePoint& last = tip.at_back ? state.fracture().points.back() : state.fracture().points.front();
-  const bool closed = last.reaction.dot(last.n) > 0.0;
-  tip.K_I = closed ? 0.0 : K_I;
-  tip.K_II = K_II;
-  tip.kink = kink_angle(tip.K_I, tip.K_II);
+  tip.K_I = K_I, tip.K_II = K_II;
+  tip.near = at.near, tip.crossed = at.crossed;
+  close_where_faces_touch(scene, state, at, tip);
+  tip.kink = tip.closed ? 0.0 : kink_angle(tip.K_I, tip.K_II);
   tip.turn = at.lag + turn_taken(scene) * tip.kink;
   tip.kink += at.lag;
   tip.ring_m = at.rings.back().outer;
-  tip.at_interface = at.near_interface;
 }
 
 }  // namespace strata

@@ -46,10 +46,11 @@ struct AuxiliaryFields {
 // What follows from where surfaces and tips are.
 struct TipGeometry {
   Frame frame;
-  Rings rings;                  // the widest last
-  bool near_interface = false;  // J and K are not to be trusted
-  Elasticity rock;              // ahead of the tip
-  double lag = 0.0;             // of the last increment behind the frame (rad)
+  Rings rings;                     // the widest last
+  Obstacle near = Obstacle::none;  // as Tip's
+  bool crossed = false;
+  Elasticity rock;   // ahead of the tip
+  double lag = 0.0;  // of the last increment behind the frame (rad)
 };
 
 /// Frame, rings and rock of a tip. Throws nothing.

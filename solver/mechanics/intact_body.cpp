@@ -52,17 +52,6 @@ void hold_rigid_motion(const Scene& scene, const Grid& grid, bool halved, std::v
 
 }  // namespace
 
-bool mirror_symmetric(const Scene& scene, const State& state) {
-  if (!scene.fracture || scene.strata.along != Strata::Along::y) return false;
-  if (scene.body.acceleration_m_s2) return false;  // its formulas need not be symmetric
-  if (scene.domain.sides != Edge::fixed || scene.fracture->direction != Fracture::Direction::straight) return false;
-  const double middle = 0.5 * scene.domain.width_m, h = state.grid.h;
-  const double halves = 2.0 * middle / h;
-  if (std::abs(halves - std::round(halves)) > 1e-6) return false;
-  return std::all_of(scene.fracture->path_m.begin(), scene.fracture->path_m.end(),
-                     [&](const auto& point) { return std::abs(point[0] - middle) < 1e-9 * h; });
-}
-
 std::vector<Master> mirrored(const State& state, std::vector<Master> masters) {
   const Grid& g = state.grid;
   const std::vector<Master> edges = masters;

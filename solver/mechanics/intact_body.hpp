@@ -10,11 +10,6 @@
 
 namespace strata {
 
-/// Whether scene and state are mirror-symmetric about the vertical through the fracture: layers stacked upwards, a
-/// straight vertical fracture that stays so in the middle of the block, sides held, no body force. Such a state is
-/// solved on its left half. (With loaded sides parts may slide antisymmetrically, which half a block would not see.)
-bool mirror_symmetric(const Scene& scene, const State& state);
-
 /// The ties of `masters` with the mirror's added: records on the right half and the right face of the fracture follow
 /// those on the left, u_x(right) = -u_x(left), u_y(right) = u_y(left); what lies on the mirror line uncut has no u_x.
 std::vector<Master> mirrored(const State& state, std::vector<Master> masters);

@@ -9,6 +9,7 @@
 #include "mechanics/stiffness.hpp"
 #include "mechanics/surface_tractions.hpp"
 #include "mechanics/tip_ties.hpp"
+#include "scene/graded_cells.hpp"
 #include "state/quarters.hpp"
 
 namespace strata {
@@ -192,7 +193,7 @@ void update_equations(const Scene& scene, const std::vector<Elasticity>& rocks, 
   rebuild(scene, rocks, state);
   weigh_copies(scene, state);
   update_stencil_weights(scene, state);
-  const bool halved = halve && mirror_symmetric(scene, state);
+  const bool halved = halve && mirror_symmetric(scene);
   const bool same_body = model.body && model.body->points() == Quarters(scene, state.grid).points(state.particles);
   if (!same_body) {
     std::vector<int> order;

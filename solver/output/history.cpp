@@ -7,11 +7,11 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 #include <system_error>
 
 #include "output/run_folder.hpp"
+#include "output/tip_numbers.hpp"
 
 namespace strata {
 
@@ -51,6 +51,7 @@ constexpr HistoryColumn columns[] = {
     {"fluid_volume_balance", "1", &HistoryRow::fluid_volume_balance},
     {"body_work_J", "J/m", &HistoryRow::body_work_J},
     {"initial_kinetic_J", "J/m", &HistoryRow::initial_kinetic_J},
+    {"near", "1", &HistoryRow::near},
 };
 static_assert(sizeof(HistoryRow) == std::size(columns) * sizeof(double), "every member of HistoryRow is a column");
 
@@ -143,7 +144,7 @@ double fracture_volume(const State& state) {
   return volume;
 }
 
-HistoryRow history_row(const Scene&, const State& state) {
+HistoryRow history_row(const Scene& scene, const State& state) {
   HistoryRow row;
   row.time_s = state.time;
   row.inlet_Pa = state.has_fracture ? state.fluid.inlet_Pa : 0.0;
@@ -155,12 +156,14 @@ HistoryRow history_row(const Scene&, const State& state) {
   row.tip_x_m = x.x();
   row.tip_y_m = x.y();
   row.height_m = x.y();
-  row.J_N_m = tip ? tip->J : nan;
-  row.K_I_Pa_sqrt_m = tip ? tip->K_I : nan;
-  row.K_II_Pa_sqrt_m = tip ? tip->K_II : nan;
-  row.J_spread = tip ? tip->J_spread : nan;
-  row.kink_deg = tip ? tip->kink * (180.0 / std::numbers::pi) : nan;
-  row.at_interface = tip ? (tip->at_interface ? 1.0 : 0.0) : nan;
+  const TipNumbers told = tip ? tip_numbers(scene, *tip) : TipNumbers{nan, nan, nan, nan, nan, ""};
+  row.J_N_m = told.J_N_m;
+  row.K_I_Pa_sqrt_m = told.K_I_Pa_sqrt_m;
+  row.K_II_Pa_sqrt_m = told.K_II_Pa_sqrt_m;
+  row.J_spread = told.J_spread;
+  row.kink_deg = told.kink_deg;
+  row.at_interface = tip ? (at_interface(*tip) ? 1.0 : 0.0) : nan;
+  row.near = tip ? static_cast<double>(tip->near) : nan;
   row.ring_m = tip ? tip->ring_m : nan;
   row.G_N_m = tip ? tip->G : nan;
   row.G_by_J_N_m = tip ? tip->G_by_J : nan;

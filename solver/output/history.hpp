@@ -12,8 +12,9 @@
 
 namespace strata {
 
-// A row. The tip is the leading one, with the largest y; where there is no fracture, what belongs to a tip is nan (and
-// opening, volume and inlet pressure are 0). Energies are per metre of thickness, as in Ledger.
+// A row. The tip is the leading one, with the largest y; its numbers are nan where they are none (tip_numbers.hpp), and
+// so is what belongs to a tip where there is no fracture (opening, volume and inlet pressure are 0 then). Energies are
+// per metre of thickness, as in Ledger.
 struct HistoryRow {
   double time_s = 0.0;
   double inlet_Pa = 0.0;
@@ -29,13 +30,14 @@ struct HistoryRow {
   double energy_closure = 0.0;
   double J_spread = 0.0;
   double kink_deg = 0.0;
-  double at_interface = 0.0;  // 1 where J and K are not to be trusted, 0 elsewhere
+  double at_interface = 0.0;  // 1 where an interface or another rock is too near to trust J and K, 0 elsewhere
   double ring_m = 0.0;
   double G_N_m = 0.0;                 // energy released by the tip's last increment, by its length
   double G_by_J_N_m = 0.0;            // the same from J along the increment; 0 where the tip all but closes on it
   double fluid_volume_balance = 0.0;  // fluid missing over what was injected (law = "reynolds")
   double body_work_J = 0.0;           // of the body force
   double initial_kinetic_J = 0.0;     // of the velocities that particles start with
+  double near = 0.0;                  // what is too near to trust J and K: number of the Obstacle, 0 where nothing
 };
 
 // A column: its name, which is that of the member, and its unit.

@@ -4,11 +4,11 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "output/history.hpp"
 #include "output/run_folder.hpp"
 #include "output/suspect.hpp"
+#include "output/tip_numbers.hpp"
 
 namespace strata {
 
@@ -37,19 +37,22 @@ Json energy_json(const Ledger& ledger) {
           {"closure", ledger.closure()}};
 }
 
-Json tips_json(const State& state) {
+Json tips_json(const Scene& scene, const State& state) {
   Json tips = Json::array();
   for (const Tip& tip : state.tips) {
     const Vec2 x = tip_position(state, tip);
+    const TipNumbers told = tip_numbers(scene, tip);
     tips.push_back({{"x_m", x.x()},
                     {"y_m", x.y()},
-                    {"K_I_Pa_sqrt_m", tip.K_I},
-                    {"K_II_Pa_sqrt_m", tip.K_II},
-                    {"J_N_m", tip.J},
-                    {"J_spread", tip.J_spread},
+                    {"K_I_Pa_sqrt_m", told.K_I_Pa_sqrt_m},
+                    {"K_II_Pa_sqrt_m", told.K_II_Pa_sqrt_m},
+                    {"J_N_m", told.J_N_m},
+                    {"J_spread", told.J_spread},
                     {"G_N_m", tip.criterion == "energy" ? tip.G_trial : tip.G},
-                    {"kink_deg", tip.kink * (180.0 / std::numbers::pi)},
-                    {"at_interface", tip.at_interface},
+                    {"kink_deg", told.kink_deg},
+                    {"reason", told.reason},
+                    {"near", name_of(tip.near)},
+                    {"at_interface", at_interface(tip)},
                     {"growing", tip.growing},
                     {"stopped_by", tip.stopped_by},
                     {"ring_m", tip.ring_m}});
@@ -137,7 +140,7 @@ std::string summary_json(const Scene& scene, const State& state, const RunRecord
   summary["energy"] = energy_json(state.ledger);
   summary["mouth_opening_m"] = mouth_opening(state);
   summary["fracture_volume_m2"] = fracture_volume(state);
-  summary["tips"] = tips_json(state);
+  summary["tips"] = tips_json(scene, state);
   summary["events"] = events_json(state.events);
   summary["monitors"] = monitors_json(state.monitors, watched(scene, state));
   summary["suspect"] = suspect_json(suspicions(scene, state));

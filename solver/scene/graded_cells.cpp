@@ -127,6 +127,22 @@ std::vector<FineNodes> fine_nodes(double h, long cells, const std::vector<Stretc
   return nodes;
 }
 
+bool graded(const Numerics& numerics) {
+  return numerics.far_cell_m.value_or(numerics.cell_m) > numerics.cell_m;
+}
+
+// What is between fine stretches, and beyond them, follows from their ends alone.
+bool mirrored_columns(const Scene& scene) {
+  if (!graded(scene.numerics)) return true;
+  const double h = scene.numerics.cell_m;
+  const long cells = std::lround(scene.domain.width_m / h);
+  const std::vector<FineNodes> nodes = fine_nodes(h, cells, fine_stretches(scene, 0));
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    if (nodes[k].first + nodes[nodes.size() - 1 - k].last != cells) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::vector<Stretch> fine_stretches(const Scene& scene, int axis) {
@@ -196,12 +212,23 @@ std::vector<double> graded_knots(const Grading& axis) {
 std::vector<double> scene_knots(const Scene& scene, int axis) {
   const double h = scene.numerics.cell_m, far = scene.numerics.far_cell_m.value_or(h);
   const Domain& domain = scene.domain;
-  const bool goes_on = domain.beyond_m > 0.0;
-  if (far <= h && !goes_on) return {};
+  const bool goes_on = domain.beyond_m > 0.0, grows = graded(scene.numerics);
+  if (!grows && !goes_on) return {};
   const double extent = axis == 0 ? domain.width_m : domain.height_m;
   const Stretch rock = axis == 0 ? domain.along_x() : domain.along_y();
-  const std::vector<Stretch> fine = far <= h ? std::vector<Stretch>{{0.0, extent}} : fine_stretches(scene, axis);
+  const std::vector<Stretch> fine = grows ? fine_stretches(scene, axis) : std::vector<Stretch>{{0.0, extent}};
   return graded_knots({extent, h, far, fine, -rock.from, rock.to - extent});
+}
+
+bool mirror_symmetric(const Scene& scene) {
+  if (!scene.fracture || scene.strata.along != Strata::Along::y) return false;
+  if (scene.body.acceleration_m_s2) return false;  // its formulas need not be symmetric
+  if (scene.domain.sides != Edge::fixed || scene.fracture->direction != Fracture::Direction::straight) return false;
+  const double middle = 0.5 * scene.domain.width_m;
+  const bool upright = std::ranges::all_of(scene.fracture->path_m, [&](const Point& point) {
+    return std::abs(point[0] - middle) < 1e-9 * scene.numerics.cell_m;
+  });
+  return upright && mirrored_columns(scene);
 }
 
 }  // namespace strata

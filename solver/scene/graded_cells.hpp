@@ -47,4 +47,10 @@ std::vector<double> graded_knots(const Grading& axis);
 /// Knots along x (axis 0) or y (1) of a scene's grid; none where it is uniform. Throws nothing.
 std::vector<double> scene_knots(const Scene& scene, int axis);
 
+/// Whether scene and grid are mirror-symmetric about the vertical through the fracture, and stay so: layers stacked
+/// upwards, a straight vertical fracture in the middle of the block, columns that are their own mirror image, sides
+/// held, no body force. (With loaded sides parts may slide antisymmetrically, which half a block would not see.) Makes
+/// no grid. Throws nothing.
+bool mirror_symmetric(const Scene& scene);
+
 }  // namespace strata

@@ -59,15 +59,6 @@ Cells cells_of(const Scene& scene) {
           ends * beyond + (graded ? graded_cells(scene, 1, domain.height_m, far) : domain.height_m / h)};
 }
 
-// As far as the scene alone tells it: solved on one half of the block.
-bool is_halved(const Scene& scene) {
-  if (!scene.fracture || scene.strata.along != Strata::Along::y || scene.body.acceleration_m_s2) return false;
-  if (scene.domain.sides != Edge::fixed || scene.fracture->direction != Fracture::Direction::straight) return false;
-  const double middle = 0.5 * scene.domain.width_m;
-  return std::ranges::all_of(scene.fracture->path_m,
-                             [&](const auto& x) { return std::abs(x[0] - middle) < 1e-9 * scene.numerics.cell_m; });
-}
-
 // How high a tip may come (m).
 double way_up(const Scene& scene) {
   double length = scene.stop.tip_y_m.value_or(scene.domain.height_m);
@@ -107,9 +98,9 @@ double longest_fracture(const Scene& scene) {
 double jumps_of(const Scene& scene, const Cells& cells) {
   double parted = scene.fracture ? longest_fracture(scene) / scene.numerics.cell_m : 0.0;
   for (const InterfacePlace& place : scene.strata.interfaces) {
-    if (scene.laws[place.law].kind == InterfaceLaw::Kind::soft) parted += cells_along(scene, cells);
+    if (scene.laws[place.law].apart_at_start()) parted += cells_along(scene, cells);
   }
-  return 6.0 * parted * (is_halved(scene) ? 0.5 : 1.0);
+  return 6.0 * parted * (mirror_symmetric(scene) ? 0.5 : 1.0);
 }
 
 // Bytes without inertia, of a point and of n log n of n unknowns: that of bodies which are factored anew on the way is
@@ -135,7 +126,7 @@ double memory_need(const Scene& scene) {
   const double points = points_of(scene);
   if (scene.numerics.mechanics != Numerics::Mechanics::quasistatic) return 20e6 + 1250.0 * points;
   const Cells cells = cells_of(scene);
-  const double n = 2.0 * (0.5 * cells.x * (is_halved(scene) ? 1.0 : 2.0) + 1.0) * (cells.y + 1.0);
+  const double n = 2.0 * (0.5 * cells.x * (mirror_symmetric(scene) ? 1.0 : 2.0) + 1.0) * (cells.y + 1.0);
   // Factors by nested dissection fill up as n log n (George 1973); jumps have some dense matrices. Fitted to the peaks
   // of all variants of the experiments: 42 to 110 MB at 1 m cells, 187 to 1369 MB at 0.25 m.
   const Bytes bytes = bytes_of(scene);

@@ -88,6 +88,9 @@ struct InterfaceLaw {
   double shear_stiffness_Pa_m = 0.5e6;   // soft
   Compression compression = Compression::contact;
 
+  // Whether its faces are apart from the start: nothing bonds springs, nor faces without friction.
+  bool apart_at_start() const { return kind == Kind::soft || (kind == Kind::friction && coefficient == 0.0); }
+
   bool operator==(const InterfaceLaw&) const = default;
 };
 

@@ -26,19 +26,25 @@ struct TipTie {
   SurfacePoint s;             // its jump and reaction
 };
 
+// What may stand in the way of the rings on which J and K of a tip are measured: an interface whose faces have come
+// apart, a bonded border of two rocks, the symmetry line or an edge of the block, another part of the fracture.
+enum class Obstacle { none, interface, rock_border, symmetry_line, edge, fracture };
+
 struct Tip {
   bool at_back = true;  // at the last vertex of the fracture, or at the first
   bool growing = true;  // false once it may not grow any more (see stopped_by)
   std::string stopped_by;
-  double K_I = 0.0, K_II = 0.0;  // stress intensity factors (Pa sqrt(m))
-  double J = 0.0;                // J-integral, mean over rings (N/m)
-  double J_spread = 0.0;         // (max - min)/mean over rings
-  double ring_m = 0.0;           // outer radius of the widest ring (m)
-  double kink = 0.0;             // next growth direction from the present one (rad), counter-clockwise positive
-  double turn = 0.0;             // what the next increment turns by (rad)
-  bool at_interface = false;     // an interface is so near that J and K are not to be trusted
-  double last_growth_s = -1.0;   // time of its last growth, -1 before the first
-  double last_growth_Pa = 0.0;   // inlet pressure then
+  double K_I = 0.0, K_II = 0.0;    // stress intensity factors (Pa sqrt(m)); K_I of a closed tip is 0
+  double J = 0.0;                  // J-integral, mean over rings (N/m)
+  double J_spread = 0.0;           // (max - min)/mean over rings
+  double ring_m = 0.0;             // outer radius of the widest ring (m)
+  double kink = 0.0;               // next growth direction from the present one (rad), counter-clockwise positive
+  double turn = 0.0;               // what the next increment turns by (rad)
+  bool closed = false;             // the faces touch: no direction to open into
+  Obstacle near = Obstacle::none;  // what is so near that J and K are not to be trusted
+  bool crossed = false;            // it is within the rings: J and K are no numbers of the tip
+  double last_growth_s = -1.0;     // time of its last growth, -1 before the first
+  double last_growth_Pa = 0.0;     // inlet pressure then
   double J_at_growth = 0.0;
   double J_spread_at_growth = 0.0;
   double G_trial = 0.0;         // what growth by energy would release now, by the increment's length (N/m)
@@ -139,6 +145,11 @@ struct State {
   const Surface& fracture() const { return surfaces.front(); }
   Surface& fracture() { return surfaces.front(); }
 };
+
+/// Whether an interface or a border of rocks is so near to a tip that its J is not to be trusted; throws nothing.
+inline bool at_interface(const Tip& tip) {
+  return tip.near == Obstacle::interface || tip.near == Obstacle::rock_border;
+}
 
 /// Where a tip is (m): the fracture's last vertex or its first; throws nothing.
 inline Vec2 tip_position(const State& state, const Tip& tip) {

@@ -87,10 +87,10 @@ inline Tip made_tip(bool at_back, Numbers& number) {
   tip.stopped_by = at_back ? "an interface" : "";
   tip.K_I = 1e6 * number.next(), tip.K_II = 1e6 * number.next(), tip.J = number.next();
   tip.J_spread = number.next(), tip.ring_m = number.next(), tip.kink = number.next();
-  tip.at_interface = at_back;
+  tip.near = at_back ? Obstacle::rock_border : Obstacle::none;
   tip.last_growth_s = number.next(), tip.last_growth_Pa = number.next();
   tip.J_at_growth = number.next(), tip.J_spread_at_growth = number.next();
-  tip.has_grown = !at_back;
+  tip.has_grown = !at_back, tip.closed = !at_back, tip.crossed = !at_back;
   tip.arrested = at_back;
   tip.reached = {2, 1};
   return tip;

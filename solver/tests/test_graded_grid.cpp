@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include <numeric>
+#include <random>
 
 #include "fracture/growth.hpp"
 #include "scene/graded_cells.hpp"
@@ -203,6 +204,32 @@ TEST_CASE("a scene says itself where fine cells end") {
   CHECK(stretches(scene, 1) == Ends{3.0, 40.0});
   add_interface(scene, friction_law(0.6), 60.0);
   CHECK(stretches(scene, 1) == Ends{3.0, 40.0, 56.0, 64.0});
+}
+
+// Requires that a scene counts as mirror-symmetric exactly where the columns of its grid are their own mirror image:
+// random ends of the fine cells on either side of a fracture in the middle, alike or not, with rock beyond the block or
+// not. Mutations that fail: columns not looked at; the number of fine cells compared and not where they are.
+TEST_CASE("a scene is symmetric where its columns are") {
+  std::mt19937 random(7);
+  std::array<int, 2> found{};
+  for (int trial = 0; trial < 200; ++trial) {
+    Scene scene = graded_block(60, 50);
+    scene.domain.sides = Edge::fixed;
+    scene.fracture->path_m = {{30.0, 24.0}, {30.0, 26.0}};
+    if (trial % 2 == 0) scene.domain.beyond_m = 40.0;
+    const auto cells = [&] { return 0.25 * static_cast<double>(1 + random() % 116); };
+    const double left = cells(), right = random() % 2 == 0 ? left : cells();
+    if (random() % 8 != 0) scene.numerics.fine_left_m = 30.0 - left;
+    if (random() % 8 != 0) scene.numerics.fine_right_m = 30.0 + right;
+    const Grid g = make_grid(scene);
+    bool mirrored = true;
+    for (int i = -1; i <= g.nx + 1; ++i) mirrored = mirrored && std::abs(g.x(i) + g.x(g.nx - i) - 60.0) < 1e-9;
+    CAPTURE(trial, left, right);
+    CHECK(mirror_symmetric(scene) == mirrored);
+    ++found[mirrored ? 1 : 0];
+  }
+  CHECK(found[0] > 50);
+  CHECK(found[1] > 50);
 }
 
 // Requires that a scene without far_cell_m, or with one of cell_m, has today's uniform grid, and that a grid graded

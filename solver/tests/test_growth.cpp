@@ -94,7 +94,7 @@ TEST_CASE("what drives a tip is J as far as K confirms it") {
   CHECK(driving_J(rock, tip) == 130.0);
   tip.J = 900.0;
   CHECK(driving_J(rock, tip) == Approx(250.0));
-  tip.at_interface = true;
+  tip.near = Obstacle::interface;
   CHECK(driving_J(rock, tip) == 900.0);
   tip.J = -900.0;
   CHECK(driving_J(rock, tip) == 0.0);

@@ -168,7 +168,8 @@ TEST_CASE("K and J of an inclined fracture") {
 }
 
 // Requires signs and scales: K and the kink change sign with K_II, J does not; K doubles and J quadruples with the
-// field; nothing gives nothing. A kink turns a tip clockwise for K_II > 0, as it sees it, at either end.
+// field; nothing gives nothing. A kink turns a tip clockwise for K_II > 0, as it sees it, at either end. Mutations of
+// what a closed tip has that fail: the J of its rings kept, K_II lost where it slides.
 TEST_CASE("signs and scales of K") {
   for (const bool at_back : {true, false}) {
     Run run = cracked({{10.0, 4.0}, {10.0, 16.0}});
@@ -188,11 +189,31 @@ TEST_CASE("signs and scales of K") {
     impose(run, at_back, {});
     CHECK(measure(run, at_back).K_I == 0.0);
     CHECK(measure(run, at_back).J == 0.0);
-    // A tip whose last point is in contact has no K_I.
-    impose(run, at_back, {K_unit, 0.0});
+    CHECK(tip_of(run.state, at_back).closed);
+    // A tip whose faces touch has no K_I, no kink, and the J of their sliding, K_II^2/E'; one that they keep in place
+    // has none. A K_I below zero is that of closed faces, unless they may pass through each other.
     auto& points = run.state.fracture().points;
-    (at_back ? points.back() : points.front()).reaction = 1.0 * points[0].n;
+    SurfacePoint& last = at_back ? points.back() : points.front();
+    for (const double K_II : {0.0, 0.3 * K_unit}) {
+      impose(run, at_back, {K_unit, K_II});
+      last.reaction = 1.0 * last.n;
+      if (K_II == 0.0) last.w = last.w.dot(last.n) * last.n;
+      const Measured shut = measure(run, at_back);
+      CHECK(shut.K_I == 0.0);
+      CHECK(shut.K_II == Approx(K_II).epsilon(0.01));
+      CHECK(shut.J == Approx(shut.K_II * shut.K_II / run.rocks[0].E_prime).epsilon(1e-12));
+      CHECK(tip_of(run.state, at_back).closed);
+      CHECK(tip_of(run.state, at_back).kink == Approx(0.0).margin(1e-12));
+      CHECK(tip_of(run.state, at_back).J_spread == 0.0);
+      last.reaction.setZero();
+    }
+    impose(run, at_back, {-K_unit, 0.0});
     CHECK(measure(run, at_back).K_I == 0.0);
+    CHECK(measure(run, at_back).J == Approx(0.0).margin(1e-3));
+    CHECK(tip_of(run.state, at_back).closed);
+    run.scene.fracture->faces = Fracture::Faces::free;
+    CHECK(measure(run, at_back).K_I == Approx(-K_unit).epsilon(0.01));
+    CHECK_FALSE(tip_of(run.state, at_back).closed);
   }
 }
 
@@ -249,19 +270,76 @@ TEST_CASE("kink angles") {
   }
 }
 
-// Requires that a tip's direction points away from its fracture at both ends, and that K beside an interface is
-// flagged.
-TEST_CASE("tip directions and trust") {
+// Requires that a tip's direction points away from its fracture at both ends.
+TEST_CASE("tip directions") {
   const Surface s = make_surface(Surface::Kind::fracture, 0, {{1.0, 1.0}, {4.0, 5.0}}, 0.5);
   CHECK((tip_direction(s, true) - Vec2{0.6, 0.8}).norm() < 1e-14);
   CHECK((tip_direction(s, false) + Vec2{0.6, 0.8}).norm() < 1e-14);
-  for (const double at : {13.0, 15.0}) {
-    Scene scene = block(20, 20);
-    add_fracture(scene, {{10.0, 2.0}, {10.0, 10.0}});
-    add_interface(scene, weak_law(1e6, 1e6), at);
+}
+
+// Requires that a tip says what is so near that J and K are not to be trusted: an interface whose faces are apart
+// within 4 cells of the tip, or another rock, and within 3.5 cells an edge, the symmetry line, the other tip or a part
+// of the path that comes back; and that its rings cross what is nearer than 2.5 cells. A bond between like rocks is
+// nothing, be it near or failed farther along. Mutations that fail: bonds that count; only the whole interface's
+// distance; one name for all; limits half a cell off.
+TEST_CASE("a tip says what its rings are near") {
+  struct Found {
+    Obstacle near;
+    bool crossed;
+  };
+  const auto upper = [](const Scene& scene, double split_from, double split_to) {
     Run run(scene);
+    for (Surface& surface : run.state.surfaces) {
+      if (surface.kind == Surface::Kind::fracture) continue;
+      for (SurfacePoint& s : surface.points) s.split = s.split || (s.x.x() > split_from && s.x.x() < split_to);
+    }
+    run.rebuild();
     measure_tips(run.scene, run.rocks, run.state);
-    CHECK(tip_of(run.state, true).at_interface == (at < 14.0));
+    const Tip& tip = tip_of(run.state, true);
+    return Found{tip.near, tip.crossed};
+  };
+  const auto with = [](const InterfaceLaw& law, double at, std::size_t rock) {
+    Scene scene = block(20, 30);
+    scene.rocks.push_back({"soft", 5e9, 0.2, 2500.0, 1e6});
+    add_fracture(scene, {{10.0, 2.0}, {10.0, 14.0}});
+    add_interface(scene, law, at, rock);
+    return scene;
+  };
+  const InterfaceLaw bond = weak_law(1e6, 1e6), perfect;
+  for (const double off : {1.0, 2.0, 3.0, 3.5, 4.0, 5.0, -2.0, -3.0}) {  // behind the tip, too
+    CAPTURE(off);
+    const double at = 14.0 + off, distance = std::abs(off);
+    const auto is = [&](const Found& found, Obstacle what) {
+      return found.near == (distance < 4.0 ? what : Obstacle::none) && found.crossed == (distance < 2.5);
+    };
+    CHECK(is(upper(with(bond, at, 0), 0.0, 20.0), Obstacle::interface));
+    CHECK(is(upper(with(soft_law(1e9, 1e9), at, 0), 0.0, 0.0), Obstacle::interface));
+    CHECK(is(upper(with(perfect, at, 1), 0.0, 0.0), Obstacle::rock_border));
+    CHECK(is(upper(with(bond, at, 1), 0.0, 0.0), Obstacle::rock_border));
+    CHECK(is(upper(with(bond, at, 1), 0.0, 20.0), Obstacle::interface));
+    for (const Found& found : {upper(with(bond, at, 0), 0.0, 0.0), upper(with(bond, at, 0), 15.0, 20.0)}) {
+      CHECK(found.near == Obstacle::none);
+      CHECK_FALSE(found.crossed);
+    }
+  }
+  const auto lone = [](const std::vector<std::array<double, 2>>& path, Edge bottom) {
+    Scene scene = block(40, 30);
+    scene.domain.bottom = bottom;
+    add_fracture(scene, path);
+    return scene;
+  };
+  for (const double off : {2.0, 3.0, 4.0}) {
+    CAPTURE(off);
+    const auto is = [&](const Scene& scene, Obstacle what) {
+      const Found found = upper(scene, 0.0, 0.0);
+      return found.near == (off < 3.5 ? what : Obstacle::none) && found.crossed == (off < 2.5);
+    };
+    CHECK(is(lone({{20.0, 0.0}, {20.0, off}}, Edge::symmetry), Obstacle::symmetry_line));
+    CHECK(is(lone({{20.0, 14.0}, {20.0, 30.0 - off}}, Edge::traction), Obstacle::edge));
+    CHECK(is(lone({{40.0 - off, 8.0}, {40.0 - off, 20.0}}, Edge::traction), Obstacle::edge));
+    CHECK(is(lone({{20.0, 10.0}, {20.0, 10.0 + 2.0 * off}}, Edge::symmetry), Obstacle::fracture));
+    CHECK(is(lone({{20.0 - off, 6.0}, {20.0 - off, 24.0}, {20.0, 24.0}, {20.0, 14.25}}, Edge::traction),
+             Obstacle::fracture));
   }
 }
 

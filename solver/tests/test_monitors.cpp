@@ -308,7 +308,7 @@ TEST_CASE("the spread of J is that at growth") {
   State& state = rest.run.state;
   Tip& tip = state.tips.front();
   const auto grow_with = [&](double spread, bool at_interface) {
-    tip.J_spread = spread, tip.at_interface = at_interface;
+    tip.J_spread = spread, tip.near = at_interface ? Obstacle::interface : Obstacle::none;
     note_growth(state, tip, "J", true);
   };
   grow_with(0.05, false);

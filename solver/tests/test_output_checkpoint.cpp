@@ -53,7 +53,9 @@ void require_same(const Tip& a, const Tip& b) {
   CHECK(a.J_spread == b.J_spread);
   CHECK(a.ring_m == b.ring_m);
   CHECK(a.kink == b.kink);
-  CHECK(a.at_interface == b.at_interface);
+  CHECK(a.near == b.near);
+  CHECK(a.crossed == b.crossed);
+  CHECK(a.closed == b.closed);
   CHECK(a.last_growth_s == b.last_growth_s);
   CHECK(a.last_growth_Pa == b.last_growth_Pa);
   CHECK(a.J_at_growth == b.J_at_growth);

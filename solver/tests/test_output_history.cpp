@@ -39,7 +39,7 @@ TEST_CASE("history.csv starts with the columns of the contract, in its order") {
           "time_s,inlet_Pa,tip_x_m,tip_y_m,height_m,J_N_m,K_I_Pa_sqrt_m,K_II_Pa_sqrt_m,mouth_opening_m,"
           "fracture_volume_m2,kinetic_J,strain_J,interface_strain_J,fluid_work_J,in_situ_work_J,edge_work_J,damping_J,"
           "transfer_J,integration_J,friction_J,fracture_J,energy_closure,J_spread,kink_deg,at_interface,ring_m,"
-          "G_N_m,G_by_J_N_m,fluid_volume_balance,body_work_J,initial_kinetic_J\n");
+          "G_N_m,G_by_J_N_m,fluid_volume_balance,body_work_J,initial_kinetic_J,near\n");
 }
 
 TEST_CASE("a row says of the state what the state says") {
@@ -58,6 +58,7 @@ TEST_CASE("a row says of the state what the state says") {
   CHECK(row.J_spread == tip.J_spread);
   CHECK(row.ring_m == tip.ring_m);
   CHECK(row.at_interface == 1.0);
+  CHECK(row.near == 2.0);
   CHECK(row.kink_deg * std::numbers::pi / 180.0 == Approx(tip.kink).epsilon(1e-14));
   CHECK(row.kinetic_J == state.ledger.kinetic);
   CHECK(row.strain_J == state.ledger.strain);
@@ -109,7 +110,7 @@ TEST_CASE("the tip reported is the highest one") {
   const HistoryRow row = history_row(made_scene(), state);
   CHECK(row.tip_x_m == 7.0);
   CHECK(row.height_m == 3.0);
-  CHECK(row.J_N_m == state.tips[1].J);
+  CHECK(row.ring_m == state.tips[1].ring_m);
   CHECK(row.at_interface == 0.0);
 }
 
@@ -119,9 +120,9 @@ TEST_CASE("without a fracture what belongs to a tip is nan, volume and opening a
   state.surfaces.erase(state.surfaces.begin());
   state.tips.clear();
   const HistoryRow row = history_row(made_scene(), state);
-  const std::set<std::string> absent = {"tip_x_m",       "tip_y_m",        "height_m", "J_N_m",
-                                        "K_I_Pa_sqrt_m", "K_II_Pa_sqrt_m", "J_spread", "kink_deg",
-                                        "at_interface",  "ring_m",         "G_N_m",    "G_by_J_N_m"};
+  const std::set<std::string> absent = {"tip_x_m",        "tip_y_m",    "height_m", "J_N_m",        "K_I_Pa_sqrt_m",
+                                        "K_II_Pa_sqrt_m", "J_spread",   "kink_deg", "at_interface", "ring_m",
+                                        "G_N_m",          "G_by_J_N_m", "near"};
   for (const HistoryColumn& column : history_columns()) {
     INFO(column.name);
     CHECK(std::isnan(row.*column.value) == absent.contains(column.name));

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -72,6 +73,8 @@ TEST_CASE("the summary holds the keys of the contract with the values of the sta
   CHECK(t.at("J_spread") == tip.J_spread);
   CHECK(t.at("kink_deg").get<double>() == Approx(tip.kink * 180.0 / std::numbers::pi).epsilon(1e-14));
   CHECK(t.at("at_interface") == true);
+  CHECK(t.at("near") == "rock border");
+  CHECK(t.at("reason") == "");
   CHECK(t.at("growing") == false);
   CHECK(t.at("stopped_by") == "an interface");
   CHECK(t.at("ring_m") == tip.ring_m);
@@ -94,6 +97,46 @@ TEST_CASE("the summary holds the keys of the contract with the values of the sta
   CHECK(monitors.at("growths") == 14);
   CHECK(monitors.at("growths_at_interfaces") == 5);
   CHECK(monitors.at("J_spread_mean").get<double>() == Approx(state.monitors.J_spread_sum / 14.0).epsilon(1e-14));
+}
+
+// Requires that what is no number of a tip is null, with the reason beside it: all of J and K where the rings cross
+// something, each by its name; the kink of a closed tip, whose K_I and J are numbers; J below zero of an open tip
+// without inertia, and no other. Mutations that fail: numbers kept; all null where a tip is only near something; 0 for
+// null.
+TEST_CASE("numbers of a tip that are none are null, with the reason") {
+  State state = made_state();
+  Scene scene = made_scene();
+  Tip& tip = state.tips[0];
+  const auto told = [&] { return nlohmann::json::parse(summary_json(scene, state, record)).at("tips")[0]; };
+  const std::array keys{"K_I_Pa_sqrt_m", "K_II_Pa_sqrt_m", "J_N_m", "J_spread", "kink_deg"};
+  tip.crossed = true;
+  for (const auto& [what, name] : {std::pair{Obstacle::interface, "interface"}, std::pair{Obstacle::edge, "edge"},
+                                   std::pair{Obstacle::rock_border, "rock"}, std::pair{Obstacle::fracture, "fracture"},
+                                   std::pair{Obstacle::symmetry_line, "symmetry line"}}) {
+    tip.near = what;
+    for (const char* key : keys) CHECK(told().at(key).is_null());
+    CHECK(told().at("reason").get<std::string>().find(name) != std::string::npos);
+    CHECK(told().at("at_interface") == (what == Obstacle::interface || what == Obstacle::rock_border));
+    CHECK(std::isnan(history_row(scene, state).J_N_m));
+  }
+  tip.closed = true, tip.J = tip.K_I = tip.K_II = 0.0;  // whatever the rings cross
+  CHECK(told().at("K_I_Pa_sqrt_m") == 0.0);
+  CHECK(told().at("J_N_m") == 0.0);
+  CHECK(told().at("kink_deg").is_null());
+  CHECK(told().at("reason").get<std::string>().find("closed") != std::string::npos);
+  CHECK(std::isnan(history_row(scene, state).kink_deg));
+  tip.closed = tip.crossed = false, tip.K_I = 1e6;
+  for (const double J : {20.0, -20.0}) {
+    for (const bool inertia : {false, true}) {
+      scene.numerics.mechanics = inertia ? Numerics::Mechanics::explicit_dynamics : Numerics::Mechanics::quasistatic;
+      tip.J = J;
+      const bool none = J < 0.0 && !inertia;
+      CHECK(told().at("J_N_m").is_null() == none);
+      CHECK(told().at("J_spread").is_null() == none);
+      CHECK(told().at("K_I_Pa_sqrt_m") == 1e6);
+      CHECK(told().at("reason").get<std::string>().empty() != none);
+    }
+  }
 }
 
 TEST_CASE("what is not finite is null, and text that is no UTF-8 does not break the summary") {

@@ -111,10 +111,10 @@ def no_flag(run: Run) -> str:
     return ""
 
 
-def tip_at_interface(run: Run) -> str:
-    """The mark of a run that has a tip too near to an interface for its J and K."""
-    near = [tip for tip in run.summary.raw["tips"] if tip.get("at_interface")]
-    return "the tip is flagged at_interface: J and K there are not to be trusted" if near else ""
+def tip_is_near(run: Run) -> str:
+    """The mark of a run that has a tip too near to something for its J and K: to what."""
+    near = sorted({tip["near"] for tip in run.summary.raw["tips"] if tip["near"]})
+    return f"a tip is near: {', '.join(near)}; J and K there are not to be trusted" if near else ""
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from verification.stability.cracks import (
     layers_setting,
     path_setting,
 )
-from verification.stability.family import MARKED, REFUSED, STABLE, Checked, Family, Parameter, Point, at_most, close, tip_at_interface
+from verification.stability.family import MARKED, REFUSED, STABLE, Checked, Family, Parameter, Point, at_most, close, tip_is_near
 
 SECTION = "Fractures that cross interfaces, corners, edges"
 ABOUT = (
@@ -67,9 +67,8 @@ def crossing(name: str, title: str, keys: tuple[str, ...]) -> Family:
 
 
 def tips_are_near(run: Run) -> str:
-    """The mark of a run all of whose tips are flagged at an interface."""
-    tips = run.summary.raw["tips"]
-    return "both tips are flagged at_interface" if all(tip["at_interface"] for tip in tips) else ""
+    """The mark of a run all of whose tips are too near to something."""
+    return "both tips are near something" if all(tip["near"] for tip in run.summary.raw["tips"]) else ""
 
 
 # --- two interfaces closer than a cell
@@ -132,7 +131,7 @@ def corner_point(cells: float) -> Point:
 CORNERS = Family(
     name="corner", title="A fracture that ends in a corner of the block", says="K by symmetry, or flagged: no ring for J fits there.",
     parameter=Parameter("distance of the tip from both edges", "cells", log=True), points=tuple(corner_point(cells) for cells in CORNER),
-    check=diagonal, beyond=(MARKED,), flag=tip_at_interface, section=SECTION,
+    check=diagonal, beyond=(MARKED,), flag=tip_is_near, section=SECTION,
 )  # fmt: skip
 
 INCREMENTS = (0.5, 1.0, 2.0, 4.0)

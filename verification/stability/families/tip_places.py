@@ -20,7 +20,7 @@ from verification.stability.cracks import (
     path_setting,
     upper_tip,
 )
-from verification.stability.family import MARKED, Checked, Edge, Family, Parameter, Point, close, tip_at_interface
+from verification.stability.family import MARKED, Checked, Edge, Family, Parameter, Point, close, tip_is_near
 
 SECTION = "Tips: within a cell, near an interface, near an edge"
 
@@ -122,7 +122,7 @@ def near_interface(kind: str, how: str, check: Callable[[Run], Checked]) -> Fami
             " where functions reach over it; with half a cell to spare: 4.",
             predicted=lambda: 4.0, at=at, bracket=(6.0, 2.0), unsound_above=False,
         ),
-        flag=tip_at_interface, section=SECTION,
+        flag=tip_is_near, section=SECTION,
     )  # fmt: skip
 
 
@@ -162,7 +162,7 @@ def near_edge() -> Family:
         parameter=Parameter("distance of the tips from the edge", "cells", log=True), points=points, check=edge_K, beyond=(MARKED,),
         edge=Edge("A ring of 2.5 cells and a cell that functions reach on: 3.5.", predicted=lambda: 3.5, at=at, bracket=(6.0, 2.0),
                   unsound_above=False),
-        flag=tip_at_interface, section=SECTION,
+        flag=tip_is_near, section=SECTION,
     )  # fmt: skip
 
 
