@@ -1,5 +1,6 @@
 #include "advance.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "advance_monitors.hpp"
@@ -70,11 +71,16 @@ void advance_updated(const Scene& scene, const std::vector<Elasticity>& rocks, b
   }
 }
 
+// Whether a tip runs at the end of the step that begins.
+bool any_runs(const State& state) {
+  return std::ranges::any_of(state.tips, [&](const Tip& tip) { return runs(tip, state.time + state.dt, state.dt); });
+}
+
 }  // namespace
 
 void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, bool look) {
   const bool grows = state.has_fracture && scene.fracture->growth != Fracture::Growth::none;
-  const bool grow_now = grows && (state.step + 1) % scene.numerics.tip_steps == 0;
+  const bool grow_now = grows && ((state.step + 1) % scene.numerics.tip_steps == 0 || any_runs(state));
   const bool total = scene.numerics.kinematics == Numerics::Kinematics::total;
   (total ? advance_total : advance_updated)(scene, rocks, look || grow_now, grow_now, state);
   require_finite(state);

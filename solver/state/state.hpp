@@ -39,6 +39,7 @@ struct Tip {
   bool at_interface = false;     // an interface is so near that J and K are not to be trusted
   double last_growth_s = -1.0;   // time of its last growth, -1 before the first
   double last_growth_Pa = 0.0;   // inlet pressure then
+  double due_s = -1.0;           // explicit: no increment before this time (s), since Rayleigh waves are no faster
   double J_at_growth = 0.0;
   double J_spread_at_growth = 0.0;
   double G_trial = 0.0;         // what growth by energy would release now, by the increment's length (N/m)
