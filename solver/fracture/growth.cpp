@@ -80,13 +80,17 @@ bool ready(const Scene& scene, const std::vector<Elasticity>& rocks, const State
   return state.time >= tip.due_s;
 }
 
-// How many increments a tip that is ready makes, and when the next one is due. One that runs goes on from when the last
-// was due, so that its speed does not depend on when it is looked at; one that stood begins now.
+// How many increments a tip that is ready makes, and when the next one is due. One whose next increment has become due
+// in this step, since it was moved in the last, goes on from when that was, so that its speed does not depend on the
+// step; any other one begins now.
 double increments_due(const Scene& scene, const Elasticity& ahead, const State& state, Tip& tip) {
+  constexpr double slack = 1e-9;  // of a step: times are sums of them
   const double wait = rayleigh_wait(scene, ahead);
-  const double since = runs(tip, state.time, state.dt) ? tip.due_s : state.time;
+  const bool goes_on = tip.has_grown && state.time - tip.due_s < (1.0 + slack) * state.dt;
+  const double since = goes_on ? tip.due_s : state.time;
   const double times = 1.0 + std::floor((state.time - since) / wait);
   tip.due_s = since + times * wait;
+  tip.runs_until_s = tip.due_s + tip.ring_m / ahead.c_R;
   return times;
 }
 
@@ -351,9 +355,8 @@ void note_growth(State& state, Tip& tip, const char* by, bool trusted) {
   tip.J_spread_at_growth = tip.J_spread;
 }
 
-bool runs(const Tip& tip, double time, double dt) {
-  constexpr double slack = 1e-9;  // of a step: times are sums of them
-  return tip.growing && tip.has_grown && time >= tip.due_s && time - tip.due_s < (1.0 + slack) * dt;
+bool runs(const Tip& tip, double time) {
+  return tip.growing && time >= tip.due_s && time <= tip.runs_until_s;
 }
 
 bool ready_to_grow(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {

@@ -32,12 +32,12 @@ Vec2 interpolate(const Gradients& g, const Bin& bin, const std::vector<Vec2>& v)
   return sum;
 }
 
-// One pass of v_i += (1/m_i) sum_p N_ip m_p (v_p - sum_j N_jp v_j), masters first, then what is tied to them.
-void correct_velocities(const Scene& scene, State& state, std::vector<Vec2>& v) {
+// One pass of nodes_from_particles(), masters first, then what is tied to them.
+void correct_nodes(const Scene& scene, const SpreadArray& x, const SpreadArray& y, State& state, std::vector<Vec2>& v) {
   NodalSums sums(v.size());
   const Particles& p = state.particles;
   for_each_particle(scene, state, [&](const Bin& bin, std::size_t q, const Gradients& g) {
-    const Vec2 lacks = Vec2{p.v_x[q], p.v_y[q]} - interpolate(g, bin, v);
+    const Vec2 lacks = Vec2{x[q], y[q]} - interpolate(g, bin, v);
     for (std::size_t n = 0; n < 9; ++n) {
       const auto record = sums[static_cast<std::size_t>(bin.record[n])];
       const double m = g.N[n] * p.m[q];
@@ -55,15 +55,13 @@ void correct_velocities(const Scene& scene, State& state, std::vector<Vec2>& v) 
   }
 }
 
-// The nodes' velocities whose field is that of the particles. Mapping alone, the first pass, smooths a wave of number k
-// by (kh)^2/8 along each axis; each further pass leaves the square, the cube ... of that.
 void velocities_from_particles(const Scene& scene, State& state) {
   constexpr int passes = 3;
   const Particles& p = state.particles;
   state.total.velocity.assign(state.masters.size(), Vec2::Zero());
   const auto moves = [](double v) { return v != 0.0; };
   if (std::none_of(p.v_x.begin(), p.v_x.end(), moves) && std::none_of(p.v_y.begin(), p.v_y.end(), moves)) return;
-  for (int pass = 0; pass < passes; ++pass) correct_velocities(scene, state, state.total.velocity);
+  state.total.velocity = nodes_from_particles(scene, p.v_x, p.v_y, passes, state);
 }
 
 // Masses and the particles' own forces, m_i = sum_p N_ip m_p and f_i = -sum_p V_p sigma_p grad N_ip.
@@ -111,6 +109,13 @@ void move_surfaces(const NodalMotion& by, State& state) {
 }
 
 }  // namespace
+
+std::vector<Vec2> nodes_from_particles(const Scene& scene, const SpreadArray& x, const SpreadArray& y, int passes,
+                                       State& state) {
+  std::vector<Vec2> v(state.masters.size(), Vec2::Zero());
+  for (int pass = 0; pass < passes; ++pass) correct_nodes(scene, x, y, state, v);
+  return v;
+}
 
 void start_base(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
   TotalMotion& t = state.total;

@@ -78,10 +78,10 @@ void fields(Archive& ar, Is<TipTie> auto& tie) {
 template <class Archive>
 void fields(Archive& ar, Is<Tip> auto& tip) {
   auto& [at_back, growing, stopped_by, K_I, K_II, J, J_spread, ring_m, kink, turn, at_interface, last_growth_s,
-         last_growth_Pa, due_s, J_at_growth, J_spread_at_growth, G_trial, G, G_by_J, criterion, has_grown, arrested,
+         last_growth_Pa, due_s, runs_until_s, J_at_growth, J_spread_at_growth, G_trial, G, G_by_J, criterion, has_grown, arrested,
          reached] = tip;
   ar(at_back, growing, stopped_by, K_I, K_II, J, J_spread, ring_m, kink, turn, at_interface, last_growth_s,
-     last_growth_Pa, due_s, J_at_growth, J_spread_at_growth, G_trial, G, G_by_J, criterion, has_grown, arrested,
+     last_growth_Pa, due_s, runs_until_s, J_at_growth, J_spread_at_growth, G_trial, G, G_by_J, criterion, has_grown, arrested,
      reached);
 }
 

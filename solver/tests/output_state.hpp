@@ -102,6 +102,7 @@ inline Tip made_tip(bool at_back, Numbers& number) {
   tip.J_spread = number.next(), tip.ring_m = number.next(), tip.kink = number.next();
   tip.at_interface = at_back;
   tip.last_growth_s = number.next(), tip.last_growth_Pa = number.next(), tip.due_s = number.next();
+  tip.runs_until_s = number.next();
   tip.J_at_growth = number.next(), tip.J_spread_at_growth = number.next();
   tip.has_grown = !at_back;
   tip.arrested = at_back;
