@@ -1,5 +1,6 @@
 #include "advance.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "advance_monitors.hpp"
@@ -9,6 +10,7 @@
 #include "fracture/j_integral.hpp"
 #include "mechanics/explicit_step.hpp"
 #include "mechanics/interface_laws.hpp"
+#include "mechanics/new_openings.hpp"
 #include "mechanics/surface_tractions.hpp"
 #include "mechanics/tip_ties.hpp"
 #include "mechanics/total_base.hpp"
@@ -59,22 +61,28 @@ void advance_updated(const Scene& scene, const std::vector<Elasticity>& rocks, b
   ++state.step;
   close_ledger(scene, rocks, grid, after, particles, state);
   expect_momentum(scene, state);
-  bool changed = fail_interfaces(scene, rocks, state);           // bonded places that now let go
-  if (look) measure_tips(scene, rocks, state);                   // J, K_I, K_II with the same P
-  if (grow_now) changed = grow(scene, rocks, state) || changed;  // a new point ahead of the tip
+  const bool changed = fail_interfaces(scene, rocks, state);  // bonded places that now let go
+  if (look) measure_tips(scene, rocks, state);                // J, K_I, K_II with the same P
+  const bool grown = grow_now && grow(scene, rocks, state);   // new points ahead of the tip
   watch_tips(scene, state);
   const bool moved = state.step % steps_between_rebuilds == 0 || particles.farthest_cells > bin_reach_cells;
-  if (changed || moved) {
+  if (changed || grown || moved) {
     rebuild(scene, rocks, state);
+    if (grown) open_new_points(scene, rocks, state);
     state.ledger.interface_strain = spring_energy(scene, state);
   }
+}
+
+// Whether a tip runs at the end of the step that begins.
+bool any_runs(const State& state) {
+  return std::ranges::any_of(state.tips, [&](const Tip& tip) { return runs(tip, state.time + state.dt); });
 }
 
 }  // namespace
 
 void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, bool look) {
   const bool grows = state.has_fracture && scene.fracture->growth != Fracture::Growth::none;
-  const bool grow_now = grows && (state.step + 1) % scene.numerics.tip_steps == 0;
+  const bool grow_now = grows && ((state.step + 1) % scene.numerics.tip_steps == 0 || any_runs(state));
   const bool total = scene.numerics.kinematics == Numerics::Kinematics::total;
   (total ? advance_total : advance_updated)(scene, rocks, look || grow_now, grow_now, state);
   require_finite(state);

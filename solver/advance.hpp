@@ -16,9 +16,9 @@ constexpr std::int64_t steps_between_rebuilds = 250;
 /// Advances the state by one explicit step of state.dt. Update stress last: forces come from the stress at the start of
 /// the step, and stress, positions and jumps then take up the same new velocities, which makes the step symplectic in
 /// the linear elastic part and the pressure's work exactly p dV. Tips are measured and may grow at multiples of
-/// numerics.tip_steps; look: they are measured at the end of this step in any case, so that its K and J are known.
-/// Under kinematics = "total" particles stand still until complete_particles(). Throws NumericalFailure; `state` is
-/// then that of the failure.
+/// numerics.tip_steps, and in every step while they run (runs()); look: they are measured at the end of this step in
+/// any case, so that its K and J are known. Under kinematics = "total" particles stand still until
+/// complete_particles(). Throws NumericalFailure; `state` is then that of the failure.
 void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, bool look = true);
 
 /// Brings particles, and surfaces but for what acts in every step, to the time of the state where kinematics = "total"

@@ -11,6 +11,7 @@
 #include "mechanics/surface_law.hpp"
 #include "mechanics/surface_tractions.hpp"
 #include "mechanics/transfers.hpp"
+#include "state/round_off.hpp"
 
 namespace strata {
 
@@ -55,6 +56,17 @@ void watch_contact(const Scene& scene, State& state) {
       if (!soft) note_largest(m.largest_tension_Pa, -pressure);
     }
   }
+}
+
+// How far the fluid's pressure exceeds the closing stress: what opens the fracture.
+void watch_net_pressure(const Scene& scene, State& state) {
+  Monitors& m = state.monitors;
+  for (const SurfacePoint& s : state.fracture().points) {
+    const double closing = s.in_situ.dot(s.n);
+    if (state.step == 0 && !scene.fluid.rate_m2_s) note_largest(m.net_at_start_Pa, scene.fluid.start_Pa - closing);
+    note_largest(m.largest_net_Pa, s.P - closing);
+  }
+  note_largest(m.largest_net_Pa, m.net_at_start_Pa);
 }
 
 // D^T r A of split places and of the springs of tips.
@@ -113,7 +125,23 @@ void watch_forces(const Scene& scene, const std::vector<Elasticity>& rocks, cons
     note_largest(load, free.cwiseProduct(Vec2{given[r].f_x, given[r].f_y}).norm());
   }
   state.sums = kept;
-  if (load != 0.0) note_largest(state.monitors.force_balance, left / load);
+  const double nothing = round_off(scene, state).stress * state.grid.h;  // of a cell's face
+  if (load != 0.0) note_largest(state.monitors.force_balance, left <= nothing ? 0.0 : left / load);
+}
+
+void watch_deformation(State& state) {
+  Monitors& m = state.monitors;
+  const Particles& p = state.particles;
+  for (std::size_t q = 0; q < p.size(); ++q) {
+    const double mean = 0.5 * (p.g_xx[q] + p.g_yy[q]), half = 0.5 * (p.g_xx[q] - p.g_yy[q]);
+    note_largest(m.largest_strain, std::abs(mean) + std::hypot(half, 0.5 * (p.g_xy[q] + p.g_yx[q])));
+    note_largest(m.largest_rotation, 0.5 * std::abs(p.g_yx[q] - p.g_xy[q]));
+  }
+  for (const Surface& surface : state.surfaces) {
+    for (const SurfacePoint& s : surface.points) {
+      if (s.split) note_largest(m.largest_jump, s.w.norm());
+    }
+  }
 }
 
 void require_finite(const State& state) {
@@ -143,6 +171,7 @@ void watch_row(const Scene& scene, State& state) {
   watch_energies(state);
   if (scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics) watch_momentum(scene, state);
   watch_contact(scene, state);
+  if (state.has_fracture) watch_net_pressure(scene, state);
 }
 
 }  // namespace strata

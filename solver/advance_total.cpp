@@ -8,6 +8,7 @@
 #include "fracture/j_integral.hpp"
 #include "mechanics/explicit_step.hpp"
 #include "mechanics/interface_laws.hpp"
+#include "mechanics/new_openings.hpp"
 #include "mechanics/tip_ties.hpp"
 #include "mechanics/total_base.hpp"
 #include "mechanics/total_operator.hpp"
@@ -55,9 +56,10 @@ void close_ledger(const Scene& scene, const std::vector<Elasticity>& rocks, cons
 }
 
 // Copies after an event. Nodes go on with the velocities they had.
-void rebuild_total(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+void rebuild_total(const Scene& scene, const std::vector<Elasticity>& rocks, bool grown, State& state) {
   RecordVelocities before{state.copies, state.total.velocity};
   rebuild(scene, rocks, state);
+  if (grown) open_new_points(scene, rocks, state);
   carry_velocities(before, state);
   start_base(scene, rocks, state);
   recount_kinetic(state);
@@ -88,12 +90,13 @@ void advance_total(const Scene& scene, const std::vector<Elasticity>& rocks, boo
     changed = fail_interfaces(scene, rocks, state);  // bonded places that now let go
   }
   if (look) measure_tips(scene, rocks, state);  // J, K_I, K_II with the same P
+  bool grown = false;
   if (grow_now && ready_to_grow(scene, rocks, state)) {
     bring_up_to_date(scene, state);
-    changed = grow(scene, rocks, state) || changed;  // a new point ahead of the tip
+    grown = grow(scene, rocks, state);  // new points ahead of the tip
   }
   watch_tips(scene, state);
-  if (changed) rebuild_total(scene, rocks, state);
+  if (changed || grown) rebuild_total(scene, rocks, grown, state);
   if (state.step % steps_between_bases == 0) bring_up_to_date(scene, state);
 }
 

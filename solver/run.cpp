@@ -123,6 +123,7 @@ void complete_fields(Run& run) {
   }
   require_finite(run.state);
   watch_row(run.scene, run.state);
+  watch_deformation(run.state);
 }
 
 void output(Run& run) {

@@ -8,6 +8,7 @@
 
 #include "fracture/j_integral.hpp"
 #include "fracture/refine_beside.hpp"
+#include "fracture/tip_rings.hpp"
 #include "state/quarters.hpp"
 #include "state/rebuild.hpp"
 
@@ -40,10 +41,10 @@ bool two_way_spring(const Scene& scene, const Surface& surface) {
          law.compression == InterfaceLaw::Compression::spring;
 }
 
-// Length of the next increment from `tip` along `direction`: ends on the first interface it would cross or nearly
-// reach.
-double increment_to_interface(const Scene& scene, const Vec2& tip, const Vec2& direction, double da) {
-  double length = (1.0 + sliver) * da;
+// Length of the next `times` increments of da from `tip` along `direction`: they end on the first interface that they
+// would cross or nearly reach.
+double increment_to_interface(const Scene& scene, const Vec2& tip, const Vec2& direction, double da, double times) {
+  double length = (times + sliver) * da;
   bool meets = false;
   for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
     if (!real_interface(scene, k)) continue;
@@ -55,7 +56,7 @@ double increment_to_interface(const Scene& scene, const Vec2& tip, const Vec2& d
     length = to_it;
     meets = true;
   }
-  return meets ? length : da;
+  return meets ? length : times * da;
 }
 
 // True where a tip at x is nearer than `keep` m to an edge that it heads for.
@@ -76,7 +77,21 @@ bool ready(const Scene& scene, const std::vector<Elasticity>& rocks, const State
   const Elasticity& ahead = rocks[rock_ahead(scene, state, tip)];
   const double J = driving_J(ahead, tip);
   if (!tip.growing || J <= 0.0 || J < ahead.J_c) return false;
-  return tip.last_growth_s < 0.0 || state.time - tip.last_growth_s >= rayleigh_wait(scene, ahead);
+  return state.time >= tip.due_s;
+}
+
+// How many increments a tip that is ready makes, and when the next one is due. One whose next increment has become due
+// in this step, since it was moved in the last, goes on from when that was, so that its speed does not depend on the
+// step; any other one begins now.
+double increments_due(const Scene& scene, const Elasticity& ahead, const State& state, Tip& tip) {
+  constexpr double slack = 1e-9;  // of a step: times are sums of them
+  const double wait = rayleigh_wait(scene, ahead);
+  const bool goes_on = tip.has_grown && state.time - tip.due_s < (1.0 + slack) * state.dt;
+  const double since = goes_on ? tip.due_s : state.time;
+  const double times = 1.0 + std::floor((state.time - since) / wait);
+  tip.due_s = since + times * wait;
+  tip.runs_until_s = tip.due_s + tip.ring_m / ahead.c_R;
+  return times;
 }
 
 void record(State& state, const char* kind, const Tip& tip, double time, double pressure, bool doubtful,
@@ -257,17 +272,18 @@ void place_points(const Scene& scene, State& state, Surface& surface) {
   for (SurfacePoint& vertex : surface.vertices) vertex.sides = sides_at(state, vertex.x, surface.bit);
 }
 
-double extend_tip(const Scene& scene, State& state, Tip& tip, double increment) {
+double extend_tip(const Scene& scene, State& state, Tip& tip, double increment, double times) {
   Surface& fracture = state.fracture();
   const Vec2 from = tip_position(state, tip);
   Vec2 direction = tip_direction(fracture, tip.at_back);
   if (scene.fracture->direction == Fracture::Direction::max_hoop) {
-    direction = Vec2{std::cos(tip.turn) * direction.x() - std::sin(tip.turn) * direction.y(),
-                     std::sin(tip.turn) * direction.x() + std::cos(tip.turn) * direction.y()};
+    const double turn = turn_over(scene, tip, times);
+    direction = Vec2{std::cos(turn) * direction.x() - std::sin(turn) * direction.y(),
+                     std::sin(turn) * direction.x() + std::cos(turn) * direction.y()};
   }
   const double old_length = fracture.length();
   const std::size_t old_points = fracture.points.size();
-  const double length = increment_to_interface(scene, from, direction, increment);
+  const double length = increment_to_interface(scene, from, direction, increment, times);
   extend(fracture, tip.at_back, from + length * direction, surface_spacing(state.grid));
   const std::size_t pieces = fracture.points.size() - old_points;
   lengthen_fluid(scene, state, tip.at_back, pieces);
@@ -339,6 +355,10 @@ void note_growth(State& state, Tip& tip, const char* by, bool trusted) {
   tip.J_spread_at_growth = tip.J_spread;
 }
 
+bool runs(const Tip& tip, double time) {
+  return tip.growing && time >= tip.due_s && time <= tip.runs_until_s;
+}
+
 bool ready_to_grow(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
   if (!state.has_fracture || scene.fracture->growth == Fracture::Growth::none) return false;
   return std::any_of(state.tips.begin(), state.tips.end(),
@@ -355,8 +375,9 @@ bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state
       tip.stopped_by = what_stops(scene, state, tip);
       continue;
     }
+    const double times = increments_due(scene, rocks[rock_ahead(scene, state, tip)], state, tip);
     note_growth(state, tip, "J", !at_interface(tip));
-    extend_tip(scene, state, tip, scene.fracture->increment_m);
+    extend_tip(scene, state, tip, scene.fracture->increment_m, times);
     moved = true;
   }
   return moved;

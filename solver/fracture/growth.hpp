@@ -9,17 +9,22 @@
 
 namespace strata {
 
-/// Moves every tip whose J has reached J_c = K_Ic^2/E' of the rock ahead (and whose K confirms it) by one increment,
+/// Moves every tip whose J has reached J_c = K_Ic^2/E' of the rock ahead (and whose K confirms it) by an increment,
 /// along its own direction or that of maximum hoop stress. A tip moves no faster than the Rayleigh speed of that rock:
-/// the next increment waits for increment/c_R. An increment that would cross an interface, or end less than a quarter
-/// of an increment short of it, ends on it; one that starts on it, or less than a quarter of an increment before it,
-/// goes on. A tip that has grown to within 3 cells of an edge, or whose next increment would end within 1.5 cells of
-/// one, or within 5 cells of the coarse cells of a graded grid, stops for good and says so. A closed tip (K_I = 0) does
-/// not grow. Returns true if any tip moved: the copies must then be rebuilt. Throws nothing.
+/// the next increment waits for increment/c_R. Where more than one has become due in the step after that of the last,
+/// they come at once. What would cross an interface, or end less than a quarter of an increment short of it, ends on
+/// it; what starts on it, or less than a quarter of an increment before it, goes on. A tip that has grown to within 3
+/// cells of an edge, or whose next increment would end within 1.5 cells of one, or within 5 cells of the coarse cells
+/// of a graded grid, stops for good and says so. A closed tip (K_I = 0) does not grow. Returns true if any tip moved:
+/// the copies must then be rebuilt. Throws nothing.
 bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
 
 /// Whether grow() would look at any tip more closely now: its J has reached J_c and its wait is over. Throws nothing.
 bool ready_to_grow(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state);
+
+/// Whether a tip runs at a time (s), so that it is looked at in every step: its next increment is due, and waves of its
+/// last one have not yet crossed the rings that J is measured in. Throws nothing.
+bool runs(const Tip& tip, double time);
 
 /// What drives a tip (N/m): J, but no more than twice (K_I^2 + K_II^2)/E', 0 for a closed tip. Where faces have just
 /// touched, or stand under a dry fluid, J may be several J_c while K is next to nothing: such a J is no energy release
@@ -40,9 +45,9 @@ bool stopped_by_edge(const Scene& scene, const State& state, const Tip& tip);
 /// Whether an interface that does something (a law, or another rock beyond it) lies within `reach` (m) of a tip.
 bool interface_within(const Scene& scene, const State& state, const Tip& tip, double reach);
 
-/// Lengthens the fracture at a tip by `increment` (m), less where an interface stops it (see grow()); returns by how
-/// much (m). The copies must then be rebuilt. Throws nothing.
-double extend_tip(const Scene& scene, State& state, Tip& tip, double increment);
+/// Lengthens the fracture at a tip by `times` increments of `increment` (m), less where an interface stops it (see
+/// grow()); returns by how much (m). The copies must then be rebuilt. Throws nothing.
+double extend_tip(const Scene& scene, State& state, Tip& tip, double increment, double times = 1.0);
 
 /// Notes that a tip grows now: events start and restart, time and pressure of its last growth. by: what decided it.
 void note_growth(State& state, Tip& tip, const char* by, bool trusted);

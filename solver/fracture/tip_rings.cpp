@@ -104,15 +104,15 @@ Room ring_room(const Scene& scene, const State& state, const Tip& tip, const Vec
   return room;
 }
 
-// The share of the maximum-hoop kink that one increment turns by. A kink over less than about three cells is not
-// resolved: particles beside it keep their sides, and K_II is read off a fracture that has hardly turned. K_II/K_I
+// The share of the maximum-hoop kink that a growth by `length` (m) turns by. A kink over less than about three cells is
+// not resolved: particles beside it keep their sides, and K_II is read off a fracture that has hardly turned. K_II/K_I
 // answers a turn with about 0.9 of it, and the kink is twice K_II/K_I: a path that takes the whole of it overshoots by
 // 0.8 and comes to rest slowly; where the new point is dry it zigzags ever more. About half of the kink ends with K_II
 // = 0 at once. The path of local symmetry does not depend on the share (Cotterell & Rice 1980); the length in which it
 // is reached does.
-double turn_taken(const Scene& scene) {
+double turn_taken(const Scene& scene, double length) {
   constexpr double resolved_cells = 3.0;
-  return std::min(scene.fracture->turn_share, scene.fracture->increment_m / (resolved_cells * scene.numerics.cell_m));
+  return std::min(scene.fracture->turn_share, length / (resolved_cells * scene.numerics.cell_m));
 }
 
 // Direction from the place a distance `back` (m) behind the tip to the tip. K is a property of the fracture as the
@@ -297,9 +297,15 @@ void finish_tip(const Scene& scene, const TipGeometry& at, const State& state, c
   tip.near = at.near, tip.crossed = at.crossed;
   close_where_faces_touch(scene, state, at, tip);
   tip.kink = tip.closed ? 0.0 : kink_angle(tip.K_I, tip.K_II);
-  tip.turn = at.lag + turn_taken(scene) * tip.kink;
+  tip.turn = at.lag + turn_taken(scene, scene.fracture->increment_m) * tip.kink;
   tip.kink += at.lag;
   tip.ring_m = at.rings.back().outer;
+}
+
+double turn_over(const Scene& scene, const Tip& tip, double times) {
+  if (times == 1.0) return tip.turn;
+  const double da = scene.fracture->increment_m, one = turn_taken(scene, da);
+  return tip.kink - (tip.kink - tip.turn) * (1.0 - turn_taken(scene, times * da)) / (1.0 - one);
 }
 
 }  // namespace strata

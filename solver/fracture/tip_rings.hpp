@@ -98,4 +98,7 @@ void add_face(const Surface& fracture, const Frame& frame, const FacePlace& plac
 /// J, K and the next direction of growth from the sums of all rings. Throws NumericalFailure where they are not finite.
 void finish_tip(const Scene& scene, const TipGeometry& at, const State& state, const RingSums& sums, Tip& tip);
 
+/// What a tip turns by in `times` increments at once (rad); in one: tip.turn. Throws nothing.
+double turn_over(const Scene& scene, const Tip& tip, double times);
+
 }  // namespace strata

@@ -13,12 +13,12 @@ namespace strata {
 
 namespace {
 
-// Calls visit(bin, particle, its weights) for all particles, bin by bin.
+// Calls visit(bin, particle, its weights) for the particles of some bins.
 template <class Visit>
-void for_each_particle(const Scene& scene, const State& state, Visit visit) {
+void for_each_particle(const Scene& scene, const State& state, const std::vector<Bin>& bins, Visit visit) {
   const Particles& p = state.particles;
   with_shape(scene.numerics.shape, [&](auto shape) {
-    for (const Bin& bin : state.bins) {
+    for (const Bin& bin : bins) {
       for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
            q += static_cast<std::size_t>(bin.stride))
         visit(bin, q, gradients_of<decltype(shape)>(state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q)));
@@ -32,12 +32,13 @@ Vec2 interpolate(const Gradients& g, const Bin& bin, const std::vector<Vec2>& v)
   return sum;
 }
 
-// One pass of v_i += (1/m_i) sum_p N_ip m_p (v_p - sum_j N_jp v_j), masters first, then what is tied to them.
-void correct_velocities(const Scene& scene, State& state, std::vector<Vec2>& v) {
-  NodalSums sums(v.size());
+// One pass of nodes_from_particles(), masters first, then what is tied to them.
+void correct_nodes(const Scene& scene, const State& state, const std::vector<Bin>& bins, const SpreadArray& x,
+                   const SpreadArray& y, NodalSums& sums, std::vector<Vec2>& v) {
+  sums.clear(v.size());
   const Particles& p = state.particles;
-  for_each_particle(scene, state, [&](const Bin& bin, std::size_t q, const Gradients& g) {
-    const Vec2 lacks = Vec2{p.v_x[q], p.v_y[q]} - interpolate(g, bin, v);
+  for_each_particle(scene, state, bins, [&](const Bin& bin, std::size_t q, const Gradients& g) {
+    const Vec2 lacks = Vec2{x[q], y[q]} - interpolate(g, bin, v);
     for (std::size_t n = 0; n < 9; ++n) {
       const auto record = sums[static_cast<std::size_t>(bin.record[n])];
       const double m = g.N[n] * p.m[q];
@@ -55,22 +56,20 @@ void correct_velocities(const Scene& scene, State& state, std::vector<Vec2>& v) 
   }
 }
 
-// The nodes' velocities whose field is that of the particles. Mapping alone, the first pass, smooths a wave of number k
-// by (kh)^2/8 along each axis; each further pass leaves the square, the cube ... of that.
 void velocities_from_particles(const Scene& scene, State& state) {
   constexpr int passes = 3;
   const Particles& p = state.particles;
   state.total.velocity.assign(state.masters.size(), Vec2::Zero());
   const auto moves = [](double v) { return v != 0.0; };
   if (std::none_of(p.v_x.begin(), p.v_x.end(), moves) && std::none_of(p.v_y.begin(), p.v_y.end(), moves)) return;
-  for (int pass = 0; pass < passes; ++pass) correct_velocities(scene, state, state.total.velocity);
+  state.total.velocity = nodes_from_particles(scene, state, state.bins, p.v_x, p.v_y, passes);
 }
 
 // Masses and the particles' own forces, m_i = sum_p N_ip m_p and f_i = -sum_p V_p sigma_p grad N_ip.
 void sum_particles(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
   state.sums.clear(state.sums.size());
   const Particles& p = state.particles;
-  for_each_particle(scene, state, [&](const Bin& bin, std::size_t q, const Gradients& g) {
+  for_each_particle(scene, state, state.bins, [&](const Bin& bin, std::size_t q, const Gradients& g) {
     const Stress s = p.V[q] * stress_of(rocks[p.rock[q]], p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]);
     for (std::size_t n = 0; n < 9; ++n) {
       const auto record = state.sums[static_cast<std::size_t>(bin.record[n])];
@@ -112,6 +111,14 @@ void move_surfaces(const NodalMotion& by, State& state) {
 
 }  // namespace
 
+std::vector<Vec2> nodes_from_particles(const Scene& scene, const State& state, const std::vector<Bin>& bins,
+                                       const SpreadArray& x, const SpreadArray& y, int passes) {
+  std::vector<Vec2> v(state.masters.size(), Vec2::Zero());
+  NodalSums sums;
+  for (int pass = 0; pass < passes; ++pass) correct_nodes(scene, state, bins, x, y, sums, v);
+  return v;
+}
+
 void start_base(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
   TotalMotion& t = state.total;
   if (t.based) return;
@@ -140,7 +147,7 @@ void bring_up_to_date(const Scene& scene, State& state) {
     t.velocity[r] = total_velocity(state, static_cast<int>(r));
   }
   Particles& p = state.particles;
-  for_each_particle(scene, state, [&](const Bin& bin, std::size_t q, const Gradients& g) {
+  for_each_particle(scene, state, state.bins, [&](const Bin& bin, std::size_t q, const Gradients& g) {
     const Vec2 du = interpolate(g, bin, u), v = interpolate(g, bin, t.velocity);
     Vec2 u_1 = Vec2::Zero(), u_2 = Vec2::Zero();
     for (std::size_t n = 0; n < 9; ++n) {
@@ -160,7 +167,7 @@ BodyPush push_body(const Scene& scene, State& state) {
   if (state.body.empty()) return push;
   TotalMotion& t = state.total;
   NodalSums sums(state.masters.size());
-  for_each_particle(scene, state, [&](const Bin& bin, std::size_t q, const Gradients& g) {
+  for_each_particle(scene, state, state.bins, [&](const Bin& bin, std::size_t q, const Gradients& g) {
     const Vec2 f = state.particles.m[q] * state.body[q];
     for (std::size_t n = 0; n < 9; ++n) {
       const auto record = sums[static_cast<std::size_t>(bin.record[n])];

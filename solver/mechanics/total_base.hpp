@@ -8,6 +8,13 @@
 
 namespace strata {
 
+/// The nodal field, by records, whose interpolation is that of the values (x, y) of the particles of some bins:
+/// `passes` of v_i += (1/m_i) sum_p N_ip m_p (v_p - sum_j N_jp v_j) from nothing. The first pass smooths a wave of
+/// number k by (kh)^2/8 along each axis; each further one leaves the square, the cube ... of that. Throws nothing but
+/// std::bad_alloc.
+std::vector<Vec2> nodes_from_particles(const Scene& scene, const State& state, const std::vector<Bin>& bins,
+                                       const SpreadArray& x, const SpreadArray& y, int passes);
+
 /// Makes the particles as they are the base: masses, accelerations a_i = f_i/m_i of their stress, operator, surfaces.
 /// Nodes take up state.total.velocity or, where a run starts, the velocity field that gives the particles theirs.
 /// Does nothing where the base stands.

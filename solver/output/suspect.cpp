@@ -1,18 +1,24 @@
 #include "output/suspect.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "output/history.hpp"
+#include "scene/plausible.hpp"
+#include "state/elasticity.hpp"
+#include "state/round_off.hpp"
 
 namespace strata {
 
 namespace {
 
-// a/b where both are sums of the same kind; 0 where there is nothing of either.
-double share(double a, double b) {
-  if (a == 0.0 && !std::isnan(b)) return 0.0;
+// a/b where both are sums of the same kind; 0 where there is no more of a than `nothing`, its round-off.
+double share(double a, double b, double nothing) {
+  if (std::abs(a) <= nothing && !std::isnan(b)) return 0.0;
   return b != 0.0 ? a / b : std::numeric_limits<double>::infinity();
 }
 
@@ -21,22 +27,23 @@ constexpr double energy_threshold = 0.01;
 
 void watch_energy(const Scene& scene, const State& state, std::vector<Watched>& out) {
   const Monitors& m = state.monitors;
+  const double nothing = round_off(scene, state).energy;
   const bool inertia = scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics;
   double open = m.largest_open_J;
   note_largest(open, std::abs(state.ledger.open()));
-  out.push_back({"energy_closure", share(open, state.ledger.largest), energy_threshold,
+  out.push_back({"energy_closure", share(open, state.ledger.largest, nothing), energy_threshold,
                  "the energy ledger stayed open by more than 1 % of the largest energy exchanged"});
   if (!inertia) return;
   // With a step beyond its limit modes grow that no work has fed, and contact that does not converge can feed them,
   // too; what the step and the transfer make shows as dissipation below zero.
-  out.push_back({"energy_made", share(m.largest_made_J, state.ledger.largest), energy_threshold,
+  out.push_back({"energy_made", share(m.largest_made_J, state.ledger.largest, nothing), energy_threshold,
                  "the time step and the transfer made more than 1 % of the largest energy exchanged out of nothing"});
   // Free vibration has as much of one energy as of the other, a suddenly loaded body less of the kinetic; more comes of
   // parts that fly. Below, inertia is the physics of unstable growth: a figure that tells how far from the quasi-static
   // answer a run may be, and no fault. Blocks that a scene itself throws or pulls are not judged.
   const bool thrown = scene.initial.velocity_m_s || scene.body.acceleration_m_s2;
   if (thrown && m.largest_strain_J == 0.0) return;
-  out.push_back({"kinetic_share", share(m.largest_kinetic_J, m.largest_strain_J),
+  out.push_back({"kinetic_share", share(m.largest_kinetic_J, m.largest_strain_J, nothing),
                  thrown ? std::nullopt : std::optional(1.0),
                  "the largest kinetic energy exceeded the largest strain energy: parts of the block fly freely"});
 }
@@ -74,7 +81,7 @@ void watch_motion(const Scene& scene, const State& state, std::vector<Watched>& 
                    "particles went into other cells under linear functions, whose gradients jump there: use bspline2"});
   // Each step keeps momentum to round-off, 1e-16 of it; 1e6 steps that all erred to one side make 1e-10.
   if (!scene.domain.holds_x() || !scene.domain.holds_y())
-    out.push_back({"momentum", share(m.largest_drift, m.largest_momentum), 1e-8,
+    out.push_back({"momentum", share(m.largest_drift, m.largest_momentum, round_off(scene, state).momentum), 1e-8,
                    "momentum along an axis that no edge holds is not what started the block and the body force gave"});
 }
 
@@ -94,6 +101,83 @@ void watch_fluid(const Scene& scene, const State& state, std::vector<Watched>& o
   }
 }
 
+// The equations are linear in the displacement. What they leave out of the strain is u_k,i u_k,j/2: at gradients of
+// 0.01 it is half a per cent of them, and rotated areas carry a per cent less. Points that move take up strain in their
+// present places, so that stretching is exact at any size, and Hooke's law is one of logarithmic strain; at a tenth
+// that differs by 5 % from one of strain. Their stress does not turn with them.
+void watch_deformation(const Scene& scene, const State& state, std::vector<Watched>& out) {
+  const Monitors& m = state.monitors;
+  const bool keeps = scene.numerics.keeps_places();
+  const std::string check = "; check rock.*.youngs_modulus_Pa and the pressures";
+  out.push_back({"largest_strain", m.largest_strain, keeps ? 0.01 : 0.1,
+                 (keeps ? "rock is strained by more than 1 %, but the equations are those of small strain"
+                        : "rock is strained by more than 10 %, where its law is no longer that of linear elasticity") +
+                     check});
+  out.push_back({"largest_rotation", m.largest_rotation, 0.01,
+                 "rock turns by more than 0.01 rad, but the equations are those of small rotations" + check});
+  if (!keeps) return;
+  // From half a cell on a node of one face stands nearer to another node of the other face than to the one that it is
+  // solved with.
+  out.push_back(
+      {"jump_share", m.largest_jump / state.grid.h, 0.5,
+       "faces open or slip by more than half a cell while they are solved as lying where they started" + check});
+}
+
+// What explicit runs take for granted: that the load is slow, so that its waves add little to what it does at rest. A
+// ramp to p in the time T leaves oscillations of p/(omega T). Both figures are shares of the largest net pressure, and
+// a tenth of it is 4 to 6 % of K at most (omega = pi c_S/(2 L) to 41 rad/s L/80 m as in the experiments' block).
+constexpr double load_threshold = 0.1;
+
+// Answer of the block (s): a wave's way through it, L/c_S, and with damping d the time d/omega^2 that its slowest mode,
+// omega about pi c_S/L, takes to follow.
+double answer_time(const Scene& scene) {
+  const double L = std::max(scene.domain.width_m, scene.domain.height_m);
+  double slowest = std::numeric_limits<double>::infinity();
+  for (const Elasticity& rock : make_elasticities(scene)) slowest = std::min(slowest, rock.c_S);
+  constexpr double pi = std::numbers::pi;
+  const double crossing = L / slowest;
+  return crossing * (1.0 + scene.numerics.damping_1_s * crossing / (pi * pi));
+}
+
+// What damping has left of the waves of the start after a time (s): they fade as exp(-d t/2), or, above the critical
+// 2 omega, as exp(-omega^2 t/d).
+double left_of_start(const Scene& scene, double time) {
+  const double d = scene.numerics.damping_1_s;
+  if (d == 0.0) return 1.0;
+  const double answer = answer_time(scene);
+  return std::exp(-time * std::min(0.5 * d, 1.0 / answer));
+}
+
+void watch_loading(const Scene& scene, const State& state, std::vector<Watched>& out) {
+  const Monitors& m = state.monitors;
+  const bool slow_assumed = scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics && scene.fracture;
+  if (!slow_assumed || m.largest_net_Pa <= 0.0) return;  // a fracture that stays closed loads nothing
+  const double rise = std::abs(scene.fluid.rate_Pa_s) * answer_time(scene);
+  out.push_back(
+      {"loading_share", rise / m.largest_net_Pa, load_threshold,
+       "while a wave crosses the block, or its damped motion follows, the pressure rises by more than a tenth of "
+       "the largest net pressure: the load is not slow; lower fluid.inlet.rate_Pa_s, or check density_kg_m3 and "
+       "damping_1_s"});
+  // A pressure above the closing stress at time 0 comes at once and acts with up to twice its size. What damping has
+  // left of that counts where the first tip grows, or else at the end.
+  double until = state.time;
+  for (const Event& event : state.events) {
+    if (event.kind == "start") until = std::min(until, event.time_s);
+  }
+  // A run that ends before waves have crossed the block and come back, and grows nothing, is about these waves.
+  const bool of_waves = scene.fracture->growth == Fracture::Growth::none && state.time < 2.0 * answer_time(scene);
+  out.push_back(
+      {"shock_share", m.net_at_start_Pa / m.largest_net_Pa * left_of_start(scene, until),
+       of_waves ? std::nullopt : std::optional(load_threshold),
+       "the pressure at time 0 exceeds the closing stress, acts at once, and its waves have not been damped by "
+       "the first growth or the end: start at the closing stress, or use damping_1_s"});
+}
+
+void watch_inputs(const Scene& scene, std::vector<Watched>& out) {
+  const std::vector<std::string> odd = implausible(scene);
+  out.push_back({"implausible_inputs", static_cast<double>(odd.size()), 0.0, fmt::format("{}", fmt::join(odd, "; "))});
+}
+
 void watch_growth(const State& state, std::vector<Watched>& out) {
   const Monitors& m = state.monitors;
   if (m.growths == 0) return;
@@ -106,15 +190,16 @@ void watch_growth(const State& state, std::vector<Watched>& out) {
 
 void watch_contact(const Scene& scene, const State& state, std::vector<Watched>& out) {
   const Monitors& m = state.monitors;
+  const double nothing = round_off(scene, state).stress;
   double stiffest = 0.0;  // E' (Pa)
   for (const Rock& rock : scene.rocks)
     stiffest = std::max(stiffest, rock.youngs_modulus_Pa / (1.0 - rock.poisson_ratio * rock.poisson_ratio));
   // By the laws' contact stiffness faces overlap by 1e-4 of what a cell deforms under the same pressure: a hundred
   // times as much is no longer the law's, and a per cent of what a cell does is where results would show it.
   const double overlap = m.largest_penetration * stiffest / state.grid.h;
-  out.push_back({"penetration_share", share(overlap, m.largest_contact_Pa), 0.01,
+  out.push_back({"penetration_share", share(overlap, m.largest_contact_Pa, nothing), 0.01,
                  "closed faces overlapped by more than 1 % of what a cell deforms under the largest contact pressure"});
-  out.push_back({"tension_share", share(m.largest_tension_Pa, m.largest_contact_Pa), 1e-9,
+  out.push_back({"tension_share", share(m.largest_tension_Pa, m.largest_contact_Pa, nothing), 1e-9,
                  "faces that carry no tension by their law carried some"});
   if (scene.numerics.mechanics != Numerics::Mechanics::explicit_dynamics) return;
   out.push_back({"contact_left", m.contact_left, 0.01,
@@ -159,10 +244,13 @@ double courant_limit(Numerics::Shape shape) {
 
 std::vector<Watched> watched(const Scene& scene, const State& state) {
   std::vector<Watched> out;
+  watch_inputs(scene, out);
   watch_energy(scene, state, out);
   watch_motion(scene, state, out);
   watch_fluid(scene, state, out);
   watch_growth(state, out);
+  watch_deformation(scene, state, out);
+  watch_loading(scene, state, out);
   watch_contact(scene, state, out);
   watch_locking(scene, out);
   watch_contrast(scene, out);

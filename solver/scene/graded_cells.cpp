@@ -27,32 +27,6 @@ Point direction(const Point& before, const Point& tip) {
   return {d[0] / length, d[1] / length};
 }
 
-// Ends of the fracture's straight ways. A tip that goes up goes as far as stop.tip_y_m; one that does not goes as far
-// as the one that does.
-std::vector<Point> ends_of_growth(const Scene& scene) {
-  const Fracture& fracture = *scene.fracture;
-  const auto& path = fracture.path_m;
-  if (fracture.growth == Fracture::Growth::none) return {};
-  struct Way {
-    Point tip, d;
-    double length;
-  };
-  std::vector<Way> ways{{path.back(), direction(path[path.size() - 2], path.back()), 0.0}};
-  const bool from_symmetry = scene.domain.bottom == Edge::symmetry && path.front()[1] == 0.0;
-  if (!from_symmetry) ways.push_back({path.front(), direction(path[1], path.front()), 0.0});
-  double longest = std::numeric_limits<double>::infinity();
-  for (const Way& way : ways) {
-    if (!scene.stop.tip_y_m || way.d[1] <= 0.0) continue;
-    longest = std::min(longest, std::max(0.0, (*scene.stop.tip_y_m - way.tip[1]) / way.d[1]));
-  }
-  std::vector<Point> ends;
-  for (Way& way : ways) {
-    way.length = std::min(longest, way_to_edge(scene.domain, way.tip, way.d));
-    ends.push_back({way.tip[0] + way.length * way.d[0], way.tip[1] + way.length * way.d[1]});
-  }
-  return ends;
-}
-
 bool rocks_or_law_change(const Scene& scene, std::size_t k) {
   return scene.laws[scene.strata.interfaces[k].law].kind != InterfaceLaw::Kind::perfect ||
          scene.strata.layers[k].rock != scene.strata.layers[k + 1].rock;
@@ -145,6 +119,28 @@ bool mirrored_columns(const Scene& scene) {
 
 }  // namespace
 
+std::vector<GrowthWay> ways_of_growth(const Scene& scene) {
+  if (!scene.fracture || scene.fracture->growth == Fracture::Growth::none) return {};
+  const auto& path = scene.fracture->path_m;
+  struct Ray {
+    Point tip, d;
+  };
+  std::vector<Ray> rays{{path.back(), direction(path[path.size() - 2], path.back())}};
+  const bool from_symmetry = scene.domain.bottom == Edge::symmetry && path.front()[1] == 0.0;
+  if (!from_symmetry) rays.push_back({path.front(), direction(path[1], path.front())});
+  double longest = std::numeric_limits<double>::infinity();
+  for (const Ray& ray : rays) {
+    if (!scene.stop.tip_y_m || ray.d[1] <= 0.0) continue;
+    longest = std::min(longest, std::max(0.0, (*scene.stop.tip_y_m - ray.tip[1]) / ray.d[1]));
+  }
+  std::vector<GrowthWay> ways;
+  for (const auto& [tip, d] : rays) {
+    const double length = std::min(longest, way_to_edge(scene.domain, tip, d));
+    ways.push_back({{tip[0] + length * d[0], tip[1] + length * d[1]}, length});
+  }
+  return ways;
+}
+
 std::vector<Stretch> fine_stretches(const Scene& scene, int axis) {
   const auto k = static_cast<std::size_t>(axis);
   const double h = scene.numerics.cell_m;
@@ -152,7 +148,7 @@ std::vector<Stretch> fine_stretches(const Scene& scene, int axis) {
   std::vector<Stretch> fine;
   if (scene.fracture) {
     std::vector<Point> places = scene.fracture->path_m;
-    for (const Point& end : ends_of_growth(scene)) places.push_back(end);
+    for (const GrowthWay& way : ways_of_growth(scene)) places.push_back(way.end);
     const auto [low, high] = std::ranges::minmax_element(places, {}, [k](const Point& x) { return x[k]; });
     const Numerics& numerics = scene.numerics;
     const auto& from = axis == 0 ? numerics.fine_left_m : numerics.fine_bottom_m;

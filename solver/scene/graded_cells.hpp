@@ -21,6 +21,16 @@ constexpr double fine_cells_at_fracture = 10.0;
 // border reach 1.5 cells to each side, and the functions of the nodes there 1.5 cells further.
 constexpr double fine_cells_at_interface = 4.0;
 
+// The straight way along which a tip may grow.
+struct GrowthWay {
+  std::array<double, 2> end{};  // m
+  double length = 0.0;          // m
+};
+
+/// The ways of all tips that may grow, each in the direction of its end of the path: up to stop.tip_y_m, or else to the
+/// block's edge; a tip that does not go up goes as far as the one that does. Throws nothing.
+std::vector<GrowthWay> ways_of_growth(const Scene& scene);
+
 /// Stretches along x (axis 0) or y (1) on which all cells are of cell_m: around the fracture and the straight way of
 /// its tips, which ends at stop.tip_y_m or else at the block's edge (or up to where the scene says,
 /// numerics.fine_left_m and its like), and around the places where rocks or interfaces meet. In order, cut at the

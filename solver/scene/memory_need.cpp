@@ -59,10 +59,14 @@ Cells cells_of(const Scene& scene) {
           ends * beyond + (graded ? graded_cells(scene, 1, domain.height_m, far) : domain.height_m / h)};
 }
 
-// How high a tip may come (m).
-double way_up(const Scene& scene) {
-  double length = scene.stop.tip_y_m.value_or(scene.domain.height_m);
-  for (const auto& x : scene.fracture->path_m) length = std::max(length, x[1]);
+// Length of the fracture at the end (m): of its path and of the ways of its tips. One equilibrium lets none grow.
+double longest_fracture(const Scene& scene) {
+  const auto& path = scene.fracture->path_m;
+  double length = 0.0;
+  for (std::size_t k = 1; k < path.size(); ++k)
+    length += std::hypot(path[k][0] - path[k - 1][0], path[k][1] - path[k - 1][1]);
+  if (scene.stop.time_s == 0.0) return length;
+  for (const GrowthWay& way : ways_of_growth(scene)) length += way.length;
   return length;
 }
 
@@ -71,26 +75,16 @@ double cells_along(const Scene& scene, const Cells& cells) {
   return scene.strata.along == Strata::Along::y ? cells.x : cells.y;
 }
 
-// Cells that have 4 x 4 points at the end where others have 2 x 2: as far as J's rings reach beside the way up of a
-// tip, and 3.25 cells beside interfaces that may part (fracture/refine_beside.hpp).
+// Cells that have 4 x 4 points at the end where others have 2 x 2: as far as J's rings reach beside the way of a tip,
+// and 3.25 cells beside interfaces that may part (fracture/refine_beside.hpp).
 double refined_cells(const Scene& scene, const Cells& cells) {
   const double h = scene.numerics.cell_m, beside_path = 2.0 * (scene.numerics.ring_cells + 2.0), beside_interface = 6.5;
-  double refined = beside_path * way_up(scene) / h;
+  double refined = beside_path * longest_fracture(scene) / h;
   for (const InterfacePlace& place : scene.strata.interfaces) {
     if (scene.laws[place.law].kind == InterfaceLaw::Kind::perfect) continue;
     refined += beside_interface * cells_along(scene, cells);
   }
   return std::min(refined, cells.x * cells.y);
-}
-
-// Length of the fracture at the end (m).
-double longest_fracture(const Scene& scene) {
-  if (scene.fracture->growth != Fracture::Growth::none) return way_up(scene);
-  const auto& path = scene.fracture->path_m;
-  double length = 0.0;
-  for (std::size_t k = 1; k < path.size(); ++k)
-    length += std::hypot(path[k][0] - path[k - 1][0], path[k][1] - path[k - 1][1]);
-  return length;
 }
 
 // Jumps across the fracture at the end and interfaces that part from the start: six a cell. How much of a bonded one

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/graded_cells.hpp"
 #include "scene/memory_need.hpp"
 
 namespace strata {
@@ -28,13 +29,11 @@ double fastest_wave(const Scene& scene) {
   return std::sqrt(c2);
 }
 
-// Increments from the initial tip to where growth ends at the latest, at one tip.
+// Increments of all tips to where growth ends at the latest.
 double increments(const Scene& scene) {
-  if (!scene.fracture || scene.fracture->growth == Fracture::Growth::none) return 0.0;
-  double tip = 0.0;
-  for (const auto& x : scene.fracture->path_m) tip = std::max(tip, x[1]);
-  const double end = scene.stop.tip_y_m.value_or(scene.domain.height_m);
-  return std::max(0.0, end - tip) / scene.fracture->increment_m;
+  double length = 0.0;
+  for (const GrowthWay& way : ways_of_growth(scene)) length += way.length;
+  return length > 0.0 ? length / scene.fracture->increment_m : 0.0;
 }
 
 std::optional<double> steps_of(const Scene& scene) {

@@ -41,6 +41,12 @@ struct Monitors {
   double contact_left = 0.0;        // largest change of a reaction in a step's last sweep, over its largest reaction
   double largest_contact_Pa = 0.0;  // normal reaction of any place
   double largest_tension_Pa = 0.0;  // of a place that carries none by its law
+
+  double largest_strain = 0.0;    // principal strain of a particle, at output times
+  double largest_rotation = 0.0;  // (du_y/dx - du_x/dy)/2 of a particle (rad), at output times
+  double largest_jump = 0.0;      // opening or slip of faces (m), at output times
+  double net_at_start_Pa = 0.0;   // how far the fluid's first pressure exceeds the closing stress
+  double largest_net_Pa = 0.0;    // how far its pressure anywhere in the fracture has, at rows
 };
 
 /// Takes up a value that is larger than the largest so far. One that is no number stays: no later one hides it.

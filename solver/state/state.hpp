@@ -45,6 +45,8 @@ struct Tip {
   bool crossed = false;            // it is within the rings: J and K are no numbers of the tip
   double last_growth_s = -1.0;     // time of its last growth, -1 before the first
   double last_growth_Pa = 0.0;     // inlet pressure then
+  double due_s = -1.0;             // explicit: no increment before this time (s), since Rayleigh waves are no faster
+  double runs_until_s = -1.0;      // and until then J still answers to the last one
   double J_at_growth = 0.0;
   double J_spread_at_growth = 0.0;
   double G_trial = 0.0;         // what growth by energy would release now, by the increment's length (N/m)

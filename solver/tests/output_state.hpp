@@ -88,7 +88,8 @@ inline Tip made_tip(bool at_back, Numbers& number) {
   tip.K_I = 1e6 * number.next(), tip.K_II = 1e6 * number.next(), tip.J = number.next();
   tip.J_spread = number.next(), tip.ring_m = number.next(), tip.kink = number.next();
   tip.near = at_back ? Obstacle::rock_border : Obstacle::none;
-  tip.last_growth_s = number.next(), tip.last_growth_Pa = number.next();
+  tip.last_growth_s = number.next(), tip.last_growth_Pa = number.next(), tip.due_s = number.next();
+  tip.runs_until_s = number.next();
   tip.J_at_growth = number.next(), tip.J_spread_at_growth = number.next();
   tip.has_grown = !at_back, tip.closed = !at_back, tip.crossed = !at_back;
   tip.arrested = at_back;
@@ -98,10 +99,12 @@ inline Tip made_tip(bool at_back, Numbers& number) {
 
 inline void fill_monitors(Numbers& number, Monitors& m) {
   m = {number.next(), number.next(), 77, 3, number.next()};
-  for (double* value : {&m.contact_residual, &m.volume_balance, &m.largest_open_J, &m.largest_made_J,
-                        &m.largest_strain_J, &m.largest_kinetic_J, &m.expected_x, &m.expected_y, &m.largest_drift,
-                        &m.largest_momentum, &m.force_balance, &m.largest_imbalance, &m.delivered_m2, &m.J_spread_sum,
-                        &m.largest_J_spread, &m.contact_left, &m.largest_contact_Pa, &m.largest_tension_Pa}) {
+  for (double* value :
+       {&m.contact_residual,  &m.volume_balance,     &m.largest_open_J,     &m.largest_made_J, &m.largest_strain_J,
+        &m.largest_kinetic_J, &m.expected_x,         &m.expected_y,         &m.largest_drift,  &m.largest_momentum,
+        &m.force_balance,     &m.largest_imbalance,  &m.delivered_m2,       &m.J_spread_sum,   &m.largest_J_spread,
+        &m.contact_left,      &m.largest_contact_Pa, &m.largest_tension_Pa, &m.largest_strain, &m.largest_rotation,
+        &m.largest_jump,      &m.net_at_start_Pa,    &m.largest_net_Pa}) {
     *value = number.next();
   }
   m.mirror = true;

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "fracture/j_integral.hpp"
+#include "mechanics/new_openings.hpp"
+#include "output/history.hpp"
 #include "small_scenes.hpp"
 #include "state/rebuild.hpp"
 #include "state/surfaces.hpp"
@@ -248,6 +250,83 @@ TEST_CASE("a tip is no faster than Rayleigh waves") {
   CHECK_FALSE(grow(run.scene, run.rocks, run.state));
   run.state.time = 3.0 + wait * (1.0 + 1e-6);
   CHECK(grow(run.scene, run.rocks, run.state));
+}
+
+// Requires a tip that runs to make as many increments as Rayleigh waves have gone since the last was due, whatever a
+// step lasts: with increments far shorter than a step it moves c_R dt a step to less than an increment in all; a tip
+// that was looked at and stood begins with one. By hand: steps of 7.3 increments are 1 + 7 or 8. Mutations that fail:
+// one increment a look, the clock begun anew at each look, a clock that runs on while the tip stands.
+TEST_CASE("a tip that runs does not wait for steps") {
+  const double da = 0.02;
+  Run run(growing({{7.0, 0.0}, {7.0, 5.0}}, da));
+  const double wait = da / run.rocks[0].c_R;
+  run.state.dt = 7.3 * wait, run.state.time = 3.0;
+  run.state.tips[0].ring_m = 4.0;
+  drive(run, 2.0);
+  REQUIRE(grow(run.scene, run.rocks, run.state));
+  CHECK(tip_y(run) == Approx(5.0 + da));
+  for (int k = 1; k <= 12; ++k) {
+    run.state.time += run.state.dt;
+    CHECK(runs(run.state.tips[0], run.state.time));
+    REQUIRE(grow(run.scene, run.rocks, run.state));
+    CHECK(tip_y(run) == Approx(5.0 + da * (1.0 + std::floor(7.3 * k))));
+  }
+  const double reached = tip_y(run);
+  run.state.time += run.state.dt;
+  drive(run, 0.9);
+  CHECK_FALSE(grow(run.scene, run.rocks, run.state));
+  CHECK(runs(run.state.tips[0], run.state.time));  // what it has done may still come back to it
+  run.state.time += 4.0 / run.rocks[0].c_R;
+  CHECK_FALSE(runs(run.state.tips[0], run.state.time));
+  drive(run, 2.0);
+  REQUIRE(grow(run.scene, run.rocks, run.state));
+  CHECK(tip_y(run) == Approx(reached + da));
+}
+
+// Requires several increments at once to end on an interface that they would cross or end a quarter of an increment
+// short of, and to turn by the share of the kink that their whole length resolves: a third of a cell a ninth of it.
+// Mutations that fail: a quarter of the whole length, the turn of one increment, the turn of each.
+TEST_CASE("several increments at once are one growth of their length") {
+  Scene scene = growing({{7.0, 0.0}, {7.0, 5.0}}, 0.1);
+  scene.fracture->direction = Fracture::Direction::max_hoop;
+  add_interface(scene, weak_law(1e9, 1e9), 6.0);
+  Run run(scene);
+  Tip& tip = run.state.tips[0];
+  CHECK(extend_tip(run.scene, run.state, tip, 0.1, 9.0) == Approx(0.9));
+  CHECK(extend_tip(run.scene, run.state, tip, 0.1, 3.0) == Approx(0.1));
+  CHECK(tip_y(run) == Approx(6.0));
+  CHECK(extend_tip(run.scene, run.state, tip, 0.1, 3.0) == Approx(0.3));
+  const double lag = 0.02, kink = 0.3;
+  tip.kink = lag + kink, tip.turn = lag + kink / 30.0;  // of an increment: 0.1 of three cells
+  const Vec2 from = tip_position(run.state, tip);
+  extend_tip(run.scene, run.state, tip, 0.1, 10.0 / 3.0);
+  const Vec2 grown = tip_position(run.state, tip) - from;
+  CHECK(std::atan2(-grown.x(), grown.y()) == Approx(lag + kink / 9.0));
+}
+
+// Requires a fracture that has grown over four cells by a fifth of one at a time, so that most of its new points come
+// to be where nodes were split before, to come to rest with J and K_I of one that was as long from the start, and with
+// as much volume. Mutations that fail: no opening at new points (J and volume too small), twice the opening.
+TEST_CASE("a fracture that has grown by parts of cells rests as one that was there") {
+  const auto settled = [](double length, int increments) {
+    Scene scene = growing({{7.0, 0.0}, {7.0, length}});
+    scene.fracture->growth = Fracture::Growth::none;
+    scene.numerics.damping_1_s = 320.0;  // near twice the slowest mode
+    Run run(scene);
+    for (int k = 0; k < increments; ++k) {
+      run.advance(40);
+      extend_tip(run.scene, run.state, run.state.tips[0], 0.2);
+      run.rebuild();
+      open_new_points(run.scene, run.rocks, run.state);
+    }
+    run.advance(800);
+    measure_tips(run.scene, run.rocks, run.state);
+    return run.state;
+  };
+  const State was = settled(9.3, 0), grown = settled(5.3, 20);
+  CHECK(grown.tips[0].J == Approx(was.tips[0].J).epsilon(0.01));
+  CHECK(grown.tips[0].K_I == Approx(was.tips[0].K_I).epsilon(0.005));
+  CHECK(fracture_volume(grown) == Approx(fracture_volume(was)).epsilon(0.005));
 }
 
 // Requires that new points are dry, or inherit the tip's pressure, or have the inlet's where flow is uniform, at both

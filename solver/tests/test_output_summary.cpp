@@ -310,6 +310,11 @@ TEST_CASE("each monitor marks the run beyond its threshold and not below") {
                                         {"J_spread_mean", rest, &Monitors::J_spread_sum, 0.99, 1.01},
                                         {"J_spread_mean", inertia, &Monitors::J_spread_sum, 0.99, 1.01},
                                         {"tension_share", rest, &Monitors::largest_tension_Pa, 0.9e-3, 1.1e-3},
+                                        {"largest_strain", rest, &Monitors::largest_strain, 0.0099, 0.0101},
+                                        {"largest_strain", inertia, &Monitors::largest_strain, 0.099, 0.101},
+                                        {"largest_rotation", rest, &Monitors::largest_rotation, 0.0099, 0.0101},
+                                        {"largest_rotation", inertia, &Monitors::largest_rotation, 0.0099, 0.0101},
+                                        {"jump_share", rest, &Monitors::largest_jump, 0.49, 0.51},
                                         {"contact_left", inertia, &Monitors::contact_left, 0.009, 0.011}}));
   CAPTURE(c.monitor, c.below, c.above);
   const Scene scene = scene_of(c.mechanics, Fluid::Law::reynolds);
@@ -351,6 +356,105 @@ TEST_CASE("faces that overlap mark the run by what a cell deforms under their pr
   state.monitors = Monitors{};
   state.monitors.largest_penetration = 1e-9;  // with nothing that presses
   CHECK(marks(scene, state) == Names{"penetration_share"});
+}
+
+// Requires a run in which nothing happens but round-off, 1e-13 of the scene's stresses, to be marked by no share of
+// that round-off, and a ten-thousandth of the stresses to be. By hand: stresses of 16 MPa in an 8 m x 8 m block of
+// which the softer rock has E' = 8e9/0.99 Pa and c_S = 1257 m/s. Mutations that fail: any of the floors left out, or as
+// an absolute number that does not go with the stresses.
+TEST_CASE("shares of round-off mark nothing") {
+  Scene scene = scene_of(inertia, Fluid::Law::uniform);
+  State state = sound_state();
+  const double scale = GENERATE(1.0, 1e-6);
+  scene.fluid.start_Pa *= scale, state.fluid.inlet_Pa *= scale;
+  double V = 0.0;
+  for (double& V_p : state.particles.V) V_p = 64.0 / 13.0, V += V_p;
+  const double s = 16e6 * scale, energy = 0.5 * s * s * 64.0 * 0.99 / 8e9, momentum = s * 64.0 / 1257.0;
+  const auto fill = [&](double share) {
+    state.ledger = Ledger{};
+    state.monitors = Monitors{};
+    state.ledger.largest = 1e-3 * share * share * energy;
+    state.monitors.largest_open_J = state.monitors.largest_made_J = share * share * energy;
+    state.monitors.largest_kinetic_J = share * share * energy;
+    state.monitors.largest_drift = state.monitors.largest_momentum = share * momentum;
+    state.monitors.largest_tension_Pa = share * s;
+    state.monitors.largest_penetration = share * s * state.grid.h / 42e9;
+    state.monitors.largest_contact_Pa = 0.1 * share * s;
+  };
+  fill(1e-13);
+  CHECK(marks(scene, state) == Names{});
+  fill(1e-4);
+  CHECK(marks(scene, state) ==
+        Names{"energy_closure", "energy_made", "kinetic_share", "momentum", "penetration_share", "tension_share"});
+}
+
+// Requires loads that do not come slowly to be marked: 0.4 MPa/s and a wave's 8 m at c_S = 1257 m/s of the softer rock
+// are 2.546 kPa, and damping of pi^2 c_S/L doubles them; a pressure above the closing stress at time 0, until damping
+// has brought it below a tenth: 1 MPa of 2 by exp(-d t/2) at d = 40 1/s after 0.0805 s, at the first growth or the end.
+// Mutations that fail: the stiffer rock's wave, c_P, damping left out or growing with itself for ever.
+TEST_CASE("loads faster than waves or at once mark an explicit run") {
+  Scene scene = scene_of(inertia, Fluid::Law::uniform);
+  State state = sound_state();
+  state.time = 10.0, state.events.clear();
+  state.monitors.largest_net_Pa = 25.5e3;
+  CHECK(marks(scene, state) == Names{});
+  state.monitors.largest_net_Pa = 25.4e3;
+  CHECK(marks(scene, state) == Names{"loading_share"});
+  scene.numerics.damping_1_s = 9.8696 * 1257.0 / 8.0;
+  state.monitors.largest_net_Pa = 51.1e3;
+  CHECK(marks(scene, state) == Names{});
+  state.monitors.largest_net_Pa = 50.7e3;
+  CHECK(marks(scene, state) == Names{"loading_share"});
+  scene.numerics.mechanics = rest;
+  CHECK(marks(scene, state) == Names{});
+  scene = scene_of(inertia, Fluid::Law::uniform);
+  state.monitors.largest_net_Pa = 2e6, state.monitors.net_at_start_Pa = 1e6;
+  CHECK(marks(scene, state) == Names{"shock_share"});
+  scene.numerics.damping_1_s = 40.0;
+  CHECK(marks(scene, state) == Names{});
+  state.time = 0.080;
+  CHECK(marks(scene, state) == Names{"shock_share"});
+  state.time = 0.081;
+  CHECK(marks(scene, state) == Names{});
+  state.time = 10.0, state.events = {{"start", 0.080, 1e6, 4.0, 2.0, false, "J"}};
+  CHECK(marks(scene, state) == Names{"shock_share"});
+  scene.fracture->growth = Fracture::Growth::none, state.events.clear();
+  scene.numerics.damping_1_s = 0.0, state.time = 0.0127;  // before waves are back from the edges: about them
+  CHECK(marks(scene, state) == Names{});
+  state.time = 0.0128;
+  CHECK(marks(scene, state) == Names{"shock_share"});
+}
+
+// Requires values of another unit to mark the run by their keys, and those of rock not to.
+TEST_CASE("values that no rock has mark the run") {
+  struct Typed {
+    const char* key;
+    void (*type)(Scene&);
+  };
+  const auto c = GENERATE(values<Typed>({
+      {"rock.stiff.youngs_modulus_Pa = 40", [](Scene& s) { s.rocks[0].youngs_modulus_Pa = 40.0, s.rocks.pop_back(); }},
+      {"rock.soft.youngs_modulus_Pa = 8e+18", [](Scene& s) { s.rocks[1].youngs_modulus_Pa = 8e18; }},
+      {"rock.soft.density_kg_m3 = 2.3", [](Scene& s) { s.rocks[1].density_kg_m3 = 2.3; }},
+      {"rock.stiff.toughness_Pa_sqrt_m = 1.45", [](Scene& s) { s.rocks[0].toughness_Pa_sqrt_m = 1.45; }},
+      {"in_situ.vertical_Pa = -3", [](Scene& s) { s.in_situ.vertical_Pa = -3.0; }},
+      {"in_situ.horizontal_Pa = 2", [](Scene& s) { s.in_situ.horizontal_Pa = 2.0; }},
+      {"fluid.inlet.start_Pa = 16", [](Scene& s) { s.fluid.start_Pa = 16.0; }},
+      {"stop.inlet_Pa = 18", [](Scene& s) { s.stop.inlet_Pa = 18.0; }},
+      {"fluid.bulk_modulus_Pa = 2.2", [](Scene& s) { s.fluid.bulk_modulus_Pa = 2.2; }},
+      {"fluid.viscosity_Pa_s = 1e-07", [](Scene& s) { s.fluid.viscosity_Pa_s = 1e-7; }},
+  }));
+  Scene scene = scene_of(rest, Fluid::Law::reynolds);
+  scene.strata = {};  // no contrast
+  CHECK(marks(scene, sound_state()) == Names{});
+  c.type(scene);
+  const std::vector<Watched> found = suspicions(scene, sound_state());
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].monitor == "implausible_inputs");
+  CHECK(found[0].value == 1.0);
+  CHECK_THAT(found[0].why, Catch::StartsWith(std::string(c.key) + " is "));
+  scene = scene_of(rest, Fluid::Law::uniform);
+  scene.rocks[0].toughness_Pa_sqrt_m = scene.fluid.start_Pa = 0.0, scene.fluid.bulk_modulus_Pa = 1.0;
+  CHECK(marks(scene, sound_state()) == Names{});  // none, and what the law does not use
 }
 
 TEST_CASE("what does not apply to a run is not said of it") {

@@ -145,6 +145,51 @@ TEST_CASE("Memory needed grows with the particles, more so with a factor, and le
   CHECK(available_memory() > 1e6);
 }
 
+// Requires memory and time to go with the length of the fracture and the ways of its tips, wherever it is and however
+// it leans, in a block of 4 km: 28 bytes for each pair of its six jumps a cell, and 8 steps an increment of 1 m.
+// Mutations that fail: the tip's height for its length, one tip's way for both, the way counted along y.
+TEST_CASE("Fractures need what their length asks for") {
+  Scene scene = good(layered);
+  scene.domain = {4000.0, 4000.0, Edge::traction, Edge::traction, Edge::traction};
+  scene.strata = {Strata::Along::y, {{0, 0.0, 4000.0}}, {}};
+  scene.numerics.mechanics = Numerics::Mechanics::quasistatic;
+  scene.numerics.far_cell_m = 100.0;
+  scene.output.fields_every_s = scene.stop.inlet_Pa = {};
+  scene.fracture->growth = Fracture::Growth::none;
+  const auto jumps = [&](const std::vector<std::array<double, 2>>& path) {
+    scene.fracture->path_m = path;
+    const double here = memory_need(scene);
+    Scene bare = scene;
+    bare.fracture->path_m = {path.front(), {path.front()[0], path.front()[1] + 1e-9}};
+    bare.fracture->growth = Fracture::Growth::none;
+    bare.numerics = scene.numerics;
+    // The same grid: fine where that of the scene is.
+    bare.numerics.fine_left_m = fine_stretches(scene, 0).front().from;
+    bare.numerics.fine_right_m = fine_stretches(scene, 0).front().to;
+    bare.numerics.fine_bottom_m = fine_stretches(scene, 1).front().from;
+    bare.numerics.fine_top_m = fine_stretches(scene, 1).front().to;
+    return std::sqrt((here - memory_need(bare)) / 28.0);
+  };
+  const auto increments = [&] { return (time_need(scene).value() * 1.0e7 / points_of(scene) - 150.0) / 8.0; };
+  CHECK(jumps({{2000.0, 1995.0}, {2000.0, 2005.0}}) == Approx(60.0).epsilon(1e-6));
+  CHECK(jumps({{2000.0, 2000.0}, {2010.0, 2000.0}}) == Approx(60.0).epsilon(1e-6));
+  CHECK(jumps({{100.0, 3900.0}, {106.0, 3892.0}}) == Approx(60.0).epsilon(1e-6));
+  CHECK(jumps({{100.0, 100.0}, {106.0, 108.0}, {106.0, 118.0}}) == Approx(120.0).epsilon(1e-6));
+  CHECK(increments() == Approx(0.0).margin(1e-9));
+  CHECK(memory_need(scene) < 0.4e9);
+  scene.fracture->growth = Fracture::Growth::J;
+  scene.stop.tip_y_m = 2025.0;
+  CHECK(jumps({{2000.0, 1995.0}, {2000.0, 2005.0}}) == Approx(6.0 * 50.0).epsilon(1e-6));  // 20 m up and 20 m down
+  CHECK(increments() == Approx(40.0));
+  scene.stop.tip_y_m = 2013.0;
+  CHECK(jumps({{2000.0, 2000.0}, {2006.0, 2008.0}}) == Approx(6.0 * 22.5).epsilon(1e-6));  // 5 m up leaning are 6.25 m
+  CHECK(increments() == Approx(12.5));
+  scene.stop = {.tip_y_m = {}, .inlet_Pa = 4e6, .time_s = {}};
+  CHECK(jumps({{3000.0, 3990.0}, {3010.0, 3990.0}}) == Approx(6.0 * 4000.0).epsilon(1e-6));  // to both sides
+  scene.stop.time_s = 0.0;                                                                   // one equilibrium
+  CHECK(jumps({{2000.0, 1995.0}, {2000.0, 2005.0}}) == Approx(60.0).epsilon(1e-6));
+}
+
 // Requires the estimate to count the points that a block is then filled with: those of paths that may turn, with 4 and
 // 9 a cell, of thin layers, and of neither; and at least those that a turning path comes to have. Mutations that fail:
 // 16 for all paths that may turn, thin layers forgotten, points beside the path or interfaces left out.

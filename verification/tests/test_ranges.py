@@ -1,0 +1,95 @@
+"""Runs that leave the range of their equations say so, those within it do not, on the README's first scene."""
+from __future__ import annotations
+
+import json
+import subprocess
+import textwrap
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from verification.harness.paths import ROOT, solver
+
+
+@cache
+def first_scene() -> str:
+    """The README's first scene."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    lines = text.split("## A first scene of your own", 1)[1].split("[variants.stronger]", 1)[0].splitlines()
+    return textwrap.dedent("\n".join(line for line in lines if line.startswith("    ")))
+
+
+def summary_of(folder: Path, *settings: str) -> dict[str, Any]:
+    """The summary of a run of the first scene with these settings."""
+    (folder / "first.toml").write_text(first_scene())
+    changes = [word for setting in settings for word in ("--set", setting)]
+    whole = [str(solver()), "run", "first.toml", *changes, "--out", "X", "--quiet", "--threads", "1"]
+    done = subprocess.run(whole, cwd=folder, capture_output=True, text=True, check=False, timeout=300)
+    assert done.returncode == 0, done.stderr
+    read: dict[str, Any] = json.loads((folder / "X" / "summary.json").read_text())
+    return read
+
+
+def marks(summary: dict[str, Any]) -> set[str]:
+    """The monitors that mark a run."""
+    return {mark["monitor"] for mark in summary["suspect"]}
+
+
+QUASISTATIC, TOTAL = "numerics.mechanics=quasistatic", "numerics.kinematics=total"
+
+
+@pytest.mark.parametrize("mechanics", [(QUASISTATIC,), (TOTAL,), ()])
+def test_the_first_scene_is_sound(tmp_path: Path, mechanics: tuple[str, ...]) -> None:
+    assert marks(summary_of(tmp_path, *mechanics)) == set()
+
+
+@pytest.mark.parametrize("mechanics", [(QUASISTATIC,), (TOTAL, "stop.time_s=0.1"), ("stop.time_s=0.1",)])
+@pytest.mark.parametrize("start_Pa", [0, 1.3e6, 2.0e6])
+def test_a_closed_fracture_at_rest_is_sound(tmp_path: Path, mechanics: tuple[str, ...], start_Pa: float) -> None:
+    """A closed fracture, or one that the fluid just holds, has nothing but round-off in its energies and momenta."""
+    at_rest = f"fluid.inlet={{start_Pa={start_Pa}, rate_Pa_s=0}}"
+    leaning = "fracture.path_m=[[8.3, 7.1], [11.2, 12.4]]"
+    for k, settings in enumerate((("domain.sides=traction",), (leaning, "domain.bottom=traction", "domain.sides=traction"))):
+        folder = tmp_path / str(k)
+        folder.mkdir()
+        summary = summary_of(folder, "stop={time_s=0}", at_rest, *settings, *mechanics)
+        assert marks(summary) == set(), summary["suspect"]
+
+
+@pytest.mark.parametrize(
+    "settings, expected",
+    [
+        ((QUASISTATIC, "rock.shale.youngs_modulus_Pa=10"), {"implausible_inputs", "largest_strain", "largest_rotation", "jump_share"}),
+        ((QUASISTATIC, "rock.shale.youngs_modulus_Pa=1e7"), {"largest_strain"}),
+        (("rock.shale.youngs_modulus_Pa=1e7",), {"loading_share"}),
+        ((QUASISTATIC, "rock.shale.toughness_Pa_sqrt_m=1.45"), {"implausible_inputs"}),
+        ((QUASISTATIC, "in_situ={vertical_Pa=3, horizontal_Pa=2}"), {"implausible_inputs"}),
+        (("rock.shale.density_kg_m3=2.5e6",), {"loading_share"}),
+        (("fluid.inlet={start_Pa=3e6, rate_Pa_s=0.35e6}",), {"shock_share"}),
+        (("fluid.inlet={start_Pa=2e6, rate_Pa_s=0.35e9}",), {"loading_share"}),
+        (("numerics.damping_1_s=1e4", TOTAL), {"loading_share"}),
+    ],
+)
+def test_what_leaves_the_range_is_marked(tmp_path: Path, settings: tuple[str, ...], expected: set[str]) -> None:
+    """Units of another kind, loads that are not slow: marked by at least these monitors."""
+    summary = summary_of(tmp_path, *settings)
+    assert expected <= marks(summary), summary["suspect"]
+    for mark in summary["suspect"]:
+        assert summary["monitors"][mark["monitor"]] == mark["value"] and len(mark["why"]) > 40
+
+
+@pytest.mark.parametrize("kinematics", ["total", "updated"])
+def test_increments_below_a_cell_do_not_change_the_pressure(tmp_path: Path, kinematics: str) -> None:
+    """A crack runs as fast as its energy lets it, whatever the increment: from the start it needs less than 7 m over a fifth of the
+    Rayleigh speed, in which the inlet rises by 0.011 MPa."""
+    ends = {}
+    for increment in (0.02, 0.1, 0.5):
+        folder = tmp_path / str(increment)
+        folder.mkdir()
+        summary = summary_of(folder, f"fracture.increment_m={increment}", f"numerics.kinematics={kinematics}")
+        (start,) = (event["inlet_Pa"] for event in summary["events"] if event["kind"] == "start")
+        ends[increment] = summary["inlet_Pa"]
+        assert 0.0 < summary["inlet_Pa"] - start < 0.35e6 * 7.0 / (0.2 * 1176.0)
+    assert max(ends.values()) - min(ends.values()) < 2e3
