@@ -110,10 +110,16 @@ RockModel rock_of(const Scene& scene, double time, State& state, QuasistaticMode
 }
 
 Inlet inlet_at(const Scene& scene, const State& state, double time) {
-  if (!scene.fluid.rate_m2_s) return {Inlet::Drive::pressure, scene.fluid.start_Pa + scene.fluid.rate_Pa_s * time};
+  const auto& points = state.fracture().points;
+  const std::size_t vertex = state.fluid.inlet;
+  Inlet inlet{Inlet::Drive::pressure, scene.fluid.start_Pa + scene.fluid.rate_Pa_s * time,
+              points[std::min(vertex, points.size() - 1)].closing_stress(), std::nullopt};
+  inlet.E_prime = make_elasticity(scene.rocks[rock_at(scene, state.fracture().vertices[vertex].x)]).E_prime;
+  if (!scene.fluid.rate_m2_s) return inlet;
   // Half of a fracture that starts on the symmetry line gets half of what the whole is fed.
   const bool half = scene.domain.bottom == Edge::symmetry && state.fracture().vertices.front().x.y() == 0.0;
-  return {Inlet::Drive::rate, *scene.fluid.rate_m2_s * (half ? 0.5 : 1.0)};
+  inlet.drive = Inlet::Drive::rate, inlet.value = *scene.fluid.rate_m2_s * (half ? 0.5 : 1.0);
+  return inlet;
 }
 
 FluidStep couple(const Scene& scene, double dt, State& state, QuasistaticModel& model) {

@@ -13,6 +13,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,8 @@ struct Inlet {
   enum class Drive { pressure, rate };
   Drive drive = Drive::pressure;
   double value = 0.0;  // pressure (Pa), or what enters the modelled domain (m^2/s, at the pressure of its first cell)
+  double closing_Pa = 0.0;
+  std::optional<double> E_prime = {};  // of the rock beside the vertex (Pa); absent: it is rigid within a cell
 };
 
 struct StepReport {
@@ -50,7 +53,7 @@ struct StepReport {
 };
 
 struct ReynoldsOptions {
-  int max_iterations = 40;   // half as many first, then as many again from another start
+  int max_iterations = 100;  // a fifth as many first, then as many again from another start
   double tolerance = 1e-12;  // of a cell's imbalance, relative to the fluid in the fracture; not below round-off
 };
 
