@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <limits>
 #include <new>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "run.hpp"
 #include "scene/check.hpp"
 #include "scene/keys.hpp"
+#include "scene/spelling.hpp"
 #include "scene/toml_reader.hpp"
 
 namespace {
@@ -30,7 +32,8 @@ struct Arguments {
 };
 
 int report(const std::vector<std::string>& errors) {
-  for (const std::string& error : errors) fmt::print(stderr, "{}\n", error);
+  constexpr std::size_t longest = 2000;  // of a path that no system takes, or of an argument
+  for (const std::string& error : errors) fmt::print(stderr, "{}\n", strata::shortened(error, longest));
   return errors.empty() ? done : bad_input;
 }
 
@@ -45,7 +48,8 @@ int run(Arguments arguments) {
 
 int resume(const Arguments& arguments) {
   const std::filesystem::path dir = arguments.file;
-  if (std::filesystem::exists(dir / "scene.toml")) return strata::resume_run(dir, arguments.options);
+  std::error_code error;
+  if (std::filesystem::exists(dir / "scene.toml", error)) return strata::resume_run(dir, arguments.options);
   return report({dir.string() + ": this is not the folder of a run; it holds no scene.toml."});
 }
 
@@ -86,7 +90,10 @@ int parse_and_do(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? done : bad_input;
+    std::ostringstream out, wrong;
+    const int status = app.exit(error, out, wrong);
+    fmt::print("{}", out.str());
+    return status == 0 ? done : report({wrong.str().substr(0, wrong.str().find_last_not_of('\n') + 1)});
   }
   if (run_command->parsed()) return run(arguments);
   if (check_command->parsed()) return report(strata::check(arguments.files));

@@ -18,6 +18,8 @@
 #include "advance_quasistatic.hpp"
 #include "advance_total.hpp"
 #include "initialise.hpp"
+#include "output/changed_scene.hpp"
+#include "output/closing_lines.hpp"
 #include "output/progress.hpp"
 #include "output/recorder.hpp"
 #include "output/summary.hpp"
@@ -216,10 +218,19 @@ Outcome march(Run& run, double checkpoint_every_s, Progress& progress) {
       save_good_state(run);
       last_checkpoint = Clock::now();
     }
-    if (stop) return {interrupted, "interrupted; `strata resume` goes on from here"};
+    if (stop) {
+      complete_fields(run);  // for what is said of them
+      return {interrupted, ""};
+    }
     step_and_record(run, interval);
     progress.show(run.scene, run.state);
   }
+}
+
+// The command by which a run goes on, and from where.
+std::string resume_text(const Run& run, const RunFolder& folder) {
+  return fmt::format("`strata resume {}` goes on from {}", folder.path.string(),
+                     run.saved_step > 0 ? fmt::format("step {}", run.saved_step) : "the start");
 }
 
 // The run to its end or its failure, with the summary.
@@ -239,10 +250,14 @@ Outcome run_to_end(Run& run, const RunFolder& folder, const RunOptions& options,
     run.state = run.good;
     run.recorder.checkpoint(run.scene, run.good, run.good_mark);
   }
-  if (outcome.exit == interrupted) return outcome;
+  record.wall_s = seconds_since(start);
+  if (outcome.exit == interrupted) {
+    record.status = "interrupted";
+    record.reason = outcome.reason = resume_text(run, folder);
+    return outcome;
+  }
   run.recorder.finish();
   record.reason = outcome.reason;
-  record.wall_s = seconds_since(start);
   record.particle_steps = run.particle_steps;
   write_summary(folder.summary(), run.scene, run.state, record);
   return outcome;
@@ -265,11 +280,8 @@ std::string after_output_failure(const OutputFailure& failure, const Run& run, c
     return fmt::format("{} Its folder {} is gone. Put it back and `strata resume` it, or run the scene again.", where,
                        folder.path.string());
   }
-  const std::string from = run.saved_step > 0 ? fmt::format("step {}", run.saved_step) : "the start";
-  return fmt::format(
-      "{} What was written before is whole: once the folder can be written, `strata resume {}` goes on "
-      "from {}.",
-      where, folder.path.string(), from);
+  return fmt::format("{} What was written before is whole: once the folder can be written, {}.", where,
+                     resume_text(run, folder));
 }
 
 int run_from(Run run, const RunFolder& folder, const RunOptions& options, Clock::time_point start) {
@@ -280,7 +292,11 @@ int run_from(Run run, const RunFolder& folder, const RunOptions& options, Clock:
   } catch (const OutputFailure& failure) {
     outcome = {bad_input, after_output_failure(failure, run, folder)};
   }
-  if (outcome.exit != done) fmt::print(stderr, "{}\n", outcome.reason);
+  if (!options.quiet && outcome.exit != bad_input) {
+    fmt::print(stderr, "{}", closing_lines(run.scene, run.state, record, folder.path));
+  } else if (outcome.exit != done) {
+    fmt::print(stderr, "{}\n", outcome.exit == interrupted ? "interrupted; " + outcome.reason : outcome.reason);
+  }
   return outcome.exit;
 }
 
@@ -360,7 +376,16 @@ int resume_in(const RunFolder& folder, const RunOptions& options, Clock::time_po
     return bad_input;
   }
   const Scene& scene = *read.scene;
-  if (std::filesystem::exists(folder.summary())) return done;
+  require_unchanged_scene(folder, scene);
+  if (std::filesystem::exists(folder.summary())) {
+    if (!options.quiet) fmt::print(stderr, "{}\n", how_it_ended(folder));
+    return done;
+  }
+  const std::string begun_by = made_with(folder.result()).version;
+  if (!begun_by.empty() && begun_by != version()) {
+    fmt::print(stderr, "{}: begun by strata {}, goes on with {}, whose digits may differ\n", folder.path.string(),
+               begun_by, version());
+  }
   set_up(scene, options);
   std::optional<Checkpoint> checkpoint;
   std::optional<Recorder> recorder;

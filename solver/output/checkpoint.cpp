@@ -245,7 +245,12 @@ Checkpoint load_checkpoint(const std::filesystem::path& file, const Scene& scene
       refuse(file, fmt::format("has checkpoint format {}, this version reads {}", version, format_version));
     }
     header(hash, size, sum);
-    if (hash != scene_hash(scene)) refuse(file, "belongs to another scene");
+    if (hash != scene_hash(scene)) {
+      throw OutputFailure(
+          fmt::format("{}: belongs to another scene than scene.toml beside it, or to a version of strata with other "
+                      "keys. Put scene.toml back as it was, use that version, or run the scene anew with --replace.",
+                      file.string()));
+    }
     if (header.rest.size() != size || checksum(header.rest) != sum)
       refuse(file, "is torn: its content is not complete");
     header(checkpoint.mark, checkpoint.state);

@@ -29,7 +29,7 @@ std::uint64_t scene_hash(const Scene& scene);
 void save_checkpoint(const std::filesystem::path& file, const Scene& scene, const State& state, const OutputMark& mark);
 
 /// Reads a checkpoint back to the same digits. Throws std::runtime_error, saying which, where `file` is missing, is no
-/// checkpoint, is of another format or another scene, or is torn.
+/// checkpoint, is of another format or torn, OutputFailure where it is of another scene.
 Checkpoint load_checkpoint(const std::filesystem::path& file, const Scene& scene);
 
 }  // namespace strata

@@ -14,6 +14,7 @@
 #include "output/file_change.hpp"
 #include "output/hdf5_io.hpp"
 #include "output/run_folder.hpp"
+#include "output/summary.hpp"
 
 namespace strata {
 
@@ -208,6 +209,16 @@ Stress total_stress(const std::vector<Elasticity>& rocks, const Particles& parti
          stress_of(rock, particles.g_xx[p], particles.g_xy[p], particles.g_yx[p], particles.g_yy[p]);
 }
 
+MadeWith made_with(const std::filesystem::path& file) {
+  try {
+    hdf5::finish_change(file);
+    const hdf5::Handle result = hdf5::open_file(file, false);
+    return {hdf5::text_attribute(result.id(), ".", "scene"), hdf5::text_attribute(result.id(), ".", "version")};
+  } catch (const std::runtime_error&) {
+    return {};
+  }
+}
+
 ResultFile::ResultFile(const std::filesystem::path& file) : file_(file) {
   hdf5::make_file(file);
   change_file(file, [&](hdf5::Id root) {
@@ -251,6 +262,10 @@ void ResultFile::write_output(const Scene& scene, const State& state) {
       {state.time, state.particles.size(), state.has_fracture ? state.fracture().vertices.size() : std::size_t{0}});
   ParticleFields fields;
   change_file(file_, [&](hdf5::Id root) {
+    if (outputs_.empty()) {
+      hdf5::set_attribute(root, ".", "scene", scene.resolved_toml);
+      hdf5::set_attribute(root, ".", "version", version());
+    }
     const std::string before = outputs_.empty() ? "" : "/particles/" + number_of(outputs_.size() - 1);
     fields = write_particles(hdf5::group(root, "particles/" + number).id(), scene, state, last_, before, packer_);
     if (state.has_fracture) write_fracture(hdf5::group(root, "fracture/" + number).id(), scene, state);

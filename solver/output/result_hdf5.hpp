@@ -1,5 +1,6 @@
 // result.h5: the fields of a run at its output times, and result.xdmf, through which ParaView reads them.
 //
+//   attributes scene, version    what the run was made with: the resolved scene, the version of strata that began it
 //   /times                       time of each output (s)
 //   /history/<column>            the columns of history.csv
 //   /fracture/00000/...          at the fracture's vertices: x_m, y_m, arc_m, opening_m, slip_m, pressure_Pa,
@@ -32,6 +33,15 @@ namespace strata {
 /// Total stress of particle p (Pa, tension positive): in-situ stress and, in plane strain, that of the displacement
 /// gradient; rocks: in the order of the scene. Throws nothing.
 Stress total_stress(const std::vector<Elasticity>& rocks, const Particles& particles, std::size_t p);
+
+// What a run was made with and by; empty texts where it has no output yet.
+struct MadeWith {
+  std::string scene;    // resolved
+  std::string version;  // of strata
+};
+
+/// What result.h5 says of the run that it is of; throws nothing but std::bad_alloc.
+MadeWith made_with(const std::filesystem::path& file);
 
 // The bytes of fields of particles that seldom change, by their names.
 using ParticleFields = std::map<std::string, std::vector<std::byte>>;

@@ -13,6 +13,8 @@
 #include <iterator>
 #include <system_error>
 
+#include "scene/spelling.hpp"
+
 namespace strata {
 
 namespace {
@@ -80,7 +82,8 @@ FolderLock::~FolderLock() {
 FolderLock make_run_folder(const std::filesystem::path& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);
-  if (error) throw OutputFailure(fmt::format("{}: cannot be made: {}", path.string(), error.message()));
+  if (error)
+    throw OutputFailure(fmt::format("{}: cannot be made: {}", shortened(path.string(), 1000), error.message()));
   if (!std::filesystem::is_directory(path)) throw OutputFailure(fmt::format("{}: is not a folder", path.string()));
   return FolderLock(path);
 }

@@ -32,8 +32,10 @@ bool check_table_name(const std::string& path, const Where& where, Faults& fault
   if (path.find('.') == std::string::npos || (!path.starts_with("rock.") && !path.starts_with("interface.")))
     return true;
   const std::string_view name = table_name(path);
-  if (!is_plain_name(name)) {
-    faults.add(where, fmt::format("{}: a name is made of letters, digits, _ and -.", path));
+  constexpr std::size_t longest = 64;  // so that it can be read in messages and figures
+  if (!is_plain_name(name) || name.size() > longest) {
+    faults.add(where,
+               fmt::format("{}: a name is made of letters, digits, _ and -, at most {} of them.", path, longest));
     return false;
   }
   if (path.starts_with("interface.") && name == "perfect") {
@@ -47,6 +49,10 @@ std::string not_a_table_message(const std::string& path, const toml::node& value
   if (path.starts_with("rock.") || path.starts_with("interface.")) {
     const std::string table = path.substr(0, path.find('.'));
     return fmt::format("{} = {} is not a table. Give each {} a name: [{}.NAME].", path, as_typed(value), table, table);
+  }
+  if (value.is_array_of_tables()) {
+    return fmt::format("{} = {} is a list of tables, but a scene has one. Write [{}] once.", path, as_typed(value),
+                       path);
   }
   return fmt::format("{} = {} is not a table. It has the keys {}.", path, as_typed(value),
                      fmt::join(names_in_table(path), ", "));
@@ -68,8 +74,7 @@ std::string as_typed(const toml::node& value) {
   std::string text = out.str();
   std::ranges::replace(text, '\n', ' ');
   constexpr std::size_t longest = 60;  // what fits in a line beside the rest of a message
-  if (text.size() > longest) text = text.substr(0, longest) + "...";
-  return text;
+  return shortened(text, longest);
 }
 
 void flatten_value(const std::string& path, const toml::node& value, const Where& where, const Origin& origin,
@@ -88,7 +93,8 @@ void flatten_value(const std::string& path, const toml::node& value, const Where
   if (const Key* key = find_key(path)) {
     const auto earlier = entries.values.find(path);
     if (earlier != entries.values.end() && origin.rank != 2) {
-      faults.add(where, fmt::format("{} is given twice; first at {}.", path, earlier->second.where.text));
+      faults.add(where,
+                 fmt::format("{} is given twice; first at line {}. Remove one.", path, earlier->second.where.line));
       return;
     }
     Given given{key, &value, origin, where, true};
@@ -103,6 +109,9 @@ void flatten_value(const std::string& path, const toml::node& value, const Where
     flatten(*inner, path, origin, {}, dotted, entries, faults);
   } else {
     faults.add(where, not_a_table_message(path, value));
+    entries.tables.try_emplace(path, where);  // it was given, if not well
+    const toml::array* list = value.is_array_of_tables() ? value.as_array() : nullptr;
+    if (list != nullptr) flatten(*list->front().as_table(), path, origin, {}, dotted, entries, faults);
   }
 }
 

@@ -1,9 +1,48 @@
 #include "scene/faults.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <tuple>
 
+#include "scene/spelling.hpp"
+
 namespace strata {
+namespace {
+
+// Control characters as TOML writes them, so that no key or value moves the cursor of a terminal.
+std::string with_visible_controls(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code == 0x7f) {
+      out += fmt::format("\\u{:04X}", code);
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+// Every message is of one line that a screen holds, however long the keys and values in it are.
+std::string bounded(std::string_view text) {
+  constexpr std::size_t longest_word = 100, longest_text = 1000;
+  constexpr std::string_view marks = ".,:;";  // behind a word
+  std::string out;
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    const std::size_t end = word.find_last_not_of(marks) + 1;
+    out += shortened(word.substr(0, end), longest_word);
+    out += word.substr(end);
+    text.remove_prefix(word.size());
+    const std::size_t next = std::min(text.find_first_not_of(' '), text.size());
+    out += text.substr(0, next);
+    text.remove_prefix(next);
+  }
+  return shortened(with_visible_controls(out), longest_text);
+}
+
+}  // namespace
 
 std::vector<std::string> as_lines(const Faults& faults) {
   std::vector<Fault> sorted = faults.list;
@@ -13,9 +52,11 @@ std::vector<std::string> as_lines(const Faults& faults) {
     return std::tie(a_set, a.where.line, a.where.column) < std::tie(b_set, b.where.line, b.where.column);
   });
   std::vector<std::string> lines;
+  std::set<std::string> seen;
   for (const Fault& fault : sorted) {
-    std::string line = fault.where.text + ": " + fault.text;
-    if (std::ranges::find(lines, line) == lines.end()) lines.push_back(std::move(line));
+    const bool from_file = fault.where.rank < 2;  // whose name is needed whole
+    std::string line = (from_file ? fault.where.text : bounded(fault.where.text)) + ": " + bounded(fault.text);
+    if (seen.insert(line).second) lines.push_back(std::move(line));
   }
   return lines;
 }

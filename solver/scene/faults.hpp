@@ -28,7 +28,9 @@ struct Faults {
   void add(const Where& where, std::string text) { list.push_back({where, std::move(text)}); }
 };
 
-/// The faults as lines "where: what", in the order of the input and each once. Throws nothing but std::bad_alloc.
+/// The faults as lines "where: what", in the order of the input and each once. Words of more than 100 bytes and texts
+/// of more than 1000 are shortened in the middle, control characters are written out. Throws nothing but
+/// std::bad_alloc.
 std::vector<std::string> as_lines(const Faults& faults);
 
 // Where each key of a scene ("domain.width_m"), each table ("domain") and each element of a list ("strata.layers[1]",

@@ -53,6 +53,8 @@ std::string message_of(const mu::Parser::exception_type& error, const std::strin
         "functions such as sin, exp, sqrt.{}",
         error.GetToken(), at, fmt::join(variables, ", "), meant(error.GetToken(), variables));
   }
+  if (error.GetCode() == mu::ecEXPRESSION_TOO_LONG)
+    return fmt::format("its {} characters are too many. Shorten it.", text.size());
   std::string what = error.GetMsg();
   what.resize(std::min({what.size(), what.find(" at position"), what.find_last_not_of('.') + 1}));
   return at >= 1 ? fmt::format("at character {}: {}.", at, what) : what + '.';

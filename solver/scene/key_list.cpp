@@ -61,6 +61,12 @@ Key formulas(std::string path, std::string unit, std::vector<std::string> variab
   return key;
 }
 
+Key points(std::string path, std::string unit, std::string help) {
+  Key key = other(std::move(path), KeyType::points, {}, std::move(help));
+  key.unit = std::move(unit);
+  return key;
+}
+
 Key required(Key key) {
   key.required = true;
   return key;
@@ -92,7 +98,7 @@ std::vector<Key> domain_keys() {
           "Width of the block; the origin is its lower left corner.")),
       required(number(
           "domain.height_m", "m", positive, +[](Scene& s, std::size_t) -> double& { return s.domain.height_m; },
-          "Height of the block.")),
+          "Height of the block.", "y is counted upwards from the block's lower edge.")),
       number(
           "domain.beyond_m", "m", not_negative, +[](Scene& s, std::size_t) -> double& { return s.domain.beyond_m; },
           "How far the rock goes on beyond the block's edges, but not below a symmetry line, in cells that grow by at "
@@ -211,7 +217,8 @@ std::vector<Key> strata_keys() {
           other("strata.layers", KeyType::layers, {}, "The layers in that order: [{rock, thickness_m}, ..., {rock}].")),
       required(other("strata.layers[].rock", KeyType::text, {}, "Name of a [rock.NAME] table.")),
       number("strata.layers[].thickness_m", "m", positive, {},
-             "Thickness; the last layer may leave it out and takes what remains."),
+             "Thickness; the last layer may leave it out and takes what remains.",
+             "Layers are stacked upwards from the block's lower edge (along = \"x\": from its left)."),
       other("strata.interfaces", KeyType::names, {},
             "A name between each two layers, [interface.NAME] or perfect; each on a grid line or at mid-cell. Left "
             "out: all perfect."),
@@ -220,8 +227,8 @@ std::vector<Key> strata_keys() {
 
 std::vector<Key> fracture_keys() {
   return {
-      required(other("fracture.path_m", KeyType::points, {},
-                     "Points of the initial fracture, [[x, y], ...]; one end on the symmetry line, or neither.")),
+      required(points("fracture.path_m", "m",
+                      "Points of the initial fracture, [[x, y], ...]; one end on the symmetry line, or neither.")),
       word(
           "fracture.growth",
           {as("J", Fracture::Growth::J), as("none", Fracture::Growth::none), as("energy", Fracture::Growth::energy)},
@@ -410,7 +417,7 @@ std::vector<Key> run_keys() {
       number(
           "stop.tip_y_m", "m", positive,
           +[](Scene& s, std::size_t) -> std::optional<double>& { return s.stop.tip_y_m; },
-          "Ends the run when a tip is as high."),
+          "Ends the run when a tip is as high.", "y is counted upwards from the block's lower edge."),
       number(
           "stop.inlet_Pa", "Pa", finite,
           +[](Scene& s, std::size_t) -> std::optional<double>& { return s.stop.inlet_Pa; },

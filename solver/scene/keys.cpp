@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/absent_keys.hpp"
 #include "scene/spelling.hpp"
 
 namespace strata {
@@ -120,12 +121,15 @@ std::vector<std::string> names_in_table(std::string_view path) {
 std::string unknown_key_message(std::string_view path) {
   const std::string table = parent(path);
   const std::vector<std::string> names = names_in_table(table);
-  std::string message = fmt::format("unknown key {}.", path);
-  if (const auto nearest = nearest_word(last_segment(path), names)) return message + " Did you mean " + *nearest + "?";
+  const std::string message = fmt::format("unknown key {}.", path);
+  if (const auto advice = advice_on_absent_key(path); !advice.empty()) return fmt::format("{}{}", message, advice);
+  const bool for_more = table.empty() || path.starts_with("fracture.path");  // of what there is one of
+  if (const auto nearest = nearest_word(last_segment(path), names))
+    return fmt::format("{} Did you mean {}?{}", message, *nearest, for_more ? note_on_table(path) : "");
   const std::string elsewhere = same_name_elsewhere(path);
   if (!elsewhere.empty()) return message + " Did you mean " + elsewhere + "?";
   if (table.empty()) return message + " At the top level there are " + joined(names) + ".";
-  return message + fmt::format(" [{}] has {}.", table, joined(names));
+  return message + fmt::format(" [{}] has {}.{}", table, joined(names), note_on_table(path));
 }
 
 std::string to_text(const Bounds& bounds) {

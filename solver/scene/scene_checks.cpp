@@ -96,6 +96,12 @@ std::string point_text(const Point& point) {
   return fmt::format("[{}, {}]", number_text(point[0]), number_text(point[1]));
 }
 
+// How y is counted, for those who count depths.
+std::string upwards(double height_m) {
+  return fmt::format(" y is counted upwards from the block's lower edge: a point d below its top has y = {} - d.",
+                     number_text(height_m));
+}
+
 void check_point(const Scene& scene, std::size_t k, const Where& where, Faults& faults) {
   const auto& path_m = scene.fracture->path_m;
   const Point& point = path_m[k];
@@ -104,8 +110,10 @@ void check_point(const Scene& scene, std::size_t k, const Where& where, Faults& 
   const std::string text = "fracture.path_m: the point " + point_text(point);
   const bool is_end = k == 0 || k + 1 == path_m.size();
   if (point[0] < 0.0 || point[0] > width_m || point[1] < 0.0 || point[1] > height_m) {
-    faults.add(where, fmt::format("{} is outside the block of {} m x {} m.", text, number_text(width_m),
-                                  number_text(height_m)));
+    const bool in_y = point[1] < 0.0 || point[1] > height_m;
+    faults.add(where, fmt::format("{} is outside the block of {} m x {} m.{}", text, number_text(width_m),
+                                  number_text(height_m),
+                                  in_y ? upwards(height_m) : " x is counted from the block's left edge."));
   } else if (point[0] <= 0.0 || point[0] >= width_m || point[1] >= height_m) {
     faults.add(where, text + " is on an edge. A fracture may end only on the symmetry line or inside the block.");
   } else if (point[1] <= 0.0 && scene.domain.bottom != Edge::symmetry) {
@@ -135,7 +143,7 @@ void check_shape(const Scene& scene, const Positions& positions, Faults& faults)
         fmt::format("fracture.path_m meets itself: the segments from {} and from {} cross, touch or double back.",
                     point_text(path_m[contact->first]), point_text(path_m[contact->second])));
   }
-  const bool both = path_m.front()[1] <= 0.0 && path_m.back()[1] <= 0.0;
+  const bool both = path_m.front()[1] == 0.0 && path_m.back()[1] == 0.0;
   if (both && scene.domain.bottom == Edge::symmetry) {
     faults.add(where_is(positions, "fracture.path_m"),
                "fracture.path_m has both ends on the symmetry line; one may be there. A fracture that cuts out a piece "
@@ -184,8 +192,8 @@ void check_stop_values(const Scene& scene, const Positions& positions, Faults& f
   const double height_m = scene.domain.height_m;
   if (usable(positions, "stop.tip_y_m") && usable(positions, "domain.height_m") && *scene.stop.tip_y_m >= height_m) {
     faults.add(where_is(positions, "stop.tip_y_m"),
-               fmt::format("stop.tip_y_m = {} is not below the top of the block at {} m.",
-                           number_text(*scene.stop.tip_y_m), number_text(height_m)));
+               fmt::format("stop.tip_y_m = {} is not below the top of the block at {} m.{}",
+                           number_text(*scene.stop.tip_y_m), number_text(height_m), upwards(height_m)));
   }
   if (usable(positions, "stop.tip_y_m") && usable(positions, "fracture.path_m")) {
     const double tip_m = std::max(scene.fracture->path_m.front()[1], scene.fracture->path_m.back()[1]);

@@ -4,6 +4,8 @@
 #include <cctype>
 #include <cstddef>
 
+#include <fmt/format.h>
+
 namespace strata {
 namespace {
 
@@ -38,9 +40,13 @@ double edit_distance(std::string_view a, std::string_view b) {
 }
 
 std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string>& candidates) {
+  // A slip in a longer word is not worth a table of its size squared.
+  constexpr std::size_t longest = 200;
+  if (word.size() > longest) return std::nullopt;
   std::optional<std::string> nearest;
   double nearest_distance = 0.0;
   for (const std::string& candidate : candidates) {
+    if (candidate.size() > longest) continue;
     // A third of the letters wrong is still a slip of the fingers; more is another word.
     const double allowed = std::max(1.0, static_cast<double>(std::max(word.size(), candidate.size())) / 3.0);
     double distance = edit_distance(word, candidate);
@@ -55,6 +61,18 @@ std::optional<std::string> nearest_word(std::string_view word, const std::vector
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
   const auto nearest = nearest_word(word, candidates);
   return nearest ? " Did you mean " + *nearest + "?" : std::string();
+}
+
+std::string shortened(std::string_view text, std::size_t longest) {
+  if (text.size() <= longest) return std::string(text);
+  const auto is_inside = [&](std::size_t at) {
+    return at < text.size() && (text[at] & 0xC0) == 0x80;
+  };  // a UTF-8 letter
+  std::size_t head = longest / 2, tail = text.size() - longest / 3;
+  while (head > 0 && is_inside(head)) --head;
+  while (is_inside(tail)) ++tail;
+  const auto letters = std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; });
+  return fmt::format("{}...{} ({} characters)", text.substr(0, head), text.substr(tail), letters);
 }
 
 }  // namespace strata

@@ -1,6 +1,7 @@
 // Which known word was meant by one that is not known.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,5 +21,9 @@ std::optional<std::string> nearest_word(std::string_view word, const std::vector
 /// " Did you mean X?", or an empty text where no candidate is near; to be put behind an error.
 /// word, candidates: as in nearest_word. Throws nothing but std::bad_alloc.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
+
+/// `text`, or where it has more than `longest` bytes its beginning and its end: "abc...xyz (100000 characters)".
+/// Throws nothing but std::bad_alloc.
+std::string shortened(std::string_view text, std::size_t longest);
 
 }  // namespace strata

@@ -14,26 +14,10 @@
 #include "scene/resolved.hpp"
 #include "scene/scene_checks.hpp"
 #include "scene/spelling.hpp"
+#include "scene/syntax.hpp"
 
 namespace strata {
 namespace {
-
-// A parsed text, or why it is not TOML.
-struct Parsed {
-  toml::table table;
-  std::string error;
-};
-
-Parsed parse(std::string_view text, const std::string& name) {
-  Parsed parsed;
-  try {
-    parsed.table = toml::parse(text, name);
-  } catch (const toml::parse_error& error) {
-    const auto place = error.source().begin;
-    parsed.error = fmt::format("{}:{}:{}: this is not TOML: {}.", name, place.line, place.column, error.description());
-  }
-  return parsed;
-}
 
 // A file's text, or why there is none.
 struct FileText {
@@ -42,13 +26,13 @@ struct FileText {
 };
 
 FileText file_text(const std::filesystem::path& file) {
+  const std::string name = shortened(file.string(), 1000);
   std::error_code code;
-  if (!std::filesystem::exists(file, code)) return {"", file.string() + ": there is no such file. Check the path."};
-  if (std::filesystem::is_directory(file, code)) {
-    return {"", file.string() + ": this is a folder. Give the path of a scene file."};
-  }
+  if (!std::filesystem::exists(file, code)) return {"", name + ": there is no such file. Check the path."};
+  if (std::filesystem::is_directory(file, code))
+    return {"", name + ": this is a folder. Give the path of a scene file."};
   std::ifstream in(file, std::ios::binary);
-  if (!in) return {"", file.string() + ": the file cannot be read. Check its permissions."};
+  if (!in) return {"", name + ": the file cannot be read. Check its permissions."};
   std::ostringstream text;
   text << in.rdbuf();
   return {text.str(), ""};
@@ -61,7 +45,8 @@ struct Variant {
 };
 
 bool is_folder_name(std::string_view name) {
-  return !name.empty() && name[0] != '.' && std::ranges::all_of(name, [](char c) {
+  constexpr std::size_t longest = 100;  // systems take 255
+  return !name.empty() && name.size() <= longest && name[0] != '.' && std::ranges::all_of(name, [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
            std::string_view("_-.+").find(c) != std::string_view::npos;
   });
@@ -82,7 +67,7 @@ std::vector<Variant> read_variants(const toml::table& root, const std::string& f
     if (!is_folder_name(variant.name)) {
       faults.add(variant.where,
                  fmt::format("variants.\"{}\": a variant names a folder, so it is made of letters, digits, _ - + "
-                             "and a dot that is not the first.",
+                             "and a dot that is not the first, at most 100 of them.",
                              variant.name));
     } else if (!value.is_table()) {
       faults.add(variant.where,
@@ -122,18 +107,23 @@ void read_setting(const std::string& setting, std::vector<std::unique_ptr<toml::
     return;
   }
   const std::string value = trimmed(std::string_view(setting).substr(equals + 1));
-  Parsed parsed = parse("value = " + value, origin.name);
-  if (!parsed.error.empty() && is_bare_word(value)) {
-    parsed = {};
-    parsed.table.insert("value", value);
-  }
-  if (!parsed.error.empty() || parsed.table.size() != 1) {
-    faults.add(where, fmt::format("{} is neither TOML nor a bare word. Text in a list or with spaces needs quotes: "
-                                  "'[\"weak\"]'.",
-                                  value.empty() ? "an empty value" : value));
+  Faults of_syntax;
+  toml::table table = parse_toml("value = " + value, origin, of_syntax).table;
+  if (!of_syntax.list.empty() && is_bare_word(value)) {
+    table = toml::table{{"value", value}};
+  } else if (!of_syntax.list.empty() || table.size() != 1) {
+    std::string advice = advice_on_value(value, find_key(path));
+    for (const Fault& fault : of_syntax.list) {
+      const std::size_t end = fault.text.find("this is not TOML. ");
+      if (advice.empty() && end != std::string::npos) advice = ' ' + fault.text.substr(end == 0 ? 18 : 0);
+    }
+    if (advice.empty() || advice.find("Text stands in quotes") != std::string::npos)
+      advice = " Text in a list or with spaces needs quotes: '[\"weak\"]'.";
+    faults.add(where, fmt::format("{} is neither TOML nor a bare word.{}",
+                                  value.empty() ? "an empty value" : shortened(value, 60), advice));
     return;
   }
-  tables.push_back(std::make_unique<toml::table>(std::move(parsed.table)));
+  tables.push_back(std::make_unique<toml::table>(std::move(table)));
   flatten_value(path, *tables.back()->get("value"), where, origin, true, entries, faults);
 }
 
@@ -166,9 +156,10 @@ void lay_variant(const std::string& name, const std::vector<Variant>& variants, 
 
 ReadResult read_scene_text(std::string_view text, const std::string& file_name, const std::string& variant,
                            const std::vector<std::string>& set) {
-  const Parsed parsed = parse(text, file_name);
-  if (!parsed.error.empty()) return {std::nullopt, {parsed.error}};
   const Origin origin{file_name, 0};
+  Faults of_syntax;
+  const Parsed parsed = parse_toml(text, origin, of_syntax);
+  if (!parsed.whole) return {std::nullopt, as_lines(of_syntax)};
   Faults faults;
   Entries entries;
   flatten(parsed.table, "", origin, {"variants", "claim"}, false, entries, faults);
@@ -185,6 +176,9 @@ ReadResult read_scene_text(std::string_view text, const std::string& file_name, 
   if (scene.name.empty()) scene.name = std::filesystem::path(file_name).stem().string();
   if (!variant.empty()) scene.variant = variant;
   check_scene(scene, positions, faults);
+  // Of a line that is no TOML enough has been said.
+  std::erase_if(faults.list, [&](const Fault& fault) { return parsed.mended.contains(fault.where.line); });
+  faults.list.insert(faults.list.end(), of_syntax.list.begin(), of_syntax.list.end());
   if (!faults.list.empty()) return {std::nullopt, as_lines(faults)};
   start_at_symmetry_line(scene);
   scene.resolved_toml = resolved_toml(scene, claims_text(parsed.table));
@@ -199,9 +193,9 @@ ReadResult read_scene(const std::filesystem::path& file, const std::string& vari
 }
 
 VariantList list_variants_text(std::string_view text, const std::string& file_name) {
-  const Parsed parsed = parse(text, file_name);
-  if (!parsed.error.empty()) return {{}, {parsed.error}};
   Faults faults;
+  const Parsed parsed = parse_toml(text, {file_name, 0}, faults);
+  if (!faults.list.empty()) return {{}, as_lines(faults)};
   VariantList list;
   for (const Variant& variant : read_variants(parsed.table, file_name, faults)) list.names.push_back(variant.name);
   return list;

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/absent_keys.hpp"
 #include "scene/entries.hpp"
 #include "scene/formula.hpp"
 #include "scene/spelling.hpp"
+#include "scene/typed_number.hpp"
 
 namespace strata {
 namespace {
@@ -26,13 +28,19 @@ bool fault(Faults& faults, const Where& where, std::string text) {
   return false;
 }
 
+// What to write in place of a value that is no number.
+std::string advice_on_no_number(const std::string& path, const Key& key, const toml::node& value) {
+  const auto* text = value.as_string();
+  const auto typed = text != nullptr ? advice_on_number(text->get(), &key.unit) : std::nullopt;
+  const std::string usual = text != nullptr ? " Write a number without quotes." : " Write a number.";
+  return typed.value_or(usual) + std::string(path.starts_with("in_situ.") ? note_on_table(path) : "");
+}
+
 bool check_number(const std::string& path, const Key& key, const toml::node& value, const Where& where,
                   Faults& faults) {
   const std::string typed = path + " = " + as_typed(value);
-  if (!value.is_number()) {
-    const std::string hint = value.is_string() ? " Write a number without quotes." : " Write a number.";
-    return fault(faults, where, typed + " is not a number." + hint);
-  }
+  if (!value.is_number())
+    return fault(faults, where, typed + " is not a number." + advice_on_no_number(path, key, value));
   const double number =
       value.is_integer() ? static_cast<double>(value.as_integer()->get()) : value.as_floating_point()->get();
   if (!std::isfinite(number)) return fault(faults, where, typed + " is not finite. Write a finite number.");
@@ -78,8 +86,9 @@ bool check_layer(const std::string& path, const toml::table& layer, bool is_last
     const Where where = where_of(origin, name.source());
     const Key* key = find_key("strata.layers[]." + text);
     if (key == nullptr) {
-      faults.add(where, fmt::format("unknown key {}.{}. A layer has rock and thickness_m.{}", path, text,
-                                    did_you_mean(text, names_in_table("strata.layers[]"))));
+      faults.add(where, fmt::format("unknown key {}.{}. A layer has rock and thickness_m.{}{}", path, text,
+                                    did_you_mean(text, names_in_table("strata.layers[]")),
+                                    advice_on_absent_key(path + '.' + text)));
       sound = false;
     } else if (!check_value(path + '.' + text, {key, &value, origin, where, true}, faults)) {
       sound = false;
@@ -126,9 +135,28 @@ bool check_names(const std::string& path, const Given& given, Faults& faults) {
   for (std::size_t k = 0; k < names->size(); ++k) {
     const toml::node& name = (*names)[k];
     const Where where = where_of(given.origin, name.source());
-    sound = check_text(fmt::format("{}[{}]", path, k), name, where, faults) && sound;
+    if (name.is_string()) continue;
+    sound = fault(faults, where,
+                  fmt::format("{}[{}] = {} is not a name. Write \"NAME\".{}", path, k, as_typed(name),
+                              name.is_table() ? " In this version an interface has one law from edge to edge." : ""));
   }
   return sound;
+}
+
+// What to write where a path is not one line of points: several of them, brackets too many, or none around a point.
+std::optional<std::string> advice_on_lines(const toml::array& points) {
+  const auto is_line = [](const toml::node& node) {
+    const toml::array* line = node.as_array();
+    return line != nullptr && !line->empty() && line->front().is_array();
+  };
+  const auto lines = std::ranges::count_if(points, is_line);
+  if (lines > 1)
+    return fmt::format(" has {} lines of points, but a scene has one fracture. Write one line, [[x, y], [x, y]].",
+                       lines);
+  if (lines == 1) return " has brackets too many. Write one line of points, [[x, y], [x, y]].";
+  if (!points.empty() && points.is_homogeneous() && points.front().is_number())
+    return " has no brackets around its points. Write [[x, y], [x, y]].";
+  return std::nullopt;
 }
 
 bool check_points(const std::string& path, const Given& given, Faults& faults) {
@@ -137,11 +165,15 @@ bool check_points(const std::string& path, const Given& given, Faults& faults) {
     return fault(faults, given.where,
                  fmt::format("{} = {} is not a list of points. Write [[x, y], [x, y]].", path, as_typed(*given.value)));
   }
+  if (const auto advice = advice_on_lines(*points))
+    return fault(faults, given.where, fmt::format("{} = {}{}", path, as_typed(*given.value), *advice));
   if (points->size() < 2) {
-    return fault(faults, given.where, fmt::format("{} = {} has fewer than 2 points.", path, as_typed(*given.value)));
+    return fault(faults, given.where,
+                 fmt::format("{} = {} has fewer than 2 points. Write [[x, y], [x, y]].", path, as_typed(*given.value)));
   }
   Key coordinate;
   coordinate.type = KeyType::number;
+  coordinate.unit = given.key->unit;
   coordinate.bounds = {-HUGE_VAL, HUGE_VAL, true, true};  // inside the block: checked where the block is known
   bool sound = true;
   for (std::size_t k = 0; k < points->size(); ++k) {
@@ -150,7 +182,10 @@ bool check_points(const std::string& path, const Given& given, Faults& faults) {
     const std::string name = fmt::format("{}[{}]", path, k);
     const toml::array* point = element.as_array();
     if (point == nullptr || point->size() != 2) {
-      sound = fault(faults, where, fmt::format("{} = {} is not a point. Write [x, y].", name, as_typed(element)));
+      const bool longer = point != nullptr && point->size() > 2;
+      sound = fault(faults, where,
+                    fmt::format("{} = {} is not a point. Write [x, y]{}.", name, as_typed(element),
+                                longer ? ": two numbers, whose decimal sign is a point" : ""));
       continue;
     }
     for (std::size_t c = 0; c < 2; ++c) {
