@@ -16,18 +16,19 @@ struct Dice {
   bool chance(double share) { return uniform(0.0, 1.0) < share; }
 };
 
+// Numbers are drawn one a statement: compilers evaluate arguments of a call in orders of their own.
 inline InterfaceLaw random_law(Dice& dice) {
-  switch (dice.below(4)) {
-    case 0:
-      return friction_law(dice.chance(0.2) ? 0.0 : dice.uniform(0.05, 1.2));
-    case 1:
-      return weak_law(dice.log_uniform(1e3, 3e6), dice.log_uniform(1e3, 3e6),
-                      dice.chance(0.5) ? 0.0 : dice.uniform(0.05, 0.8));
-    case 2:
-      return soft_law(dice.log_uniform(1e3, 1e12), dice.log_uniform(1e3, 1e12));
-    default:
-      return soft_law(dice.log_uniform(1e3, 1e12), dice.log_uniform(1e3, 1e12), InterfaceLaw::Compression::spring);
+  const int kind = dice.below(4);
+  if (kind == 0) return friction_law(dice.chance(0.2) ? 0.0 : dice.uniform(0.05, 1.2));
+  if (kind == 1) {
+    const double residual = dice.chance(0.5) ? 0.0 : dice.uniform(0.05, 0.8);
+    const double N_c = dice.log_uniform(1e3, 3e6);
+    const double S_c = dice.log_uniform(1e3, 3e6);
+    return weak_law(S_c, N_c, residual);
   }
+  const double D_t = dice.log_uniform(1e3, 1e12);
+  const double D_n = dice.log_uniform(1e3, 1e12);
+  return soft_law(D_n, D_t, kind == 2 ? InterfaceLaw::Compression::contact : InterfaceLaw::Compression::spring);
 }
 
 // A crack from the symmetric bottom, or inside: upright, level or at an angle, on grid lines, at mid-cell or anywhere.
@@ -72,7 +73,8 @@ inline Scene random_scene(unsigned seed) {
   const int interfaces = dice.below(3);
   for (int k = 0; k < interfaces; ++k) {
     const double at = interfaces == 1 ? 0.5 * (n + dice.below(5) - 2) : (k == 0 ? 2.5 : n - 3.0);
-    add_interface(scene, random_law(dice), at, static_cast<std::size_t>(dice.below(2)));
+    const auto rock = static_cast<std::size_t>(dice.below(2));
+    add_interface(scene, random_law(dice), at, rock);
   }
   if (dice.chance(0.9)) random_crack(dice, n, scene);
   if (!scene.fracture) return scene;

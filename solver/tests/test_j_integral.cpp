@@ -380,7 +380,7 @@ TEST_CASE("rules of tips give what is measured") {
         CHECK(is.turn == Approx(was.turn).margin(1e-11));
         CHECK(is.kink == Approx(was.kink).margin(1e-11));
         CHECK(is.ring_m == was.ring_m);
-        CHECK(is.at_interface == was.at_interface);
+        CHECK(is.near == was.near);
       }
     }
   }
