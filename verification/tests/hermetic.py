@@ -58,6 +58,7 @@ def seal() -> None:
     home.mkdir(exist_ok=True)
     os.environ |= {
         "STRATA_RUNS": own, "HOME": str(home), "MPLCONFIGDIR": str(home), "MPLBACKEND": "Agg", "LC_ALL": "C.UTF-8", "COLUMNS": "200",
+        "OMP_NUM_THREADS": "1",  # of runs that do not say how many: tests stand side by side
     }  # fmt: skip
     if not worker:
         atexit.register(shutil.rmtree, own, ignore_errors=True)

@@ -58,4 +58,4 @@ def test_the_environment_is_that_of_no_user() -> None:
     own = {name for name in dirty if clean[name] != dirty[name]}
     assert clean.keys() == dirty.keys() and own == {"STRATA_RUNS", "HOME", "MPLCONFIGDIR"}, own
     assert not any(Path(dirty[name]).is_relative_to(ROOT) for name in own)
-    assert {"COLUMNS", "LC_ALL", "MPLBACKEND"} <= clean.keys() and not any(name.startswith(("OMP", "PYTHON", "LANG")) for name in clean)
+    assert {"COLUMNS", "LC_ALL", "MPLBACKEND"} <= clean.keys() and not any(name.startswith(("OMP_P", "PYTHON", "LANG")) for name in clean)
