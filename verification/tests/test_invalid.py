@@ -26,7 +26,7 @@ def strata(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 def test_folder_is_not_empty() -> None:
     """At least as many mistakes are covered as there were when this was written."""
-    assert len(SCENES) >= 110
+    assert len(SCENES) >= 160
 
 
 @pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.stem)
@@ -110,6 +110,8 @@ def test_variants_prints_names_alone(tmp_path: Path) -> None:
         (["--set", "numerics.shape=gmp"], '--set numerics.shape=gmp: numerics.shape = "gmp" is not allowed'),
         (["--set", "numerics.cel_m=2"], "--set numerics.cel_m=2: unknown key numerics.cel_m. Did you mean cell_m?"),
         (["--set", "numerics.cell_m"], "--set numerics.cell_m: this is not key.path=value"),
+        (["--set", "rock.stiff.youngs_modulus_Pa=10,0e9"], "Write 10.0e9: the decimal sign is a point."),
+        (["--set", "rock.stiff.youngs_modulus_Pa=10 GPa"], "Write 10e9: the unit, Pa, stands in the key."),
         (["--set", "strata.interfaces=[weak]"], "[weak] is neither TOML nor a bare word"),
         (["--set", "numerics.cell_m=3"], "--set numerics.cell_m=3: numerics.cell_m = 3.0 does not divide the block"),
         (["--threads", "-1"], "threads"),
@@ -137,3 +139,45 @@ def test_keys_are_listed(tmp_path: Path) -> None:
     done = strata(tmp_path, "keys")
     assert done.returncode == 0
     assert "| `rock.NAME.poisson_ratio` |  | 0.2 | [0, 0.5) |" in done.stdout
+
+
+ENDLESS = "q" * 100_000
+
+
+@pytest.mark.parametrize(
+    ("text", "arguments"),
+    [
+        (f"{ENDLESS} = 1\n" + GOOD, []),
+        (GOOD.replace("10e9", ENDLESS), []),
+        (GOOD.replace("10e9", "1" * 100_000), []),
+        (GOOD.replace('"stiff"', f'"{ENDLESS}"'), []),
+        (GOOD.replace("rock.stiff", f"rock.{ENDLESS}"), []),
+        (GOOD.replace("width_m = 8", '"' + "a b " * 25_000 + '" = 8'), []),
+        (GOOD + "a" + ".a" * 100_000 + " = 1\n", []),
+        (GOOD + "[a" + ".a" * 100_000 + "]\n", []),
+        (GOOD + "x = " + "[" * 100_000 + "\n", []),
+        (GOOD, ["--variant", ENDLESS]),
+        (GOOD, ["--set", ENDLESS]),
+        (GOOD, ["--set", f"{ENDLESS}=1"]),
+        (GOOD, ["--set", f"numerics.cell_m={ENDLESS}"]),
+        (GOOD, ["--out", ENDLESS]),
+        (GOOD, ["--threads", ENDLESS]),
+        (GOOD, [ENDLESS]),
+    ],
+    ids=range(16),
+)
+def test_no_message_is_endless(text: str, arguments: list[str], tmp_path: Path) -> None:
+    """Whatever is endless is refused with status 2 and lines of less than 2100 characters that a person can read."""
+    (tmp_path / "s.toml").write_text(text)
+    done = strata(tmp_path, "run", "s.toml", "--out", "X", *arguments) if "--out" not in arguments else strata(tmp_path, "run", "s.toml", *arguments)
+    assert done.returncode == 2, done.stderr[:3000]
+    assert 0 < len(done.stderr) < 10_000
+    assert all(len(line) < 2100 for line in done.stderr.splitlines())
+    assert "a bug" not in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["s.toml"]
+
+
+def test_resume_of_an_endless_name(tmp_path: Path) -> None:
+    """A name that no system takes is bad input, no bug."""
+    done = strata(tmp_path, "resume", ENDLESS)
+    assert done.returncode == 2 and "this is not the folder of a run" in done.stderr and len(done.stderr) < 2100
