@@ -126,7 +126,7 @@ void watch_forces(const Scene& scene, const std::vector<Elasticity>& rocks, cons
   }
   state.sums = kept;
   const double nothing = round_off(scene, state).stress * state.grid.h;  // of a cell's face
-  if (load != 0.0) note_largest(state.monitors.force_balance, left <= nothing ? 0.0 : left / load);
+  if (load > nothing || !(left <= nothing)) note_largest(state.monitors.force_balance, left / load);
 }
 
 void watch_deformation(State& state) {

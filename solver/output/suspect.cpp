@@ -16,10 +16,14 @@ namespace strata {
 
 namespace {
 
-// a/b where both are sums of the same kind; 0 where there is no more of a than `nothing`, its round-off.
-double share(double a, double b, double nothing) {
-  if (std::abs(a) <= nothing && !std::isnan(b)) return 0.0;
-  return b != 0.0 ? a / b : std::numeric_limits<double>::infinity();
+// A share a/b of sums of the same kind, of which `nothing` is round-off. With no more of a it marks nothing, whatever b
+// is; with no more of both it is 0.
+Watched share(const char* monitor, double a, double b, double nothing, std::optional<double> threshold,
+              const char* why) {
+  const bool little = std::abs(a) <= nothing;
+  if (little && std::abs(b) <= nothing) return {monitor, 0.0, threshold, why};
+  const double value = b != 0.0 ? a / b : std::numeric_limits<double>::infinity();
+  return {monitor, value, little ? std::nullopt : threshold, why};
 }
 
 // What a per cent of the energy stands for in results: K and openings go with its root, so half a per cent of them.
@@ -27,25 +31,26 @@ constexpr double energy_threshold = 0.01;
 
 void watch_energy(const Scene& scene, const State& state, std::vector<Watched>& out) {
   const Monitors& m = state.monitors;
-  const double nothing = round_off(scene, state).energy;
+  const RoundOff nothing = round_off(scene, state);
   const bool inertia = scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics;
   double open = m.largest_open_J;
   note_largest(open, std::abs(state.ledger.open()));
-  out.push_back({"energy_closure", share(open, state.ledger.largest, nothing), energy_threshold,
-                 "the energy ledger stayed open by more than 1 % of the largest energy exchanged"});
+  out.push_back(share("energy_closure", open, state.ledger.largest, nothing.work, energy_threshold,
+                      "the energy ledger stayed open by more than 1 % of the largest energy exchanged"));
   if (!inertia) return;
   // With a step beyond its limit modes grow that no work has fed, and contact that does not converge can feed them,
   // too; what the step and the transfer make shows as dissipation below zero.
-  out.push_back({"energy_made", share(m.largest_made_J, state.ledger.largest, nothing), energy_threshold,
-                 "the time step and the transfer made more than 1 % of the largest energy exchanged out of nothing"});
+  out.push_back(
+      share("energy_made", m.largest_made_J, state.ledger.largest, nothing.work, energy_threshold,
+            "the time step and the transfer made more than 1 % of the largest energy exchanged out of nothing"));
   // Free vibration has as much of one energy as of the other, a suddenly loaded body less of the kinetic; more comes of
   // parts that fly. Below, inertia is the physics of unstable growth: a figure that tells how far from the quasi-static
   // answer a run may be, and no fault. Blocks that a scene itself throws or pulls are not judged.
   const bool thrown = scene.initial.velocity_m_s || scene.body.acceleration_m_s2;
   if (thrown && m.largest_strain_J == 0.0) return;
-  out.push_back({"kinetic_share", share(m.largest_kinetic_J, m.largest_strain_J, nothing),
-                 thrown ? std::nullopt : std::optional(1.0),
-                 "the largest kinetic energy exceeded the largest strain energy: parts of the block fly freely"});
+  out.push_back(share("kinetic_share", m.largest_kinetic_J, m.largest_strain_J, nothing.energy,
+                      thrown ? std::nullopt : std::optional(1.0),
+                      "the largest kinetic energy exceeded the largest strain energy: parts of the block fly freely"));
 }
 
 // Share of the particles that are in another cell than they started in. Where they are now says enough: a motion that
@@ -81,8 +86,9 @@ void watch_motion(const Scene& scene, const State& state, std::vector<Watched>& 
                    "particles went into other cells under linear functions, whose gradients jump there: use bspline2"});
   // Each step keeps momentum to round-off, 1e-16 of it; 1e6 steps that all erred to one side make 1e-10.
   if (!scene.domain.holds_x() || !scene.domain.holds_y())
-    out.push_back({"momentum", share(m.largest_drift, m.largest_momentum, round_off(scene, state).momentum), 1e-8,
-                   "momentum along an axis that no edge holds is not what started the block and the body force gave"});
+    out.push_back(share("momentum", m.largest_drift, m.largest_momentum, round_off(scene, state).momentum, 1e-8,
+                        "momentum along an axis that no edge holds is not what started the block and the body force "
+                        "gave"));
 }
 
 void watch_fluid(const Scene& scene, const State& state, std::vector<Watched>& out) {
@@ -197,10 +203,11 @@ void watch_contact(const Scene& scene, const State& state, std::vector<Watched>&
   // By the laws' contact stiffness faces overlap by 1e-4 of what a cell deforms under the same pressure: a hundred
   // times as much is no longer the law's, and a per cent of what a cell does is where results would show it.
   const double overlap = m.largest_penetration * stiffest / state.grid.h;
-  out.push_back({"penetration_share", share(overlap, m.largest_contact_Pa, nothing), 0.01,
-                 "closed faces overlapped by more than 1 % of what a cell deforms under the largest contact pressure"});
-  out.push_back({"tension_share", share(m.largest_tension_Pa, m.largest_contact_Pa, nothing), 1e-9,
-                 "faces that carry no tension by their law carried some"});
+  out.push_back(share("penetration_share", overlap, m.largest_contact_Pa, nothing, 0.01,
+                      "closed faces overlapped by more than 1 % of what a cell deforms under the largest contact "
+                      "pressure"));
+  out.push_back(share("tension_share", m.largest_tension_Pa, m.largest_contact_Pa, nothing, 1e-9,
+                      "faces that carry no tension by their law carried some"));
   if (scene.numerics.mechanics != Numerics::Mechanics::explicit_dynamics) return;
   out.push_back({"contact_left", m.contact_left, 0.01,
                  "a step's contact ran out of sweeps while a reaction still changed by more than 1 % of the largest"});

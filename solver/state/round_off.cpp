@@ -18,7 +18,8 @@ RoundOff round_off(const Scene& scene, const State& state) {
   double V = 0.0;
   for (const double V_p : state.particles.V) V += V_p;
   const double stress = tiny * largest;
-  return {stress, 0.5 * stress * stress * V / softest, stress * V / slowest};
+  const double work = 0.5 * stress * largest * V / softest;
+  return {stress, work, tiny * work, stress * V / slowest};
 }
 
 }  // namespace strata

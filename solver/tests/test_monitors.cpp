@@ -27,6 +27,13 @@ std::vector<std::string> marks(const Run& run) {
 }
 using Names = std::vector<std::string>;
 
+// Of a load that is fast on purpose.
+Names marks_but_loading(const Run& run) {
+  Names names = marks(run);
+  std::erase(names, "loading_share");
+  return names;
+}
+
 // A block free along both axes, whose points move at random.
 Scene adrift(Numerics::Kinematics kinematics, double damping) {
   Scene scene = block(10, 8);
@@ -107,21 +114,21 @@ TEST_CASE("a time step beyond its limit is marked") {
     look(sound);
   }
   CAPTURE(sound.state.monitors.largest_made_J, sound.state.ledger.largest);
-  CHECK(marks(sound) == Names{});
+  CHECK(marks_but_loading(sound) == Names{});
   scene.numerics.courant = 1.75;
   Run beyond(scene);
   look(beyond);
-  CHECK(marks(beyond) == Names{"largest_courant"});
+  CHECK(marks_but_loading(beyond) == Names{"largest_courant"});
   scene.numerics.courant = beyond_free_edges(kinematics);
   Run wild(scene);
   look(wild);
-  CHECK(marks(wild) == Names{});
-  for (int k = 0; k < 40 && marks(wild).empty(); ++k) {
+  CHECK(marks_but_loading(wild) == Names{});
+  for (int k = 0; k < 40 && marks_but_loading(wild).empty(); ++k) {
     wild.advance(1);
     look(wild);
   }
   CAPTURE(wild.state.step, wild.state.ledger.kinetic, wild.state.monitors.largest_made_J);
-  CHECK(marks(wild) == Names{"energy_made"});
+  CHECK(marks_but_loading(wild) == Names{"energy_made"});
 }
 
 // Requires a block that swings freely, in several modes at once and about a body force that came on at once, to have
@@ -300,6 +307,33 @@ TEST_CASE("a ledger that is not finite ends the run") {
   CHECK(std::isnan(ledger.largest));
   CHECK(std::isnan(ledger.closure()));
   CHECK_FALSE(ledger.finite());
+}
+
+// Requires strain, rotation and jumps to be the largest of all points, by hand: a stretch of 0.03 turned by 45 degrees
+// with a rotation of 0.02; and net pressures those above the closing stress, at the start and later. Mutations that
+// fail: a component for a principal strain, shear in it twice, the rotation of both signs summed, the bonded counted.
+TEST_CASE("what is to be small is found, and what loads") {
+  AtRest rest(pressed());
+  State& state = rest.run.state;
+  Monitors& m = state.monitors;
+  watch_row(rest.run.scene, state);
+  CHECK(m.net_at_start_Pa == Approx(0.5e6));
+  CHECK(m.largest_net_Pa == Approx(0.5e6));
+  state.step = 1;
+  rest.run.scene.fluid.start_Pa = 9e6;  // looked at once
+  state.fracture().points[1].P = 2.7e6;
+  watch_row(rest.run.scene, state);
+  CHECK(m.net_at_start_Pa == Approx(0.5e6));
+  CHECK(m.largest_net_Pa == Approx(0.7e6));
+  m.largest_strain = m.largest_rotation = m.largest_jump = 0.0;
+  strain(state, 7, {0.015, 0.015 - 0.02, 0.015 + 0.02, 0.015});
+  strain(state, 8, {0.0, 0.01, -0.01, 0.0});
+  state.fracture().points[2].w = {0.03, -0.04};
+  watch_deformation(state);
+  CHECK(m.largest_strain == Approx(0.03));
+  CHECK(m.largest_rotation == Approx(0.02));
+  CHECK(m.largest_jump == Approx(0.05));
+  CHECK(marks(rest.run) == Names{"largest_strain", "largest_rotation"});
 }
 
 // Requires J's spread to be taken at each growth, apart where an interface is near.

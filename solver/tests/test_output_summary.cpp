@@ -221,11 +221,12 @@ State sound_state() {
   State state = made_state();
   std::fill(state.particles.u_x.begin(), state.particles.u_x.end(), 0.0);
   std::fill(state.particles.u_y.begin(), state.particles.u_y.end(), 0.0);
+  std::fill(state.particles.V.begin(), state.particles.V.end(), 64.0 / 13.0);  // of the block
   state.ledger = Ledger{};
   state.ledger.fluid_work = state.ledger.strain = 100.0, state.ledger.largest = 1000.0;
   state.monitors = Monitors{};
   state.monitors.largest_courant = 0.5;
-  state.monitors.largest_strain_J = 100.0, state.monitors.largest_momentum = 10.0;
+  state.monitors.largest_strain_J = 100.0, state.monitors.largest_momentum = 1e4;
   state.monitors.largest_contact_Pa = 1e6;
   state.monitors.growths = 10;
   return state;
@@ -272,6 +273,7 @@ TEST_CASE("bonded rocks of stiffnesses too far apart mark the run") {
   const double factor = GENERATE(30.5, 1.0 / 30.5);
   scene.laws.resize(1);
   scene.laws[0].kind = InterfaceLaw::Kind::perfect;
+  scene.rocks.front().youngs_modulus_Pa = 10e9;
   scene.rocks = {scene.rocks.front(), scene.rocks.front()};
   scene.strata.layers = {{0, 0.0, 1.0}, {1, 1.0, 2.0}};
   scene.strata.interfaces = {{0, 1.0}};
@@ -302,7 +304,7 @@ TEST_CASE("each monitor marks the run beyond its threshold and not below") {
                                         {"energy_made", inertia, &Monitors::largest_made_J, 9.9, 10.1},
                                         {"kinetic_share", inertia, &Monitors::largest_kinetic_J, 99.0, 101.0},
                                         {"largest_courant", inertia, &Monitors::largest_courant, 1.70, 1.72},
-                                        {"momentum", inertia, &Monitors::largest_drift, 0.9e-7, 1.1e-7},
+                                        {"momentum", inertia, &Monitors::largest_drift, 0.9e-4, 1.1e-4},
                                         {"contact_residual", rest, &Monitors::contact_residual, 0.9e-8, 1.1e-8},
                                         {"force_balance", rest, &Monitors::force_balance, 0.9e-6, 1.1e-6},
                                         {"fluid_imbalance", rest, &Monitors::largest_imbalance, 0.9e-8, 1.1e-8},
@@ -365,16 +367,13 @@ TEST_CASE("faces that overlap mark the run by what a cell deforms under their pr
 TEST_CASE("shares of round-off mark nothing") {
   Scene scene = scene_of(inertia, Fluid::Law::uniform);
   State state = sound_state();
-  const double scale = GENERATE(1.0, 1e-6);
+  const double scale = GENERATE(1.0, 1e-3);
   scene.fluid.start_Pa *= scale, state.fluid.inlet_Pa *= scale;
-  double V = 0.0;
-  for (double& V_p : state.particles.V) V_p = 64.0 / 13.0, V += V_p;
   const double s = 16e6 * scale, energy = 0.5 * s * s * 64.0 * 0.99 / 8e9, momentum = s * 64.0 / 1257.0;
   const auto fill = [&](double share) {
     state.ledger = Ledger{};
     state.monitors = Monitors{};
-    state.ledger.largest = 1e-3 * share * share * energy;
-    state.monitors.largest_open_J = state.monitors.largest_made_J = share * share * energy;
+    state.ledger.largest = state.monitors.largest_open_J = state.monitors.largest_made_J = share * energy;
     state.monitors.largest_kinetic_J = share * share * energy;
     state.monitors.largest_drift = state.monitors.largest_momentum = share * momentum;
     state.monitors.largest_tension_Pa = share * s;
@@ -432,7 +431,7 @@ TEST_CASE("values that no rock has mark the run") {
     void (*type)(Scene&);
   };
   const auto c = GENERATE(values<Typed>({
-      {"rock.stiff.youngs_modulus_Pa = 40", [](Scene& s) { s.rocks[0].youngs_modulus_Pa = 40.0, s.rocks.pop_back(); }},
+      {"rock.stiff.youngs_modulus_Pa = 40", [](Scene& s) { s.rocks[0].youngs_modulus_Pa = 40.0; }},
       {"rock.soft.youngs_modulus_Pa = 8e+18", [](Scene& s) { s.rocks[1].youngs_modulus_Pa = 8e18; }},
       {"rock.soft.density_kg_m3 = 2.3", [](Scene& s) { s.rocks[1].density_kg_m3 = 2.3; }},
       {"rock.stiff.toughness_Pa_sqrt_m = 1.45", [](Scene& s) { s.rocks[0].toughness_Pa_sqrt_m = 1.45; }},
@@ -444,7 +443,7 @@ TEST_CASE("values that no rock has mark the run") {
       {"fluid.viscosity_Pa_s = 1e-07", [](Scene& s) { s.fluid.viscosity_Pa_s = 1e-7; }},
   }));
   Scene scene = scene_of(rest, Fluid::Law::reynolds);
-  scene.strata = {};  // no contrast
+  scene.strata.interfaces.clear();  // no contrast
   CHECK(marks(scene, sound_state()) == Names{});
   c.type(scene);
   const std::vector<Watched> found = suspicions(scene, sound_state());

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import json
+import math
 import subprocess
 import textwrap
 from functools import cache
@@ -50,11 +51,11 @@ def test_the_first_scene_is_sound(tmp_path: Path, mechanics: tuple[str, ...]) ->
 def test_a_closed_fracture_at_rest_is_sound(tmp_path: Path, mechanics: tuple[str, ...], start_Pa: float) -> None:
     """A closed fracture, or one that the fluid just holds, has nothing but round-off in its energies and momenta."""
     at_rest = f"fluid.inlet={{start_Pa={start_Pa}, rate_Pa_s=0}}"
-    leaning = "fracture.path_m=[[8.3, 7.1], [11.2, 12.4]]"
+    leaning = "fracture.path_m=[[8.3, 6.1], [11.2, 11.4]]"
     for k, settings in enumerate((("domain.sides=traction",), (leaning, "domain.bottom=traction", "domain.sides=traction"))):
         folder = tmp_path / str(k)
         folder.mkdir()
-        summary = summary_of(folder, "stop={time_s=0}", at_rest, *settings, *mechanics)
+        summary = summary_of(folder, "stop.time_s=0", at_rest, *settings, *mechanics)
         assert marks(summary) == set(), summary["suspect"]
 
 
@@ -69,7 +70,7 @@ def test_a_closed_fracture_at_rest_is_sound(tmp_path: Path, mechanics: tuple[str
         (("rock.shale.density_kg_m3=2.5e6",), {"loading_share"}),
         (("fluid.inlet={start_Pa=3e6, rate_Pa_s=0.35e6}",), {"shock_share"}),
         (("fluid.inlet={start_Pa=2e6, rate_Pa_s=0.35e9}",), {"loading_share"}),
-        (("numerics.damping_1_s=1e4", TOTAL), {"loading_share"}),
+        (("fluid.inlet={start_Pa=2e6, rate_Pa_s=1.4e6}", "numerics.damping_1_s=2000", TOTAL), {"loading_share"}),
     ],
 )
 def test_what_leaves_the_range_is_marked(tmp_path: Path, settings: tuple[str, ...], expected: set[str]) -> None:
@@ -81,15 +82,15 @@ def test_what_leaves_the_range_is_marked(tmp_path: Path, settings: tuple[str, ..
 
 
 @pytest.mark.parametrize("kinematics", ["total", "updated"])
-def test_increments_below_a_cell_do_not_change_the_pressure(tmp_path: Path, kinematics: str) -> None:
-    """A crack runs as fast as its energy lets it, whatever the increment: from the start it needs less than 7 m over a fifth of the
-    Rayleigh speed, in which the inlet rises by 0.011 MPa."""
-    ends = {}
-    for increment in (0.02, 0.1, 0.5):
+def test_the_increment_hardly_moves_the_pressure(tmp_path: Path, kinematics: str) -> None:
+    """A crack runs as its energy lets it, whatever the increment. It starts as exp(c_R t/a) at J_c, and a longer increment skips more of
+    this: a/c_R log(1 m/0.02 m) = 0.0166 s, in which the inlet rises by 0.0058 MPa; twice that is let pass, for what waves bring back from
+    the edges. (One increment a look would take 0.33 s more at 0.02 m.)"""
+    ends, c_R, a_m, rate_Pa_s = {}, 1176.0, 5.0, 0.35e6
+    for increment in (0.02, 0.1, 0.5, 1.0):
         folder = tmp_path / str(increment)
         folder.mkdir()
-        summary = summary_of(folder, f"fracture.increment_m={increment}", f"numerics.kinematics={kinematics}")
-        (start,) = (event["inlet_Pa"] for event in summary["events"] if event["kind"] == "start")
-        ends[increment] = summary["inlet_Pa"]
-        assert 0.0 < summary["inlet_Pa"] - start < 0.35e6 * 7.0 / (0.2 * 1176.0)
-    assert max(ends.values()) - min(ends.values()) < 2e3
+        ends[increment] = summary_of(folder, f"fracture.increment_m={increment}", f"numerics.kinematics={kinematics}")["inlet_Pa"]
+    skipped = {increment: rate_Pa_s * a_m / c_R * math.log(increment / 0.02) for increment in ends}
+    for increment in (0.1, 0.5, 1.0):
+        assert 0.0 < ends[0.02] - ends[increment] < 2.0 * skipped[increment]
