@@ -5,6 +5,7 @@
 
 #include "advance_monitors.hpp"
 #include "advance_total.hpp"
+#include "flow/flow_monitors.hpp"
 #include "flow/paper_flow.hpp"
 #include "fracture/growth.hpp"
 #include "fracture/j_integral.hpp"
@@ -63,7 +64,8 @@ void advance_updated(const Scene& scene, const std::vector<Elasticity>& rocks, b
   expect_momentum(scene, state);
   const bool changed = fail_interfaces(scene, rocks, state);  // bonded places that now let go
   if (look) measure_tips(scene, rocks, state);                // J, K_I, K_II with the same P
-  const bool grown = grow_now && grow(scene, rocks, state);   // new points ahead of the tip
+  if (look) watch_flow(scene, state);
+  const bool grown = grow_now && grow(scene, rocks, state);  // new points ahead of the tip
   watch_tips(scene, state);
   const bool moved = state.step % steps_between_rebuilds == 0 || particles.farthest_cells > bin_reach_cells;
   if (changed || grown || moved) {

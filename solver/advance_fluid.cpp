@@ -70,12 +70,6 @@ std::vector<double> openings_midway(const Scene& scene, double dt, State& state,
   return w;
 }
 
-// What rough faces hold between them when they just touch (m), 1e-4 of the study's openings. Under load they hold less,
-// nothing at the closing stress: the fluid can then enter a closed cell little by little. A cell between rigid faces
-// would go from no pressure to that which parts them without taking up any fluid, and its balance could not tell how
-// far it is.
-constexpr double roughness = 1e-7;
-
 // Opening of a place as the flow sees it, w + roughness (1 - r_n/t_n), and its derivatives by the pressures.
 void add_place(const ContactPlace& place, const LawAnswer& r, double w, RockResponse& rock) {
   const auto k = static_cast<Eigen::Index>(place.point);

@@ -10,6 +10,7 @@
 #include "advance_fluid.hpp"
 #include "advance_load.hpp"
 #include "advance_monitors.hpp"
+#include "flow/flow_monitors.hpp"
 #include "flow/paper_flow.hpp"
 #include "fracture/growth.hpp"
 #include "fracture/j_integral.hpp"
@@ -198,6 +199,7 @@ void accept(const Scene& scene, const LoadPoint& before, Change change, State& s
   note_largest(monitors.contact_residual, run.equilibrium.residual);
   note_largest(monitors.largest_imbalance, std::abs(monitors.volume_balance));
   monitors.delivered_m2 += (state.time - before.time) * inflow(scene, state);
+  if (change == Change::load) watch_flow(scene, state);
   watch_tips(scene, state);
   ++state.step;
   watch_row(scene, state);

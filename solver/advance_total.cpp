@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "advance_monitors.hpp"
+#include "flow/flow_monitors.hpp"
 #include "flow/paper_flow.hpp"
 #include "fracture/growth.hpp"
 #include "fracture/j_integral.hpp"
@@ -90,6 +91,7 @@ void advance_total(const Scene& scene, const std::vector<Elasticity>& rocks, boo
     changed = fail_interfaces(scene, rocks, state);  // bonded places that now let go
   }
   if (look) measure_tips(scene, rocks, state);  // J, K_I, K_II with the same P
+  if (look) watch_flow(scene, state);
   bool grown = false;
   if (grow_now && ready_to_grow(scene, rocks, state)) {
     bring_up_to_date(scene, state);

@@ -47,24 +47,18 @@ Dual conducting(const Fluid& fluid, const Place& at) {
   return at.w.value() > floor ? at.w : Dual(floor);
 }
 
-// Conductance between the middles of two cells (m^2/(Pa s)), w^3/(12 mu) over their distance with w the mean of the
-// arithmetic and the harmonic mean of their openings. The exact one is 1/int 12 mu/w^3 ds: between half a cell and one
-// and a half behind a tip this one is 3.5 % below it for w ~ x^(1/2) and 0.7 % above for x^(2/3), where the cube of the
-// arithmetic mean is 8 and 22 % above, and a wedge's (w linear between the two) 7 % below both. But a wedge's vanishes
-// with either opening: a cell that growth has just added is still closed and would be filled no faster than the floor
-// lets through, and the speed of a fracture would be the floor's doing. Here it gets 1/64 of its neighbour's cube.
+// Conductance between the middles of two cells (m^2/(Pa s)), w^3/(12 mu) over their distance.
 Dual between(const Fluid& fluid, const Place& l, const Place& r) {
-  const Dual a = conducting(fluid, l), b = conducting(fluid, r);
-  const Dual w = 0.25 * (a + b) + a * b / (a + b);
+  const Dual w = opening_between(conducting(fluid, l), conducting(fluid, r));
   return Dual(w * w * w) / (6.0 * fluid.viscosity_Pa_s * (l.A + r.A));
 }
 
-// What widens the half cell beside the inlet vertex where the fluid has parted the faces over less than that. The rock's
-// equilibrium, which knows the pressure at the cell's middle alone, still holds them closed there, and the cell would
-// fill no faster than the floor lets through. A fracture without toughness that reaches to the cell's middle, L = A/2,
-// under a net pressure p at its inlet takes q = L^2 p^4/(2 g^2 Pi^4 12 mu E'^3) (g = 0.6155, Pi = 0.5448: viscosity
-// vertex of the plane-strain fracture, Adachi & Detournay 2002): as much as a channel of 1.233 A p/E' under p/L. p is
-// what of the fall to the cell's pressure is above the closing stress; the term vanishes with the cell.
+// What widens the half cell beside the inlet vertex where the fluid has parted the faces over less than that. The
+// rock's equilibrium, which knows the pressure at the cell's middle alone, still holds them closed there, and the cell
+// would fill no faster than the floor lets through. A fracture without toughness that reaches to the cell's middle, L =
+// A/2, under a net pressure p at its inlet takes q = L^2 p^4/(2 g^2 Pi^4 12 mu E'^3) (g = 0.6155, Pi = 0.5448:
+// viscosity vertex of the plane-strain fracture, Adachi & Detournay 2002): as much as a channel of 1.233 A p/E' under
+// p/L. p is what of the fall to the cell's pressure is above the closing stress; the term vanishes with the cell.
 Dual parted(const Inlet& inlet, const Dual& P, const Place& at) {
   if (!inlet.E_prime) return Dual(0.0);
   const Dual below = at.P.value() > inlet.closing_Pa ? at.P : Dual(inlet.closing_Pa);
@@ -151,10 +145,10 @@ struct Beside {
   }
 };
 
-// The inlet's pressure at which the rate flows in, sum c_s(P) (P - P_s) = rate, with its derivatives. The sum rises with
-// P and is convex: Newton's method comes down to it from the pressure that a vertex no wider than its cells would need.
-// Where all is closed the sum goes by the fourth power of P and each step takes a quarter off, so that 200 are enough
-// for any two numbers.
+// The inlet's pressure at which the rate flows in, sum c_s(P) (P - P_s) = rate, with its derivatives. The sum rises
+// with P and is convex: Newton's method comes down to it from the pressure that a vertex no wider than its cells would
+// need. Where all is closed the sum goes by the fourth power of P and each step takes a quarter off, so that 200 are
+// enough for any two numbers.
 Dual pressure_for(const Step& step, Beside& b) {
   const double rate = step.inlet.value;
   b.conduct(step, Dual(0.0));
@@ -179,8 +173,7 @@ void add_inlet(const Step& step, const Trial& trial, Balance& b) {
   for (int s = 0; s < 2; ++s)
     if (beside.cell[s] >= 0) beside.at[s] = place(step, trial, b, beside.cell[s], s == 0);
   const bool by_rate = step.inlet.drive == Inlet::Drive::rate;
-  const Dual P =
-      by_rate ? pressure_for(step, beside) : Dual(std::max(step.inlet.value, step.fluid.cavitation_Pa));
+  const Dual P = by_rate ? pressure_for(step, beside) : Dual(std::max(step.inlet.value, step.fluid.cavitation_Pa));
   beside.conduct(step, P);
   b.inlet_Pa = P.value();
   const auto& [cell, at, c] = beside;

@@ -344,6 +344,8 @@ void note_growth(State& state, Tip& tip, const char* by, bool trusted) {
   tip.last_growth_s = state.time;
   tip.last_growth_Pa = state.fluid.inlet_Pa;
   Monitors& monitors = state.monitors;
+  note_largest(monitors.largest_flow_fall, monitors.flow_fall);
+  monitors.floor_share_sum += monitors.floor_share;
   if (tip.near != Obstacle::none) {
     ++monitors.growths_apart;
   } else {

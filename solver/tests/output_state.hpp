@@ -104,11 +104,12 @@ inline void fill_monitors(Numbers& number, Monitors& m) {
         &m.largest_kinetic_J, &m.expected_x,         &m.expected_y,         &m.largest_drift,  &m.largest_momentum,
         &m.force_balance,     &m.largest_imbalance,  &m.delivered_m2,       &m.J_spread_sum,   &m.largest_J_spread,
         &m.contact_left,      &m.largest_contact_Pa, &m.largest_tension_Pa, &m.largest_strain, &m.largest_rotation,
-        &m.largest_jump,      &m.net_at_start_Pa,    &m.largest_net_Pa}) {
+        &m.largest_jump,      &m.net_at_start_Pa,    &m.largest_net_Pa,     &m.flow_fall_Pa,   &m.flow_fall,
+        &m.largest_flow_fall, &m.floor_share,        &m.floor_share_sum}) {
     *value = number.next();
   }
   m.mirror = true;
-  m.growths = 14, m.growths_apart = 5;
+  m.growths = 14, m.growths_apart = 5, m.flow_growths = 18;
 }
 
 // Fracture from (4, 0) to (4, 2) with normals towards -x, and the scene's upper interface, of 13 particles.
