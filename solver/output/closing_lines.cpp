@@ -10,6 +10,7 @@
 
 #include "output/progress.hpp"
 #include "output/suspect.hpp"
+#include "output/tip_numbers.hpp"
 
 namespace strata {
 
@@ -39,14 +40,15 @@ std::string number_or_none(double value, int decimals) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", rounded == 0.0 ? 0.0 : value, decimals) : "none";
 }
 
-std::string tip_line(const State& state) {
+std::string tip_line(const Scene& scene, const State& state) {
   std::vector<std::string> parts;
   for (const Tip& tip : state.tips) {
     const Vec2 x = tip_position(state, tip);
+    const TipNumbers told = tip_numbers(scene, tip);
     parts.push_back(fmt::format("x = {:.2f} m, y = {:.2f} m, K_I {} and K_II {} MPa sqrt(m), J {} N/m{}", x.x(), x.y(),
-                                number_or_none(1e-6 * tip.K_I, 3), number_or_none(1e-6 * tip.K_II, 3),
-                                number_or_none(tip.J, 1),
-                                tip.at_interface ? " (near an interface: K and J are not to be trusted)" : ""));
+                                number_or_none(1e-6 * told.K_I_Pa_sqrt_m, 3),
+                                number_or_none(1e-6 * told.K_II_Pa_sqrt_m, 3), number_or_none(told.J_N_m, 1),
+                                told.reason.empty() ? "" : fmt::format(" ({})", told.reason)));
   }
   return fmt::format("tip: {}; inlet {:.4g} MPa", fmt::join(parts, "; and "), 1e-6 * state.fluid.inlet_Pa);
 }
@@ -79,7 +81,7 @@ std::string closing_lines(const Scene& scene, const State& state, const RunRecor
                           const std::filesystem::path& folder) {
   std::string lines = fmt::format("{} at step {}, t = {:.4g} s, after {}: {}\n", record.status, state.step, state.time,
                                   duration_text(record.wall_s), record.reason);
-  if (state.has_fracture) lines += growth_line(state) + '\n' + tip_line(state) + '\n';
+  if (state.has_fracture) lines += growth_line(state) + '\n' + tip_line(scene, state) + '\n';
   if (state.particles.size() > 0) lines += monitor_line(scene, state) + '\n';
   std::string files;
   for (const char* file : {"summary.json", "history.csv", "result.h5", "result.xdmf", "checkpoint.bin"}) {
