@@ -45,7 +45,8 @@ TEST_CASE("a run ends with how, growth, tip, worst monitor and where") {
                   {"arrest", 0.6, 2.25e6, 4.0, 2.0, true, "J"},
                   {"restart", 0.7, 3.5e6, 4.0, 2.0, true, "energy"}};
   Tip& tip = state.tips[0];
-  tip.K_I = 1.45e6, tip.K_II = -1e-11, tip.J = 205.25, tip.at_interface = false;
+  tip.K_I = 1.45e6, tip.K_II = -1e-11, tip.J = 205.25;
+  tip.near = Obstacle::none, tip.crossed = tip.closed = false;
   state.monitors.largest_courant = 0.9;
   const auto lines = lines_of(made_scene(), state, record, folder.path);
   REQUIRE(lines.size() == 5);
@@ -72,11 +73,11 @@ TEST_CASE("what a run does not have is left out of its last lines or said to be 
   const TemporaryFolder folder;
   State state = sound_state();
   state.events.clear();
-  state.tips[0].K_I = std::numeric_limits<double>::quiet_NaN();
-  state.tips[0].at_interface = true;
+  state.tips[0].near = Obstacle::interface, state.tips[0].crossed = true, state.tips[0].closed = false;
   const auto still = lines_of(made_scene(), state, record, folder.path);
   CHECK(still.at(1) == "growth: none");
-  CHECK_THAT(still.at(2), Catch::Contains("K_I none and") && Catch::Contains("(near an interface: K and J"));
+  CHECK_THAT(still.at(2), Catch::Contains("K_I none and K_II none MPa sqrt(m), J none N/m (the rings on which J and K "
+                                          "are measured cross an interface"));
   for (int k = 0; k < 9; ++k) state.events.push_back({"restart", 0.1, 1e6, 4.0, 2.0, false, "J"});
   CHECK_THAT(lines_of(made_scene(), state, record, folder.path).at(1), Catch::EndsWith("; 3 more in summary.json"));
   const State none;
