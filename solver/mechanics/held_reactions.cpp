@@ -2,7 +2,7 @@
 
 #include <Eigen/SparseCholesky>
 #include <cmath>
-#include <stdexcept>
+#include <memory>
 #include <vector>
 
 #include "mechanics/total_surfaces.hpp"
