@@ -5,6 +5,7 @@
 
 #include "flow/paper_flow.hpp"
 #include "flow/reynolds_flow.hpp"
+#include "state/elasticity.hpp"
 
 namespace strata {
 
@@ -89,12 +90,19 @@ RockModel rock_of(const Scene& scene, double time, State& state, QuasistaticMode
     Pieces pieces;
     Eigen::MatrixXd dw_dP;
   };
-  return [&scene, time, &state, &model, known = Known{}](const Eigen::VectorXd& P) mutable {
+  const auto& points = state.fracture().points;
+  Eigen::VectorXd E_prime(points.size()), closing(points.size());
+  const std::vector<Elasticity> rocks = make_elasticities(scene);
+  for (Eigen::Index k = 0; k < closing.size(); ++k) {
+    const SurfacePoint& s = points[static_cast<std::size_t>(k)];
+    E_prime[k] = rocks[rock_at(scene, s.x)].E_prime, closing[k] = s.closing_stress();
+  }
+  return [&scene, time, &state, &model, E_prime, closing, known = Known{}](const Eigen::VectorXd& P) mutable {
     set_point_pressures(P, state);
     const Equilibrium at = find_equilibrium(scene, time, state, model);
     if (known.pieces != at.pieces || known.dw_dP.size() == 0)
       known = {at.pieces, opening_per_pressure(state, model.condensed, model.places, at, model.factor)};
-    RockResponse rock{Eigen::VectorXd::Zero(P.size()), known.dw_dP};
+    RockResponse rock{Eigen::VectorXd::Zero(P.size()), known.dw_dP, E_prime, closing};
     for (std::size_t k = 0; k < model.places.size(); ++k) {
       const ContactPlace& place = model.places[k];
       if (place.tie < 0 && place.surface == 0) add_place(place, at.answers[k], at.w[k].dot(place.n), rock);
@@ -104,16 +112,10 @@ RockModel rock_of(const Scene& scene, double time, State& state, QuasistaticMode
 }
 
 Inlet inlet_at(const Scene& scene, const State& state, double time) {
-  const auto& points = state.fracture().points;
-  const std::size_t vertex = state.fluid.inlet;
-  Inlet inlet{Inlet::Drive::pressure, scene.fluid.start_Pa + scene.fluid.rate_Pa_s * time,
-              points[std::min(vertex, points.size() - 1)].closing_stress(), std::nullopt};
-  inlet.E_prime = make_elasticity(scene.rocks[rock_at(scene, state.fracture().vertices[vertex].x)]).E_prime;
-  if (!scene.fluid.rate_m2_s) return inlet;
+  if (!scene.fluid.rate_m2_s) return {Inlet::Drive::pressure, scene.fluid.start_Pa + scene.fluid.rate_Pa_s * time};
   // Half of a fracture that starts on the symmetry line gets half of what the whole is fed.
   const bool half = scene.domain.bottom == Edge::symmetry && state.fracture().vertices.front().x.y() == 0.0;
-  inlet.drive = Inlet::Drive::rate, inlet.value = *scene.fluid.rate_m2_s * (half ? 0.5 : 1.0);
-  return inlet;
+  return {Inlet::Drive::rate, *scene.fluid.rate_m2_s * (half ? 0.5 : 1.0)};
 }
 
 FluidStep couple(const Scene& scene, double dt, State& state, QuasistaticModel& model) {

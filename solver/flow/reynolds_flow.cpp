@@ -39,6 +39,8 @@ T density(const Fluid& fluid, const T& P) {
 struct Place {
   Dual P, w;
   double A = 0.0;
+  double closing = 0.0;     // Pa
+  double compliance = 0.0;  // 1/E' (1/Pa); 0: rigid within a cell
 };
 
 // The opening that conducts: never below the scene's floor.
@@ -47,29 +49,29 @@ Dual conducting(const Fluid& fluid, const Place& at) {
   return at.w.value() > floor ? at.w : Dual(floor);
 }
 
+// Opening within a cell (m) by a fluid that comes from P and has parted its faces over less than that. The rock's
+// equilibrium, which knows the pressure at the cell's middle alone, still holds them closed, and the cell would fill no
+// faster than the floor lets through. A fracture without toughness that reaches from the cell's end to its middle, L =
+// A/2, with a net pressure p at its inlet takes q = L^2 p^4/(2 g^2 Pi^4 12 mu E'^3) (g = 0.6155, Pi = 0.5448: viscosity
+// vertex of the plane-strain fracture, Adachi & Detournay 2002): as much as a channel of 1.233 A p/E' under p/L. p is
+// what of the fall from P to the cell's pressure is above the closing stress; the opening vanishes with the cell.
+Dual parted(const Dual& P, const Place& at) {
+  const Dual below = at.P.value() > at.closing ? at.P : Dual(at.closing);
+  constexpr double of_fracture = 1.233;
+  return P.value() > below.value() ? Dual(of_fracture * at.A * at.compliance * (P - below)) : Dual(0.0);
+}
+
 // Conductance between the middles of two cells (m^2/(Pa s)), w^3/(12 mu) over their distance.
 Dual between(const Fluid& fluid, const Place& l, const Place& r) {
-  const Dual w = opening_between(conducting(fluid, l), conducting(fluid, r));
+  const Dual within = l.P.value() > r.P.value() ? parted(l.P, r) : parted(r.P, l);
+  const Dual w = opening_between(conducting(fluid, l), conducting(fluid, r)) + within;
   return Dual(w * w * w) / (6.0 * fluid.viscosity_Pa_s * (l.A + r.A));
 }
 
-// What widens the half cell beside the inlet vertex where the fluid has parted the faces over less than that. The
-// rock's equilibrium, which knows the pressure at the cell's middle alone, still holds them closed there, and the cell
-// would fill no faster than the floor lets through. A fracture without toughness that reaches to the cell's middle, L =
-// A/2, under a net pressure p at its inlet takes q = L^2 p^4/(2 g^2 Pi^4 12 mu E'^3) (g = 0.6155, Pi = 0.5448:
-// viscosity vertex of the plane-strain fracture, Adachi & Detournay 2002): as much as a channel of 1.233 A p/E' under
-// p/L. p is what of the fall to the cell's pressure is above the closing stress; the term vanishes with the cell.
-Dual parted(const Inlet& inlet, const Dual& P, const Place& at) {
-  if (!inlet.E_prime) return Dual(0.0);
-  const Dual below = at.P.value() > inlet.closing_Pa ? at.P : Dual(inlet.closing_Pa);
-  constexpr double of_wedge = 1.233;
-  return P.value() > below.value() ? Dual(of_wedge * at.A / *inlet.E_prime * (P - below)) : Dual(0.0);
-}
-
-// Conductance between a cell's middle and the inlet vertex, half a cell of its opening.
-Dual from_vertex(const Fluid& fluid, const Inlet& inlet, const Dual& P, const Place& at) {
-  const Dual a = conducting(fluid, at) + parted(inlet, P, at);
-  return Dual(a * a * a) / (6.0 * fluid.viscosity_Pa_s * at.A);
+// Conductance between a cell's middle and the inlet vertex at P, half a cell of its opening.
+Dual from_vertex(const Fluid& fluid, const Dual& P, const Place& at) {
+  const Dual w = conducting(fluid, at) + parted(P, at);
+  return Dual(w * w * w) / (6.0 * fluid.viscosity_Pa_s * at.A);
 }
 
 // Where the iteration stands: cells with P free are full, the others have P = P_c and phi free.
@@ -104,8 +106,10 @@ struct Step {
 
 Place place(const Step& step, const Trial& trial, const Balance& b, Index k, bool left) {
   const int first = left ? 0 : 2;
-  return {Dual(trial.P(k), unknowns, first), Dual(b.rock.w(k), unknowns, first + 1),
-          step.line.length[static_cast<std::size_t>(k)]};
+  Place at{Dual(trial.P(k), unknowns, first), Dual(b.rock.w(k), unknowns, first + 1),
+           step.line.length[static_cast<std::size_t>(k)]};
+  if (b.rock.E_prime.size() > 0) at.closing = b.rock.closing(k), at.compliance = 1.0 / b.rock.E_prime(k);
+  return at;
 }
 
 // Adds a flow (m^2/s) into cell `to`, with derivatives by the cells l and r, of which one may be missing (-1).
@@ -141,7 +145,7 @@ struct Beside {
 
   void conduct(const Step& step, const Dual& P) {
     for (int s = 0; s < 2; ++s)
-      if (cell[s] >= 0) c[s] = from_vertex(step.fluid, step.inlet, P, at[s]);
+      if (cell[s] >= 0) c[s] = from_vertex(step.fluid, P, at[s]);
   }
 };
 

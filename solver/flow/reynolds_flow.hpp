@@ -13,7 +13,6 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,10 +22,12 @@
 namespace strata {
 
 // The rock under a pressure: the opening at the fracture's points (m; about 0 where faces touch), and its change per
-// pressure at the points (m/Pa), row: opening, column: pressure.
+// pressure at the points (m/Pa), row: opening, column: pressure; and what tells how a pressure within a cell parts its
+// faces, E/(1 - nu^2) and the closing stress there (Pa), or nothing where they part by cells alone.
 struct RockResponse {
   Eigen::VectorXd w;
   Eigen::MatrixXd dw_dP;
+  Eigen::VectorXd E_prime = {}, closing = {};
 };
 using RockModel = std::function<RockResponse(const Eigen::VectorXd& P)>;  // P absolute, one a point (Pa)
 
@@ -52,8 +53,6 @@ struct Inlet {
   enum class Drive { pressure, rate };
   Drive drive = Drive::pressure;
   double value = 0.0;  // pressure (Pa), or what enters the modelled domain (m^2/s, at the pressure of its first cell)
-  double closing_Pa = 0.0;
-  std::optional<double> E_prime = {};  // of the rock beside the vertex (Pa); absent: it is rigid within a cell
 };
 
 struct StepReport {
