@@ -29,6 +29,7 @@ State sound_state() {
   State state = made_state();
   state.monitors = {};
   state.ledger = {};
+  state.particles.V.assign(state.particles.size(), 1.0);
   return state;
 }
 
