@@ -147,6 +147,7 @@ void lay_variant(const std::string& name, const std::vector<Variant>& variants, 
     return;
   }
   std::vector<std::string> names;
+  names.reserve(variants.size());
   for (const Variant& variant : variants) names.push_back(variant.name);
   const std::string known = names.empty() ? "It has no variants." : fmt::format("It has {}.", fmt::join(names, ", "));
   faults.add({file_name}, fmt::format("there is no variant {}. {}{}", name, known, did_you_mean(name, names)));

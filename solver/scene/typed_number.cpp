@@ -54,7 +54,7 @@ struct Number {
 
 // What to type, times a power of ten; both where a comma may be one or the other.
 std::string readings(const Number& number, int shift = 0) {
-  const std::string text = number.as_toml(shift);
+  std::string text = number.as_toml(shift);
   if (!number.either) return text;
   Number grouped = number;
   grouped.whole += std::exchange(grouped.fraction, "");
