@@ -296,7 +296,7 @@ void finish_tip(const Scene& scene, const TipGeometry& at, const State& state, c
   tip.K_I = K_I, tip.K_II = K_II;
   tip.near = at.near, tip.crossed = at.crossed;
   close_where_faces_touch(scene, state, at, tip);
-  tip.kink = tip.closed ? 0.0 : kink_angle(tip.K_I, tip.K_II);
+  tip.kink = kink_angle(tip.K_I, tip.K_II);
   tip.turn = at.lag + turn_taken(scene, scene.fracture->increment_m) * tip.kink;
   tip.kink += at.lag;
   tip.ring_m = at.rings.back().outer;

@@ -298,14 +298,14 @@ TEST_CASE("what an interface cannot carry lets go at the start") {
   CHECK_THROWS_WITH(loose.settle(), Catch::Contains("mechanism"));
 }
 
-// A crack 1 m below an interface, under 1.5 MPa at 2 MPa of closing stress and 3 MPa on the interface.
+// A crack 1 m below an interface, under 2 MPa beyond its closing stress, with 3 MPa on the interface.
 Scene below_interface(const InterfaceLaw& law) {
   Scene scene = block(40, 32, 0.5);
   hold_edges(scene);
   scene.numerics.mechanics = Numerics::Mechanics::quasistatic;
   scene.in_situ = {3e6, 2e6};
-  add_interface(scene, law, 7.0);
-  add_fracture(scene, {{10.0, 0.0}, {10.0, 5.0}}, 3.5e6);
+  add_interface(scene, law, 6.0);
+  add_fracture(scene, {{10.0, 0.0}, {10.0, 5.0}}, 4e6);
   return scene;
 }
 
@@ -315,27 +315,28 @@ double K_of(const Steps& s) {
 
 // Requires one equilibrium under the whole load to be the one that the load's slow rise leads to, with friction and
 // with a bond that fails, each beside the same interface bonded for good: K_I to 0.3 %, where the interface takes 3 %
-// and more of it, the same columns apart (friction: but for one), every bonded place below its strength, and the ledger
+// and more of it, the same columns apart (a bond's: but for one), every bonded place below its strength, and the ledger
 // closed. Mutations that fail: nothing let go at the start; one column only; its reaction forgotten, or doubled.
 TEST_CASE("one equilibrium is what a slow rise of the load leads to") {
   const double bonded = K_of(Steps(below_interface(weak_law(1e12, 1e12))));
-  for (const InterfaceLaw& law : {friction_law(0.1), weak_law(0.4e6, 0.4e6), weak_law(0.4e6, 0.4e6, 0.1)}) {
+  for (const InterfaceLaw& law : {friction_law(0.05), weak_law(0.3e6, 0.3e6), weak_law(0.3e6, 0.3e6, 0.02)}) {
     Scene scene = below_interface(law);
     Steps at_once(scene);
     at_once.settle();
     scene.fluid.start_Pa = 2e6;
-    scene.fluid.rate_Pa_s = 1.5e6;
+    scene.fluid.rate_Pa_s = 2e6;
     Steps slowly(scene);
     for (int k = 1; k <= 30; ++k) slowly.until(k / 30.0, 100);
     slowly.settle();
-    REQUIRE(slowly.run.state.fluid.inlet_Pa == Approx(3.5e6));
+    REQUIRE(slowly.run.state.fluid.inlet_Pa == Approx(4e6));
     const auto apart = [](const Steps& s) {
       return std::ranges::count_if(s.run.state.surfaces[1].points, [](const SurfacePoint& p) { return p.split; });
     };
     CAPTURE(law.name, law.residual_friction, K_of(at_once), K_of(slowly), bonded, apart(at_once), apart(slowly));
     CHECK(K_of(at_once) > 1.03 * bonded);
     CHECK(K_of(at_once) == Approx(K_of(slowly)).epsilon(3e-3));
-    CHECK(std::abs(apart(at_once) - apart(slowly)) <= 4);  // points, of which a column has two
+    CHECK(apart(at_once) >= apart(slowly));  // what friction lets go and then holds is apart, too
+    if (law.kind == InterfaceLaw::Kind::weak) CHECK(apart(at_once) - apart(slowly) <= 4);  // a column on each side
     for (const Steps* s : {&at_once, &slowly}) {
       CHECK_FALSE(failure_due(s->statics));
       CHECK(std::abs(s->run.state.ledger.closure()) < 1e-5);

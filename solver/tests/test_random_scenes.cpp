@@ -287,7 +287,7 @@ TEST_CASE("random scenes end in a right state or a mechanism") {
   run_seeds(0, 155);
 }
 
-// The same for 1000; hidden since it takes a minute: test_random_scenes "[thousand]".
+// The same for 1000; hidden since it takes a minute: strata_tests "[thousand]".
 TEST_CASE("a thousand random scenes", "[.thousand]") {
   run_seeds(0, 1000);
 }

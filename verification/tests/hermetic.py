@@ -7,6 +7,7 @@ from __future__ import annotations
 import atexit
 import os
 import shutil
+import signal
 import sys
 import tempfile
 from pathlib import Path
@@ -50,6 +51,7 @@ def refuse(event: str, arguments: tuple[Any, ...]) -> None:
 
 def seal() -> None:
     """Clean the environment, make the folder of runs (one for all processes of a session) and refuse the checkout's."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where a shell starts tests in the background
     worker = "PYTEST_XDIST_WORKER" in os.environ
     own = os.environ.get("STRATA_RUNS", "") if worker else tempfile.mkdtemp(prefix="strata-tests-")
     for name in [name for name in os.environ if name not in KEPT and not name.startswith(("PYTEST_", "PY_COLORS"))]:

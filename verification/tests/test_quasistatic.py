@@ -124,7 +124,7 @@ def test_the_same_digits_again_and_on_two_threads(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_a_thousand_random_scenes_end_in_equilibrium_or_a_mechanism() -> None:
     """Balance, contact and friction to 1e-8 of the load in each; checked in C++, see solver/tests/test_random_scenes.cpp."""
-    program = solver().parent / "test_random_scenes"
+    program = solver().parent / "strata_tests"
     assert program.exists(), f"{program} is not built"
     done = subprocess.run([program, "[thousand]"], capture_output=True, text=True, check=False, timeout=600)
     assert done.returncode == 0, done.stdout
