@@ -92,26 +92,34 @@ void watch_motion(const Scene& scene, const State& state, std::vector<Watched>& 
 }
 
 // What the pressure falls by in a cell between the inlet and where the fluid no longer parts the faces, over the
-// inlet's net pressure at growth. Measured: at falls of 0.25, 0.5, 0.8 and 1.1 the net pressure at which a closed
-// fracture under a ramp starts is too high by about 1 to 2, 1 to 6, 9 to 18 and 50 %.
+// inlet's net pressure at growth. Under the study's law a closed fracture conducts by the floor alone: measured at
+// falls of 0.25, 0.9, 1.16, 1.23 and 1.29 the net pressure at which it starts under a ramp is too high by 0, 15, 80,
+// 130 % and without bound. Under law = "reynolds" faces part within cells, and a ramp's start is right at any fall;
+// what a rate needs before the fluid has gone a cell or two is not.
 constexpr double fall_threshold = 0.6;
 
-// Equal parts of the net pressure. Measured of fractures fed at a rate without toughness, and with little: 0.02, 0.1,
-// 0.25, 5 and 17 where the floor makes them longer by 3, 6 to 10, 3 to 4, 8 to 16 and 22 to 45 %; below 0.001 for the
-// cases of the accuracy ladder.
+// Equal parts of the inlet's net pressure. Measured of fractures that are fed at a rate: below 0.03, at 0.1, 0.25, 0.5,
+// 5 and 20 the floor makes them longer by 0 to 3, 6 to 10, 3 to 4, 8, 8 to 16 and 22 to 45 %.
 constexpr double floor_threshold = 0.1;
 
-// At growth, or now where nothing has grown.
+// Judged at growth; where nothing has grown what they are now is told.
 void watch_resolution(const Scene& scene, const Monitors& m, std::vector<Watched>& out) {
   if (scene.fluid.law == Fluid::Law::uniform) return;
   const std::int64_t growths = m.growths + m.growths_apart;
-  out.push_back({"flow_fall", growths > 0 ? m.largest_flow_fall : m.flow_fall, fall_threshold,
-                 "cells do not resolve the flow: a cell or two behind the inlet its net pressure is gone; use smaller "
-                 "cells, or a larger fluid.minimum_opening_m if faces that touch conduct"});
+  const bool remembers = scene.fluid.law == Fluid::Law::paper || scene.fluid.rate_m2_s;
+  const auto where_grown = [growths](double threshold) {
+    return growths > 0 ? std::optional(threshold) : std::nullopt;
+  };
   out.push_back(
-      {"floor_share", growths > 0 ? m.floor_share_sum / static_cast<double>(growths) : m.floor_share, floor_threshold,
-       "fluid flows where the fracture opens by less than fluid.minimum_opening_m, which decides about more than "
-       "a tenth of the net pressure; lower it"});
+      {"flow_fall", growths > 0 ? m.largest_flow_fall : m.flow_fall,
+       remembers ? where_grown(fall_threshold) : std::nullopt,
+       "when the fracture grew, its pressure had fallen to the closing stress within a cell or two of the inlet, "
+       "which they do not resolve; use smaller cells, or a larger fluid.minimum_opening_m if closed faces conduct"});
+  out.push_back(
+      {"floor_share", growths > 0 ? m.floor_share_sum / static_cast<double>(growths) : m.floor_share,
+       where_grown(floor_threshold),
+       "fluid.minimum_opening_m decides about more than a tenth of the inlet's net pressure, since fluid flows "
+       "where the fracture opens by less; lower it or use smaller cells until results no longer change"});
 }
 
 void watch_fluid(const Scene& scene, const State& state, std::vector<Watched>& out) {

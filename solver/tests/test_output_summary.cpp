@@ -309,6 +309,7 @@ TEST_CASE("each monitor marks the run beyond its threshold and not below") {
                                         {"force_balance", rest, &Monitors::force_balance, 0.9e-6, 1.1e-6},
                                         {"fluid_imbalance", rest, &Monitors::largest_imbalance, 0.9e-8, 1.1e-8},
                                         {"fluid_imbalance", rest, &Monitors::volume_balance, -0.9e-8, -1.1e-8},
+                                        {"floor_share", rest, &Monitors::floor_share_sum, 0.99, 1.01},
                                         {"J_spread_mean", rest, &Monitors::J_spread_sum, 0.99, 1.01},
                                         {"J_spread_mean", inertia, &Monitors::J_spread_sum, 0.99, 1.01},
                                         {"tension_share", rest, &Monitors::largest_tension_Pa, 0.9e-3, 1.1e-3},

@@ -81,13 +81,12 @@ def check_failed(folder: Path, done: subprocess.CompletedProcess[str], *words: s
 @pytest.mark.parametrize(
     "change, words",
     [
-        ("fluid.inlet={rate_m2_s=1e8}", ("at t = 0 s, in any step: ", "did not converge in 40 iterations")),
-        ("fluid.inlet={rate_m2_s=1e2}", ("at t = 0 s, before the next event: ", "did not converge in 40 iterations")),
+        ("fluid.inlet={rate_m2_s=1e12}", ("at t = 0 s, in any step: ", "did not converge in 100 iterations")),
         ("fluid.minimum_opening_m=1e100", ("at t = 0 s, in any step: ", "values that are not finite")),
     ],
 )
 def test_flow_and_rock_that_do_not_come_together_end_the_run(tmp_path: Path, change: str, words: tuple[str, ...]) -> None:
-    """A rate with which no step converges, one with which the search for the load at which the tip grows does not, an infinite flow."""
+    """A rate with which no step converges, an infinite flow."""
     check_failed(tmp_path, run(tmp_path, *FED, "--set", change), *words, "fluid.inlet")
 
 
