@@ -19,6 +19,7 @@ constexpr double pi = std::numbers::pi;
 // before an interface. Between, K_I is off by up to 0.3 % near rocks, springs and edges (0.4 % where it is trusted);
 // within, by 0.3 to 0.7 % at 2 cells, 2 to 17 % at 1, and by any amount nearer.
 constexpr double narrowest_ring_cells = 2.5;
+constexpr double least_cells = 2.0;  // nearer than this J and K are no numbers; faces that are apart not within a ring
 constexpr double trusted_cells = narrowest_ring_cells + 1.0;
 constexpr double trusted_cells_at_interface = trusted_cells + 0.5;
 constexpr double inner_fraction = 0.6;  // q is 1 inside this fraction of a ring's radius: 0.3 costs 1 % in J
@@ -145,7 +146,8 @@ TipGeometry tip_geometry(const Scene& scene, const std::vector<Elasticity>& rock
   const Room room = ring_room(scene, state, tip, at.frame.tip);
   const double radius = std::max(room.radius, narrowest_ring_cells * state.grid.h);
   at.near = room.near;
-  at.crossed = room.nearest < radius - 1e-3 * state.grid.h;
+  const double least = room.near == Obstacle::interface ? narrowest_ring_cells : least_cells;
+  at.crossed = room.nearest < (least - 1e-3) * state.grid.h;
   at.frame.e_1 = mean_direction(fracture, tip.at_back, radius);
   at.frame.e_2 = {-at.frame.e_1.y(), at.frame.e_1.x()};
   for (std::size_t k = 0; k < at.rings.size(); ++k)

@@ -279,9 +279,9 @@ TEST_CASE("tip directions") {
 
 // Requires that a tip says what is so near that J and K are not to be trusted: an interface whose faces are apart
 // within 4 cells of the tip, or another rock, and within 3.5 cells an edge, the symmetry line, the other tip or a part
-// of the path that comes back; and that its rings cross what is nearer than 2.5 cells. A bond between like rocks is
-// nothing, be it near or failed farther along. Mutations that fail: bonds that count; only the whole interface's
-// distance; one name for all; limits half a cell off.
+// of the path that comes back; and that J and K are none nearer than 2 cells, 2.5 to faces that are apart. A bond
+// between like rocks is nothing, be it near or failed farther along. Mutations that fail: bonds that count; only the
+// whole interface's distance; one name for all; limits half a cell off.
 TEST_CASE("a tip says what its rings are near") {
   struct Found {
     Obstacle near;
@@ -310,7 +310,8 @@ TEST_CASE("a tip says what its rings are near") {
     CAPTURE(off);
     const double at = 14.0 + off, distance = std::abs(off);
     const auto is = [&](const Found& found, Obstacle what) {
-      return found.near == (distance < 4.0 ? what : Obstacle::none) && found.crossed == (distance < 2.5);
+      const double least = what == Obstacle::interface ? 2.5 : 2.0;
+      return found.near == (distance < 4.0 ? what : Obstacle::none) && found.crossed == (distance < least);
     };
     CHECK(is(upper(with(bond, at, 0), 0.0, 20.0), Obstacle::interface));
     CHECK(is(upper(with(soft_law(1e9, 1e9), at, 0), 0.0, 0.0), Obstacle::interface));
@@ -328,11 +329,11 @@ TEST_CASE("a tip says what its rings are near") {
     add_fracture(scene, path);
     return scene;
   };
-  for (const double off : {2.0, 3.0, 4.0}) {
+  for (const double off : {1.5, 2.0, 3.0, 4.0}) {
     CAPTURE(off);
     const auto is = [&](const Scene& scene, Obstacle what) {
       const Found found = upper(scene, 0.0, 0.0);
-      return found.near == (off < 3.5 ? what : Obstacle::none) && found.crossed == (off < 2.5);
+      return found.near == (off < 3.5 ? what : Obstacle::none) && found.crossed == (off < 2.0);
     };
     CHECK(is(lone({{20.0, 0.0}, {20.0, off}}, Edge::symmetry), Obstacle::symmetry_line));
     CHECK(is(lone({{20.0, 14.0}, {20.0, 30.0 - off}}, Edge::traction), Obstacle::edge));

@@ -17,7 +17,7 @@ ANGLE_DEG = 0.2
 
 def of(quantity: str, *cases: str) -> list[tuple[str, str, str]]:
     """Keys of the gates of a quantity, of whichever tip, in cases that begin so, 4 cells or more from the interface."""
-    found = [key for key in GATES if key[0].startswith(cases) and key[1].split(",")[0] == quantity]
+    found = [key for key in GATES if key[0].startswith(cases) and key[1].split(",")[0] == quantity and key[2] != "2 cells"]
     assert found
     return found
 
