@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from verification.harness import paths
+from verification.harness.hermetic import FORBIDDEN, KEPT, ROOT, NotHermetic
 from verification.tests import cases
-from verification.tests.hermetic import FORBIDDEN, KEPT, ROOT, NotHermetic
 
 # A user's account as it may be: narrow terminal, threads bound, other modules, other runs.
 DIRTY = {
@@ -51,7 +51,7 @@ def test_all_runs_go_below_one_folder_of_the_tests() -> None:
 
 def test_the_environment_is_that_of_no_user() -> None:
     """From any environment tests make the same one; their runs never go to those of the user."""
-    code = "import os, verification.tests.hermetic; print(*sorted(f'{k}={v}' for k, v in os.environ.items()), sep='\\n')"
+    code = "import os, verification.harness.hermetic; print(*sorted(f'{k}={v}' for k, v in os.environ.items()), sep='\\n')"
 
     def environment(**more: str) -> dict[str, str]:
         given = {name: os.environ[name] for name in KEPT if name in os.environ} | more
