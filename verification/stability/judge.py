@@ -1,6 +1,7 @@
 """Judges what was found of a family: no garbage, the edge where theory says, and beyond it what the family declares."""
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
 from verification.stability.family import GARBAGE, Family, Point
@@ -96,7 +97,9 @@ def changes(before: Record | None, now: Record) -> list[str]:
 
 
 def differs(before: float, now: float, share: float = 0.2, floor: float = 1e-6) -> bool:
-    """Whether an error has changed by more than a share of itself and more than rounding makes of it."""
+    """Whether an error has changed by more than a share of itself and more than rounding makes of it; nan stays nan where a run tells no number."""
+    if math.isnan(before) and math.isnan(now):
+        return False
     return not abs(now - before) <= share * abs(before) + floor
 
 

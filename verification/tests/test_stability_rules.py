@@ -13,7 +13,7 @@ from verification.stability.catalogue import check
 from verification.stability.family import (
     FAILED, GARBAGE, MARKED, REFUSED, STABLE, BadFamily, Checked, Edge, Family, Parameter, Point, at_most, close,
 )  # fmt: skip
-from verification.stability.judge import changes, problems
+from verification.stability.judge import changes, differs, problems
 from verification.stability.runner import bisected, found, of_failure, walk
 from verification.stability.store import EdgeFound, PointFound, Record
 
@@ -196,3 +196,9 @@ def test_other_ways_and_killed_runs() -> None:
     for exit_status, outcome in ((-9, GARBAGE), (1, GARBAGE), (124, GARBAGE), (2, REFUSED), (3, FAILED)):
         assert of_failure(points[0], replace(died, exit_status=exit_status), 0.0).outcome == outcome
     assert of_failure(points[0], replace(died, exit_status=3, reason=""), 0.0).outcome == GARBAGE
+
+
+def test_a_number_that_is_none_is_like_itself_alone() -> None:
+    nan = float("nan")
+    assert not differs(nan, nan)
+    assert differs(nan, 0.0) and differs(0.1, nan)
