@@ -5,8 +5,6 @@
 #include <cmath>
 
 #include "fracture/j_integral.hpp"
-#include "mechanics/new_openings.hpp"
-#include "output/history.hpp"
 #include "small_scenes.hpp"
 #include "state/rebuild.hpp"
 #include "state/surfaces.hpp"
@@ -302,31 +300,6 @@ TEST_CASE("several increments at once are one growth of their length") {
   extend_tip(run.scene, run.state, tip, 0.1, 10.0 / 3.0);
   const Vec2 grown = tip_position(run.state, tip) - from;
   CHECK(std::atan2(-grown.x(), grown.y()) == Approx(lag + kink / 9.0));
-}
-
-// Requires a fracture that has grown over four cells by a fifth of one at a time, so that most of its new points come
-// to be where nodes were split before, to come to rest with J and K_I of one that was as long from the start, and with
-// as much volume. Mutations that fail: no opening at new points (J and volume too small), twice the opening.
-TEST_CASE("a fracture that has grown by parts of cells rests as one that was there") {
-  const auto settled = [](double length, int increments) {
-    Scene scene = growing({{7.0, 0.0}, {7.0, length}});
-    scene.fracture->growth = Fracture::Growth::none;
-    scene.numerics.damping_1_s = 320.0;  // near twice the slowest mode
-    Run run(scene);
-    for (int k = 0; k < increments; ++k) {
-      run.advance(40);
-      extend_tip(run.scene, run.state, run.state.tips[0], 0.2);
-      run.rebuild();
-      open_new_points(run.scene, run.rocks, run.state);
-    }
-    run.advance(800);
-    measure_tips(run.scene, run.rocks, run.state);
-    return run.state;
-  };
-  const State was = settled(9.3, 0), grown = settled(5.3, 20);
-  CHECK(grown.tips[0].J == Approx(was.tips[0].J).epsilon(0.01));
-  CHECK(grown.tips[0].K_I == Approx(was.tips[0].K_I).epsilon(0.005));
-  CHECK(fracture_volume(grown) == Approx(fracture_volume(was)).epsilon(0.005));
 }
 
 // Requires that new points are dry, or inherit the tip's pressure, or have the inlet's where flow is uniform, at both
