@@ -99,8 +99,7 @@ TEST_CASE("parts of the operator are all of it, and none has much more work than
   int last = -1;
   for (const StencilPart& part : op.parts) {
     int slots = 0;
-    for (std::size_t k = part.ranges.first; k < part.ranges.last; ++k)
-      slots += op.ranges[k].last - op.ranges[k].first;
+    for (std::size_t k = part.ranges.first; k < part.ranges.last; ++k) slots += op.ranges[k].last - op.ranges[k].first;
     CHECK(slots <= 4 * 51);  // 4 rows of 51 nodes, of 61 in 32 parts
     if (part.ranges.first == part.ranges.last) continue;
     const int first_row = op.ranges[part.ranges.first].first / op.slots.stride;
