@@ -208,7 +208,7 @@ TEST_CASE("a scene says itself where fine cells end") {
 
 // Requires that a scene counts as mirror-symmetric exactly where the columns of its grid are their own mirror image:
 // random ends of the fine cells on either side of a fracture in the middle, alike or not, with rock beyond the block or
-// not. Mutations that fail: columns not looked at; the number of fine cells compared and not where they are.
+// not. Mutation that fails: columns not looked at.
 TEST_CASE("a scene is symmetric where its columns are") {
   std::mt19937 random(7);
   std::array<int, 2> found{};

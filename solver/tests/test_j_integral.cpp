@@ -168,8 +168,8 @@ TEST_CASE("K and J of an inclined fracture") {
 }
 
 // Requires signs and scales: K and the kink change sign with K_II, J does not; K doubles and J quadruples with the
-// field; nothing gives nothing. A kink turns a tip clockwise for K_II > 0, as it sees it, at either end. Mutations of
-// what a closed tip has that fail: the J of its rings kept, K_II lost where it slides.
+// field; nothing gives nothing. A kink turns a tip clockwise for K_II > 0, as it sees it, at either end. Mutation that
+// fails: a closed tip keeps the J of its rings.
 TEST_CASE("signs and scales of K") {
   for (const bool at_back : {true, false}) {
     Run run = cracked({{10.0, 4.0}, {10.0, 16.0}});
@@ -280,8 +280,8 @@ TEST_CASE("tip directions") {
 // Requires that a tip says what is so near that J and K are not to be trusted: an interface whose faces are apart
 // within 4 cells of the tip, or another rock, and within 3.5 cells an edge, the symmetry line, the other tip or a part
 // of the path that comes back; and that J and K are none nearer than 2 cells, 2.5 to faces that are apart. A bond
-// between like rocks is nothing, be it near or failed farther along. Mutations that fail: bonds that count; only the
-// whole interface's distance; one name for all; limits half a cell off.
+// between like rocks is nothing, be it near or failed farther along. Mutations that fail: bonds that count; a limit
+// half a cell off.
 TEST_CASE("a tip says what its rings are near") {
   struct Found {
     Obstacle near;

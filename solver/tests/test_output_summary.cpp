@@ -101,8 +101,7 @@ TEST_CASE("the summary holds the keys of the contract with the values of the sta
 
 // Requires that what is no number of a tip is null, with the reason beside it: all of J and K where the rings cross
 // something, each by its name; the kink of a closed tip, whose K_I and J are numbers; J below zero of an open tip
-// without inertia, and no other. Mutations that fail: numbers kept; all null where a tip is only near something; 0 for
-// null.
+// without inertia, and no other. Mutation that fails: numbers kept where the rings cross something.
 TEST_CASE("numbers of a tip that are none are null, with the reason") {
   State state = made_state();
   Scene scene = made_scene();

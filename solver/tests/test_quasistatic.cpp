@@ -267,8 +267,7 @@ TEST_CASE("a step of the study's law is of second order in the openings") {
 // Requires that what an interface cannot carry lets go at the start, in a block without a fracture, too: 0.3 MPa of
 // tension across a bond of 0.2 between held edges. All of it is released: with M = E (1 - nu)/((1 + nu) (1 - 2 nu)) the
 // rock stores t^2/(2 M) an area and twice that is supplied. A bond of 0.4 MPa holds, and where nothing holds the upper
-// half it is a mechanism. Mutations that fail: nothing let go; only the worst column; the in-situ stress left out of
-// what a bond carries; work of the in-situ tractions halved.
+// half it is a mechanism. Mutation that fails: nothing let go.
 TEST_CASE("what an interface cannot carry lets go at the start") {
   Scene scene = block(8, 8);
   hold_edges(scene);
@@ -316,7 +315,7 @@ double K_of(const Steps& s) {
 // Requires one equilibrium under the whole load to be the one that the load's slow rise leads to, with friction and
 // with a bond that fails, each beside the same interface bonded for good: K_I to 0.3 %, where the interface takes 3 %
 // and more of it, the same columns apart (a bond's: but for one), every bonded place below its strength, and the ledger
-// closed. Mutations that fail: nothing let go at the start; one column only; its reaction forgotten, or doubled.
+// closed. Mutation that fails: nothing let go at the start.
 TEST_CASE("one equilibrium is what a slow rise of the load leads to") {
   const double bonded = K_of(Steps(below_interface(weak_law(1e12, 1e12))));
   for (const InterfaceLaw& law : {friction_law(0.05), weak_law(0.3e6, 0.3e6), weak_law(0.3e6, 0.3e6, 0.02)}) {
@@ -346,7 +345,7 @@ TEST_CASE("one equilibrium is what a slow rise of the load leads to") {
 }
 
 // Requires that an interface without friction holds nothing from the start and dissipates nothing, as springs without
-// shear stiffness do, which no event lets go. Mutations that fail: bonded at the start (K_I 10 % less).
+// shear stiffness do, which no event lets go. Mutation that fails: bonded at the start.
 TEST_CASE("faces without friction are apart from the start") {
   Steps slick(below_interface(friction_law(0.0))), springs(below_interface(soft_law(1e13, 1.0)));
   CHECK_FALSE(failure_due(slick.statics));
