@@ -283,7 +283,7 @@ std::vector<Key> fluid_keys() {
       number(
           "fluid.minimum_opening_m", "m", not_negative,
           +[](Scene& s, std::size_t) -> double& { return s.fluid.minimum_opening_m; },
-          "Least opening in the permeability w^2/12."),
+          "Least opening in the permeability w^2/12: what closed faces conduct."),
       number(
           "fluid.inlet.start_Pa", "Pa", not_negative,
           +[](Scene& s, std::size_t) -> double& { return s.fluid.start_Pa; },

@@ -136,15 +136,15 @@ TEST_CASE("flow and rock that do not come together") {
   Fed fine(fed(1e-3));
   CHECK_NOTHROW(fine.step(0.1));
   CHECK(fine.run.state.time > 0.0);
-  Fed never(fed(1e15));
+  Fed never(fed(1e16));
   CHECK_THROWS_WITH(never.step(0.1),
                     Catch::StartsWith("at t = 0 s, in any step: ") && Catch::Contains("did not converge"));
-  Fed halved(fed(1e4));
-  constexpr double too_long = 1.0;  // s
+  Fed halved(fed(1e8));
+  constexpr double too_long = 0.1;  // s
   State trial = halved.run.state;
   CHECK_FALSE(advance_fluid(halved.run.scene, too_long, trial, halved.statics.model).found);
   halved.run.state.dt = too_long;
-  CHECK_NOTHROW(halved.step(10.0));
+  CHECK_NOTHROW(halved.step(1.0));
   CHECK(halved.run.state.time > 0.0);
   CHECK(halved.run.state.time <= 0.5 * too_long);
   CHECK(std::abs(halved.run.state.monitors.volume_balance) < 1e-9);
