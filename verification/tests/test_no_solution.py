@@ -81,7 +81,7 @@ def check_failed(folder: Path, done: subprocess.CompletedProcess[str], *words: s
 @pytest.mark.parametrize(
     "change, words",
     [
-        ("fluid.inlet={rate_m2_s=1e12}", ("at t = 0 s, in any step: ", "did not converge in 100 iterations")),
+        ("fluid.inlet={rate_m2_s=1e12}", ("at t = 0 s, in any step: ",)),  # by iterations or by values: digits decide
         ("fluid.minimum_opening_m=1e100", ("at t = 0 s, in any step: ", "values that are not finite")),
     ],
 )
