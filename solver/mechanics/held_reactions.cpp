@@ -39,7 +39,8 @@ void for_each_held(const TotalPlace& place, const SurfacePoint& s, const Interfa
   if (!(r_n > 0.0)) return;
   close();
   const double bound = r_n * (law.kind == Kind::weak ? law.residual_friction : law.coefficient);
-  if (std::abs(r_t) < (1.0 - 1e-9) * bound) hold(tangent, k, s.w.dot(tangent) + r_t_start / k);
+  constexpr double sticks = 1.0 - 1e-9;  // of the bound, at which sliding places stand but for round-off
+  if (std::abs(r_t) < sticks * bound) hold(tangent, k, s.w.dot(tangent) + r_t_start / k);
 }
 
 std::vector<Held> find_held(const State& state, const TotalSurfaces& surfaces) {
