@@ -10,6 +10,7 @@
 #include "fracture/growth.hpp"
 #include "fracture/j_integral.hpp"
 #include "mechanics/explicit_step.hpp"
+#include "mechanics/failure.hpp"
 #include "mechanics/interface_laws.hpp"
 #include "mechanics/new_openings.hpp"
 #include "mechanics/surface_tractions.hpp"
@@ -37,7 +38,8 @@ void close_ledger(const Scene& scene, const std::vector<Elasticity>& rocks, cons
   require_stable(scene, rocks, state);
 }
 
-void advance_updated(const Scene& scene, const std::vector<Elasticity>& rocks, bool look, bool grow_now, State& state) {
+void advance_updated(const Scene& scene, const std::vector<Elasticity>& rocks, bool look, bool grow_now,
+                     Resting& resting, State& state) {
   advance_pressure(scene, state);                               // P(s) from the opening at the step's start
   set_body_acceleration(scene, state.time, state);              // b(X_p, t)
   if (!state.gathered) particles_to_grid(scene, rocks, state);  // m_i, mom_i, f_i
@@ -62,10 +64,12 @@ void advance_updated(const Scene& scene, const std::vector<Elasticity>& rocks, b
   ++state.step;
   close_ledger(scene, rocks, grid, after, particles, state);
   expect_momentum(scene, state);
-  const bool changed = fail_interfaces(scene, rocks, state);  // bonded places that now let go
+  const bool changed = bonds_fail(scene, rocks, state);
+  if (changed) let_go(failing_columns(scene, state, state.bonds), state.bonds, state);
   if (look) measure_tips(scene, rocks, state);                // J, K_I, K_II with the same P
   if (look) watch_flow(scene, state);
-  const bool grown = grow_now && grow(scene, rocks, state);  // new points ahead of the tip
+  if (grow_now) weigh_growth(scene, rocks, state, resting);   // G where energy decides
+  const bool grown = grow_now && grow(scene, rocks, state);   // new points ahead of the tip
   watch_tips(scene, state);
   const bool moved = state.step % steps_between_rebuilds == 0 || particles.farthest_cells > bin_reach_cells;
   if (changed || grown || moved) {
@@ -82,12 +86,17 @@ bool any_runs(const State& state) {
 
 }  // namespace
 
-void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, bool look) {
+void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Resting& resting, bool look) {
   const bool grows = state.has_fracture && scene.fracture->growth != Fracture::Growth::none;
   const bool grow_now = grows && ((state.step + 1) % scene.numerics.tip_steps == 0 || any_runs(state));
   const bool total = scene.numerics.kinematics == Numerics::Kinematics::total;
-  (total ? advance_total : advance_updated)(scene, rocks, look || grow_now, grow_now, state);
+  (total ? advance_total : advance_updated)(scene, rocks, look || grow_now, grow_now, resting, state);
   require_finite(state);
+}
+
+void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, bool look) {
+  Resting none;
+  advance(scene, rocks, state, none, look);
 }
 
 void complete_particles(const Scene& scene, State& state) {

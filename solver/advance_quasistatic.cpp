@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
 
 #include "advance_fluid.hpp"
 #include "advance_load.hpp"
@@ -27,55 +26,6 @@ constexpr double first_flow_step = 1e-3;  // s, after each event; steps then gro
 // is. Of flow and rock in one system a step is of shortest_coupled_step at least, whatever is tried.
 constexpr double shortest_trial = 1e-7;
 
-bool by_energy(const Scene& scene, const State& state, const Tip& tip) {
-  if (scene.fracture->growth == Fracture::Growth::energy) return true;
-  return scene.fracture->crossing == Fracture::Crossing::energy &&
-         interface_within(scene, state, tip, scene.fracture->crossing_increment() + 0.01 * state.grid.h);
-}
-
-double increment_of(const Scene& scene, const Tip& tip) {
-  return tip.criterion == "energy" ? scene.fracture->crossing_increment() : scene.fracture->increment_m;
-}
-
-bool may_grow(const Scene& scene, const State& state, const Tip& tip) {
-  return scene.fracture->growth != Fracture::Growth::none && tip.growing && !stopped_by_edge(scene, state, tip);
-}
-
-// The trial's load: the state's own and, on the new segment, the pressure of the tip (it is wetted).
-void load_trial(const State& state, GrowthTrial& trial) {
-  const Tip& tip = state.tips[trial.tip];
-  Surface& longer = trial.state.fracture();
-  const auto& points = state.fracture().points;
-  const std::size_t added = longer.points.size() - points.size(), first = tip.at_back ? 0 : added;
-  const double tip_P = tip.at_back ? state.fluid.P.back() : state.fluid.P.front();
-  for (SurfacePoint& s : longer.points) s.P = tip_P;
-  for (std::size_t q = 0; q < points.size(); ++q) longer.points[first + q].P = points[q].P;
-}
-
-// Friction's memory of the trial: that of the state it starts from.
-void share_memory(const State& state, const std::vector<ContactPlace>& places, GrowthTrial& trial) {
-  const std::size_t added = trial.state.fracture().points.size() - state.fracture().points.size();
-  const std::size_t shift = state.tips[trial.tip].at_back ? 0 : added;
-  for (ContactPlace& place : trial.model.places) {
-    if (place.tie >= 0) continue;
-    const auto same = std::find_if(places.begin(), places.end(), [&](const ContactPlace& other) {
-      return other.tie < 0 && other.surface == place.surface &&
-             other.point + (other.surface == 0 ? shift : 0) == place.point;
-    });
-    if (same == places.end()) continue;
-    place.w_t_start = same->w_t_start, place.r_t_start = same->r_t_start;
-  }
-}
-
-// Energy released per length (N/m) if a tip grew at the present load.
-double energy_released(const Scene& scene, const State& state, const Quasistatic& run, GrowthTrial& trial) {
-  load_trial(state, trial);
-  share_memory(state, run.model.places, trial);
-  const Equilibrium longer = find_equilibrium(scene, state.time, trial.state, trial.model);
-  const double before = run.equilibrium.energy + dissipated_by_friction(run.model, run.equilibrium);
-  return (before - longer.energy - dissipated_by_friction(trial.model, longer)) / trial.increment;
-}
-
 // A rock without toughness lets a tip grow as soon as the fracture is open there: where K_I, and the K that each
 // opening within two cells behind the tip stands for (w = 8 K/E' sqrt(x/(2 pi))), exceed what a cell resolves of the
 // net pressure's own. Fluid that has just wetted the last cells would let the tip run ahead of the open fracture
@@ -95,19 +45,21 @@ double toughless_margin(const State& state, double E_prime, const Tip& tip) {
   return 1.0 + (K - resolved * net * std::sqrt(state.grid.h)) / large_K;
 }
 
-// How near a tip is to growth: sqrt(J/J_c), or the same of the energy released.
+// How near a tip is to growth: sqrt(G/J_c) by what decides about it.
 double tip_margin(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, Quasistatic& run,
                   std::size_t k, Tip& tip) {
   const Elasticity& rock = rocks[rock_ahead(scene, state, tip)];
   const double J_c = rock.J_c;
-  if (tip.criterion == "energy") {
-    const auto trial =
-        std::find_if(run.trials.begin(), run.trials.end(), [k](const GrowthTrial& t) { return t.tip == k; });
-    tip.G_trial = energy_released(scene, state, run, *trial);
-    return J_c > 0.0 ? std::sqrt(std::max(0.0, tip.G_trial) / J_c) : (tip.G_trial > 0.0 ? 2.0 : 0.0);
+  double G = 0.0;
+  if (tip.criterion == Criterion::energy || tip.criterion == Criterion::slope) {
+    G = tip.G_trial = energy_release(scene, state, run.model, run.equilibrium, k, run.trials);
+    if (tip.criterion == Criterion::slope && tip.closed) G = 0.0;
+    if (J_c == 0.0) return G > 0.0 ? 2.0 : 0.0;
+  } else {
+    if (J_c == 0.0) return toughless_margin(state, rock.E_prime, tip);
+    G = driving_J(rock, tip, tip.criterion == Criterion::K);
   }
-  if (J_c == 0.0) return toughless_margin(state, rock.E_prime, tip);
-  return std::sqrt(driving_J(rock, tip) / J_c);
+  return std::sqrt(std::max(0.0, G) / J_c);
 }
 
 double margin_of(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
@@ -116,37 +68,12 @@ double margin_of(const Scene& scene, const std::vector<Elasticity>& rocks, State
     if (may_grow(scene, state, state.tips[k]))
       margin = std::max(margin, tip_margin(scene, rocks, state, run, k, state.tips[k]));
   }
-  load_bonds(scene, rocks, state, run.model.bonds);
-  bool sound = true;
+  judge_bonds(scene, state, forces_of_rock(rocks, state, run.model.bonds), run.model.bonds);
+  margin = std::max(margin, run.model.bonds.worst);
+  bool sound = !std::isnan(run.model.bonds.worst);
   for (const Tip& tip : state.tips) sound = sound && std::isfinite(tip.G_trial);
-  for (const BondedPlace& place : run.model.bonds.places) {
-    sound = sound && !std::isnan(place.index);
-    margin = std::max(margin, place.index);
-  }
   if (!sound) throw NumericalFailure("the energy released or the load of a bonded interface is not finite");
   return margin;
-}
-
-// Which criterion decides about each tip where it now stands, and the trials that need it.
-void make_trials(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
-  std::vector<GrowthTrial> former = std::exchange(run.trials, {});
-  for (std::size_t k = 0; k < state.tips.size(); ++k) {
-    Tip& tip = state.tips[k];
-    if (!may_grow(scene, state, tip)) continue;
-    tip.criterion = by_energy(scene, state, tip) ? "energy" : "J";
-    if (tip.criterion != "energy") continue;
-    GrowthTrial& trial = run.trials.emplace_back();
-    trial.tip = k;
-    trial.turn = tip.turn;
-    trial.state = state;
-    trial.increment = extend_tip(scene, trial.state, trial.state.tips[k], increment_of(scene, tip));
-    trial.model.body = run.model.body;
-    trial.model.condensed = run.model.condensed;
-    for (GrowthTrial& before : former) {
-      if (before.tip == k) trial.model.factor = std::move(before.model.factor);
-    }
-    update_equations(scene, rocks, trial.state, trial.model);
-  }
 }
 
 void look_at_tips(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, const Quasistatic& run) {
@@ -163,10 +90,8 @@ void equilibrate(const Scene& scene, const std::vector<Elasticity>& rocks, State
   set_fields(scene, state, run.model, run.equilibrium);
   if (state.dt <= 0.0) state.dt = 1.0;  // J's inertia divides by it; there is none
   look_at_tips(scene, rocks, state, run);
-  const bool turned = std::any_of(run.trials.begin(), run.trials.end(), [&](const GrowthTrial& trial) {
-    return std::abs(trial.turn - state.tips[trial.tip].turn) > 1e-12;
-  });
-  if (turned && scene.fracture->direction == Fracture::Direction::max_hoop) make_trials(scene, rocks, state, run);
+  if (!trials_hold(scene, state, run.trials))
+    run.trials = make_trials(scene, rocks, state, run.model, std::move(run.trials));
   run.margin = margin_of(scene, rocks, state, run);
 }
 
@@ -212,38 +137,21 @@ void rebuild_all(const Scene& scene, const std::vector<Elasticity>& rocks, State
   state.monitors.mirror = run.model.body->halved();
   run.rules = make_tip_rules(scene, rocks, state);
   state.ledger.fracture = fracture;  // what springs of tips give back is in the difference of stored energy already
-  make_trials(scene, rocks, state, run);
+  run.trials = make_trials(scene, rocks, state, run.model, std::move(run.trials));
 }
 
-double worst_index(const Quasistatic& run) {
-  double worst = 0.0;
-  for (const BondedPlace& place : run.model.bonds.places) worst = std::max(worst, place.index);
-  return worst;
-}
-
-// Splits the columns of the worst bonded places and, where half a block answers for the whole, their mirror images,
-// which are as bad but for round-off. Places under friction give nothing up by splitting, so all that slide split at
-// once.
-void fail_worst(const Scene& scene, const Quasistatic& run, State& state) {
-  constexpr double as_bad = 1e-6;
-  const double worst = worst_index(run);
-  std::set<std::pair<std::size_t, int>> columns;  // of surfaces
-  for (const BondedPlace& bad : run.model.bonds.places) {
-    const Surface& surface = state.surfaces[bad.surface];
-    const bool friction = scene.laws[surface.law].kind == InterfaceLaw::Kind::friction;
-    if (bad.index < (friction ? 1.0 : (1.0 - as_bad) * worst)) continue;
-    const int column = surface.points[bad.point].column;
-    columns.emplace(bad.surface, column);
-    if (run.model.body->halved()) columns.emplace(bad.surface, state.grid.nx - column);
+// Lets what fails go; where half a block answers for the whole, with its mirror image, which is as bad but for
+// round-off.
+void fail(const Scene& scene, const Quasistatic& run, State& state) {
+  Columns columns = failing_columns(scene, state, run.model.bonds);
+  if (run.model.body->halved()) {
+    for (const auto& [surface, column] : Columns{columns}) columns.emplace(surface, state.grid.nx - column);
   }
+  let_go(columns, run.model.bonds, state);
   for (const BondedPlace& place : run.model.bonds.places) {
     SurfacePoint& s = state.surfaces[place.surface].points[place.point];
-    if (!columns.contains({place.surface, s.column})) continue;
-    s.split = true;
-    s.failed_s = state.time;
-    s.bonded = jump_at(run.model.condensed, state.point_stencils[place.surface][place.point], run.equilibrium.j);
-    s.w = Vec2::Zero();
-    s.reaction = place.carried;  // friction starts from the shear it carried
+    if (s.split)
+      s.bonded = jump_at(run.model.condensed, state.point_stencils[place.surface][place.point], run.equilibrium.j);
   }
 }
 
@@ -270,7 +178,7 @@ void lengthen(const Scene& scene, std::vector<Growing>& growing, State& state) {
   for (Growing& g : growing) {
     Tip& tip = state.tips[g.tip];
     const std::size_t points = state.fracture().points.size();
-    note_growth(state, tip, tip.criterion.c_str(), tip.criterion == "energy" || !at_interface(tip));
+    note_growth(state, tip, name_of(tip.criterion), tip.criterion != Criterion::J || !at_interface(tip));
     g.increment = extend_tip(scene, state, tip, g.increment);
     const std::size_t added = state.fracture().points.size() - points;
     add_fluid_cells(scene, tip.at_back, added, state);
@@ -310,7 +218,7 @@ void let_happen(const Scene& scene, const std::vector<Elasticity>& rocks, State&
   std::vector<Growing> growing;
   double energy_before = 0.0;
   if (failure_due(run)) {
-    fail_worst(scene, run, state);
+    fail(scene, run, state);
   } else {
     growing = tips_that_grow(scene, rocks, state, run);
     energy_before = find_equilibrium(scene, state.time, state, run.model).energy;  // against friction's present memory
@@ -386,7 +294,7 @@ void locate_event(const Scene& scene, const std::vector<Elasticity>& rocks, cons
 }  // namespace
 
 bool failure_due(const Quasistatic& run) {
-  return worst_index(run) >= 1.0;
+  return run.model.bonds.worst >= 1.0;
 }
 
 void start_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
@@ -420,9 +328,8 @@ void start_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks,
 
 void restart_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
   forget_solution(scene, rocks, state, run.model);
-  const bool as_made = std::all_of(run.trials.begin(), run.trials.end(),
-                                   [&](const GrowthTrial& trial) { return trial.turn == state.tips[trial.tip].turn; });
-  if (!as_made) make_trials(scene, rocks, state, run);
+  if (std::ranges::any_of(run.trials, [&](const GrowthTrial& t) { return t.turn != state.tips[t.tip].turn; }))
+    run.trials = make_trials(scene, rocks, state, run.model, std::move(run.trials));
   for (GrowthTrial& trial : run.trials) forget_solution(scene, rocks, trial.state, trial.model);
   equilibrate(scene, rocks, state, run);
 }

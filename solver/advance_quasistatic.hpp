@@ -3,21 +3,13 @@
 
 #include <optional>
 
+#include "advance_trials.hpp"
 #include "fracture/tip_rules.hpp"
 #include "mechanics/quasistatic.hpp"
 #include "state/elasticity.hpp"
 #include "state/state.hpp"
 
 namespace strata {
-
-// The fracture one increment longer at a tip: what would be released if it grew, at any load.
-struct GrowthTrial {
-  std::size_t tip = 0;
-  double increment = 0.0;  // m
-  double turn = 0.0;       // of the tip when it was made (rad)
-  State state;
-  QuasistaticModel model;
-};
 
 // What a quasi-static run holds beside its state. All of it follows from the state, so a run can be resumed from that.
 struct Quasistatic {

@@ -8,6 +8,7 @@
 #include "fracture/growth.hpp"
 #include "fracture/j_integral.hpp"
 #include "mechanics/explicit_step.hpp"
+#include "mechanics/failure.hpp"
 #include "mechanics/interface_laws.hpp"
 #include "mechanics/new_openings.hpp"
 #include "mechanics/tip_ties.hpp"
@@ -69,7 +70,8 @@ void rebuild_total(const Scene& scene, const std::vector<Elasticity>& rocks, boo
 
 }  // namespace
 
-void advance_total(const Scene& scene, const std::vector<Elasticity>& rocks, bool look, bool grow_now, State& state) {
+void advance_total(const Scene& scene, const std::vector<Elasticity>& rocks, bool look, bool grow_now,
+                   Resting& resting, State& state) {
   const double keep = 1.0 - scene.numerics.damping_1_s * state.dt;
   start_base(scene, rocks, state);                  // after events: a_i of the particles' stress
   advance_pressure(scene, state);                   // P(s) from the opening at the step's start
@@ -82,16 +84,17 @@ void advance_total(const Scene& scene, const std::vector<Elasticity>& rocks, boo
   state.time += state.dt;
   ++state.step;
   if (look) note_motion(state);
+  const bool changed = bonds_fail(scene, rocks, state);
   const double elastic = find_accelerations(scene, rocks, state);  // a_i = -(M^-1 K u)_i + ...
   close_ledger(scene, rocks, moved, external, elastic, work_of_loads(state.ledger) - before, state);
   expect_momentum(scene, state);
-  bool changed = false;
-  if (any_bond_fails(scene, state)) {
+  if (changed) {  // bonded places let go
     bring_up_to_date(scene, state);
-    changed = fail_interfaces(scene, rocks, state);  // bonded places that now let go
+    let_go(failing_columns(scene, state, state.bonds), state.bonds, state);
   }
   if (look) measure_tips(scene, rocks, state);  // J, K_I, K_II with the same P
   if (look) watch_flow(scene, state);
+  if (grow_now) weigh_growth(scene, rocks, state, resting);
   bool grown = false;
   if (grow_now && ready_to_grow(scene, rocks, state)) {
     bring_up_to_date(scene, state);

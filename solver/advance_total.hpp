@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "advance_growth.hpp"
 #include "state/elasticity.hpp"
 #include "state/state.hpp"
 
@@ -13,8 +14,10 @@ constexpr std::int64_t steps_between_bases = 500;
 
 /// One step state.dt of the study's algorithm on nodes that keep their particles. Between events (growth, failure of an
 /// interface, output) all that a step needs is fixed, and particles stand still at the last base; see
-/// bring_up_to_date(). look: measure the tips at its end; grow: let them grow. Throws NumericalFailure where the motion
+/// bring_up_to_date(). look: measure the tips at its end; grow: let them grow; resting: see
+/// weigh_growth(). Throws NumericalFailure where the motion
 /// is no longer finite.
-void advance_total(const Scene& scene, const std::vector<Elasticity>& rocks, bool look, bool grow, State& state);
+void advance_total(const Scene& scene, const std::vector<Elasticity>& rocks, bool look, bool grow, Resting& resting,
+                   State& state);
 
 }  // namespace strata

@@ -8,7 +8,9 @@
 #include "fracture/refine_beside.hpp"
 #include "mechanics/equilibrium.hpp"
 #include "mechanics/explicit_step.hpp"
+#include "mechanics/failure.hpp"
 #include "mechanics/tip_ties.hpp"
+#include "scene/path_geometry.hpp"
 #include "scene/points_across.hpp"
 #include "state/body_force.hpp"
 #include "state/make_grid.hpp"
@@ -50,7 +52,10 @@ Particles make_particles(const Scene& scene, const std::vector<Elasticity>& rock
 void make_fracture(const Scene& scene, State& state) {
   if (!scene.fracture) return;
   std::vector<Vec2> path;
-  for (const auto& x : scene.fracture->path_m) path.emplace_back(x[0], x[1]);
+  for (const auto& x : scene.fracture->path_m) {
+    const Point from = path.empty() ? x : Point{path.back().x(), path.back().y()};
+    for (const Point& end : legs_between_interfaces(scene, from, x)) path.emplace_back(end[0], end[1]);
+  }
   state.has_fracture = true;
   state.surfaces.push_back(make_surface(Surface::Kind::fracture, 0, path, surface_spacing(state.grid)));
   const Surface& fracture = state.fracture();
@@ -143,6 +148,7 @@ State initialise(const Scene& scene, const std::vector<Elasticity>& rocks) {
 
 void restore(const Scene& scene, State& state) {
   rebuild_copies(scene, state);  // springs of tips were saved with what they carry
+  if (scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics) state.bonds = find_bonds(scene, state);
 }
 
 }  // namespace strata

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <span>
 
+#include "fracture/criterion.hpp"
 #include "fracture/j_integral.hpp"
 #include "fracture/refine_beside.hpp"
 #include "fracture/tip_rings.hpp"
+#include "scene/path_geometry.hpp"
 #include "state/quarters.hpp"
 #include "state/rebuild.hpp"
 
@@ -75,8 +77,9 @@ double rayleigh_wait(const Scene& scene, const Elasticity& rock) {
 
 bool ready(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Tip& tip) {
   const Elasticity& ahead = rocks[rock_ahead(scene, state, tip)];
-  const double J = driving_J(ahead, tip);
-  if (!tip.growing || J <= 0.0 || J < ahead.J_c) return false;
+  const bool by_energy = tip.criterion == Criterion::energy || tip.criterion == Criterion::slope;
+  const double G = by_energy ? tip.G_trial : driving_J(ahead, tip, tip.criterion == Criterion::K);
+  if (!tip.growing || G <= 0.0 || G < ahead.J_c) return false;
   return state.time >= tip.due_s;
 }
 
@@ -284,7 +287,9 @@ double extend_tip(const Scene& scene, State& state, Tip& tip, double increment, 
   const double old_length = fracture.length();
   const std::size_t old_points = fracture.points.size();
   const double length = increment_to_interface(scene, from, direction, increment, times);
-  extend(fracture, tip.at_back, from + length * direction, surface_spacing(state.grid));
+  const Vec2 to = from + length * direction;
+  for (const Point& end : legs_between_interfaces(scene, {from.x(), from.y()}, {to.x(), to.y()}))
+    extend(fracture, tip.at_back, {end[0], end[1]}, surface_spacing(state.grid));
   const std::size_t pieces = fracture.points.size() - old_points;
   lengthen_fluid(scene, state, tip.at_back, pieces);
   if (scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics && scene.numerics.keeps_places())
@@ -321,18 +326,24 @@ bool stopped_by_edge(const Scene& scene, const State& state, const Tip& tip) {
   return !what_stops(scene, state, tip).empty();
 }
 
-bool interface_within(const Scene& scene, const State& state, const Tip& tip, double reach) {
-  const double at = stacking_coordinate(scene, tip_position(state, tip));
-  for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
-    if (real_interface(scene, k) && std::abs(scene.strata.interfaces[k].at_m - at) <= reach) return true;
-  }
-  return false;
-}
-
-double driving_J(const Elasticity& rock, const Tip& tip) {
-  if (tip.K_I <= 0.0 || tip.J <= 0.0) return 0.0;
-  if (tip.near != Obstacle::none) return tip.J;
-  return std::min(tip.J, 2.0 * (tip.K_I * tip.K_I + tip.K_II * tip.K_II) / rock.E_prime);
+double shorten_tip(State& state, Tip& tip, double length) {
+  Surface& fracture = state.fracture();
+  constexpr double round_off = 1e-9;
+  std::size_t pieces = 0;
+  double gone = 0.0;
+  const auto piece = [&](std::size_t k) {
+    return tip.at_back ? fracture.points[fracture.points.size() - 1 - k].A : fracture.points[k].A;
+  };
+  while (pieces + 1 < fracture.points.size() && gone + piece(pieces) <= length * (1.0 + round_off))
+    gone += piece(pieces++);
+  const auto take = [&](auto& list) {
+    const auto n = static_cast<std::ptrdiff_t>(pieces);
+    list.erase(tip.at_back ? list.end() - n : list.begin(), tip.at_back ? list.end() : list.begin() + n);
+  };
+  take(fracture.points), take(fracture.vertices), take(state.fluid.P);
+  if (!tip.at_back) state.fluid.inlet -= std::min(pieces, state.fluid.inlet);
+  update_geometry(fracture);
+  return gone;
 }
 
 void note_growth(State& state, Tip& tip, const char* by, bool trusted) {
@@ -340,7 +351,7 @@ void note_growth(State& state, Tip& tip, const char* by, bool trusted) {
   if (tip.arrested) record(state, "restart", tip, state.time, state.fluid.inlet_Pa, !trusted, by);
   tip.has_grown = true;
   tip.arrested = false;
-  tip.criterion = by;
+  tip.grew_by = by;
   tip.last_growth_s = state.time;
   tip.last_growth_Pa = state.fluid.inlet_Pa;
   Monitors& monitors = state.monitors;
@@ -377,9 +388,13 @@ bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state
       tip.stopped_by = what_stops(scene, state, tip);
       continue;
     }
-    const double times = increments_due(scene, rocks[rock_ahead(scene, state, tip)], state, tip);
-    note_growth(state, tip, "J", !at_interface(tip));
-    extend_tip(scene, state, tip, scene.fracture->increment_m, times);
+    double times = increments_due(scene, rocks[rock_ahead(scene, state, tip)], state, tip);
+    const bool finite = tip.criterion == Criterion::energy;
+    if (finite) times = 1.0;
+    note_growth(state, tip, name_of(tip.criterion), tip.criterion != Criterion::J || !at_interface(tip));
+    extend_tip(scene, state, tip, finite ? scene.fracture->crossing_increment() : scene.fracture->increment_m, times);
+    tip.G = tip.G_trial;
+    tip.G_trial = 0.0;
     moved = true;
   }
   return moved;
@@ -398,9 +413,8 @@ void watch_tips(const Scene& scene, State& state) {
     }
     if (tip.has_grown && !tip.arrested && tip.growing && state.fluid.inlet_Pa - tip.last_growth_Pa >= arrest_rise_Pa) {
       tip.arrested = true;
-      const bool doubtful = tip.criterion != "energy" && at_interface(tip);
-      const std::string by = tip.criterion;
-      record(state, "arrest", tip, tip.last_growth_s, tip.last_growth_Pa, doubtful, by.c_str());
+      const bool doubtful = tip.criterion == Criterion::J && at_interface(tip);
+      record(state, "arrest", tip, tip.last_growth_s, tip.last_growth_Pa, doubtful, tip.grew_by.c_str());
     }
   }
 }

@@ -9,8 +9,8 @@
 
 namespace strata {
 
-/// Moves every tip whose J has reached J_c = K_Ic^2/E' of the rock ahead (and whose K confirms it) by an increment,
-/// along its own direction or that of maximum hoop stress. A tip moves no faster than the Rayleigh speed of that rock:
+/// Moves every tip at which what decides about it (tip.criterion; of energy tip.G_trial) has reached J_c = K_Ic^2/E' of
+/// the rock ahead by an increment, along its own direction or that of maximum hoop stress. A tip moves no faster than the Rayleigh speed of that rock:
 /// the next increment waits for increment/c_R. Where more than one has become due in the step after that of the last,
 /// they come at once. What would cross an interface, or end less than a quarter of an increment short of it, ends on
 /// it; what starts on it, or less than a quarter of an increment before it, goes on. A tip that has grown to within 3
@@ -26,11 +26,6 @@ bool ready_to_grow(const Scene& scene, const std::vector<Elasticity>& rocks, con
 /// last one have not yet crossed the rings that J is measured in. Throws nothing.
 bool runs(const Tip& tip, double time);
 
-/// What drives a tip (N/m): J, but no more than twice (K_I^2 + K_II^2)/E', 0 for a closed tip. Where faces have just
-/// touched, or stand under a dry fluid, J may be several J_c while K is next to nothing: such a J is no energy release
-/// rate. Near interfaces K itself is not to be trusted and J stands alone. Throws nothing.
-double driving_J(const Elasticity& rock, const Tip& tip);
-
 /// Index of the rock that a tip is about to enter. Throws nothing.
 std::size_t rock_ahead(const Scene& scene, const State& state, const Tip& tip);
 
@@ -42,12 +37,13 @@ std::string what_stops(const Scene& scene, const State& state, const Tip& tip);
 /// Whether something stops it so.
 bool stopped_by_edge(const Scene& scene, const State& state, const Tip& tip);
 
-/// Whether an interface that does something (a law, or another rock beyond it) lies within `reach` (m) of a tip.
-bool interface_within(const Scene& scene, const State& state, const Tip& tip, double reach);
-
 /// Lengthens the fracture at a tip by `times` increments of `increment` (m), less where an interface stops it (see
 /// grow()); returns by how much (m). The copies must then be rebuilt. Throws nothing.
 double extend_tip(const Scene& scene, State& state, Tip& tip, double increment, double times = 1.0);
+
+/// Takes away the last pieces of the fracture at a tip, as many as lie within `length` (m) of it, but for one; returns
+/// how much (m). The copies must then be rebuilt. Throws nothing.
+double shorten_tip(State& state, Tip& tip, double length);
 
 /// Notes that a tip grows now: events start and restart, time and pressure of its last growth. by: what decided it.
 void note_growth(State& state, Tip& tip, const char* by, bool trusted);

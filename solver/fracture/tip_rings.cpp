@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "fracture/criterion.hpp"
 #include "fracture/j_integral.hpp"
 #include "state/shape_functions.hpp"
 
@@ -19,7 +20,7 @@ constexpr double pi = std::numbers::pi;
 // before an interface. Between, K_I is off by up to 0.3 % near rocks, springs and edges (0.4 % where it is trusted);
 // within, by 0.3 to 0.7 % at 2 cells, 2 to 17 % at 1, and by any amount nearer.
 constexpr double narrowest_ring_cells = 2.5;
-constexpr double least_cells = 2.0;  // nearer than this J and K are no numbers; faces that are apart not within a ring
+constexpr double least_cells = 2.0;  // nearer than this K is no number, nor is J
 constexpr double trusted_cells = narrowest_ring_cells + 1.0;
 constexpr double trusted_cells_at_interface = trusted_cells + 0.5;
 constexpr double inner_fraction = 0.6;  // q is 1 inside this fraction of a ring's radius: 0.3 costs 1 % in J
@@ -146,8 +147,8 @@ TipGeometry tip_geometry(const Scene& scene, const std::vector<Elasticity>& rock
   const Room room = ring_room(scene, state, tip, at.frame.tip);
   const double radius = std::max(room.radius, narrowest_ring_cells * state.grid.h);
   at.near = room.near;
-  const double least = room.near == Obstacle::interface ? narrowest_ring_cells : least_cells;
-  at.crossed = room.nearest < (least - 1e-3) * state.grid.h;
+  at.crossed = room.nearest < (least_cells - 1e-3) * state.grid.h;
+  at.no_length = past_open_interface(scene, state, tip) == 0.0;
   at.frame.e_1 = mean_direction(fracture, tip.at_back, radius);
   at.frame.e_2 = {-at.frame.e_1.y(), at.frame.e_1.x()};
   for (std::size_t k = 0; k < at.rings.size(); ++k)
@@ -296,7 +297,7 @@ void finish_tip(const Scene& scene, const TipGeometry& at, const State& state, c
   tip.J = mean;
   tip.J_spread = mean != 0.0 ? (most - least) / std::abs(mean) : 0.0;
   tip.K_I = K_I, tip.K_II = K_II;
-  tip.near = at.near, tip.crossed = at.crossed;
+  tip.near = at.near, tip.crossed = at.crossed, tip.no_length = at.no_length;
   close_where_faces_touch(scene, state, at, tip);
   tip.kink = kink_angle(tip.K_I, tip.K_II);
   tip.turn = at.lag + turn_taken(scene, scene.fracture->increment_m) * tip.kink;

@@ -48,7 +48,7 @@ struct TipGeometry {
   Frame frame;
   Rings rings;                     // the widest last
   Obstacle near = Obstacle::none;  // as Tip's
-  bool crossed = false;
+  bool crossed = false, no_length = false;
   Elasticity rock;   // ahead of the tip
   double lag = 0.0;  // of the last increment behind the frame (rad)
 };

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
+#include <numeric>
+#include <set>
+#include <span>
 #include <tuple>
 
 #include "mechanics/stiffness.hpp"
@@ -12,8 +14,6 @@
 namespace strata {
 
 namespace {
-
-constexpr double least_share = 0.1;  // of a cell: a column that reaches less of the interface has no mean to speak of
 
 // The rows (for a vertical interface: columns) of nodes that an interface splits when it lets go.
 struct Band {
@@ -36,12 +36,14 @@ Band band_of(const Scene& scene, const State& state, const Surface& surface) {
   return band;
 }
 
-// Whether the fracture splits the nodes of a column on one side of the interface.
-bool split_by_fracture(const State& state, const Band& band, int column, bool plus) {
+// Whether the fracture splits the nodes of a column on one side of the interface, for rock on these sides of others.
+bool split_by_fracture(const State& state, const Band& band, int column, SideWord sides, bool plus) {
   const int across = plus ? band.last : band.first;
   const int node = band.along_x ? state.grid.node(column, across) : state.grid.node(across, column);
   const int c = state.copies.cut_of_node[static_cast<std::size_t>(node)];
-  return c >= 0 && state.copies.cut[static_cast<std::size_t>(c)].fracture != 0;
+  if (c < 0) return false;
+  const CutNode& cut = state.copies.cut[static_cast<std::size_t>(c)];
+  return cut.key(sides | cut.fracture) != cut.key(sides & ~cut.fracture);
 }
 
 // Column, side of the interface, side of the fracture (-1: not told apart).
@@ -56,7 +58,8 @@ struct Builder {
 };
 
 SampleKey key_at(const Builder& b, int column, SideWord sides, bool plus) {
-  const bool parted = b.state.has_fracture && split_by_fracture(b.state, b.band, column, plus);
+  sides = plus ? sides | b.surface.mask() : sides & ~b.surface.mask();
+  const bool parted = b.state.has_fracture && split_by_fracture(b.state, b.band, column, sides, plus);
   return {column, plus, parted ? ((sides & b.state.fracture().mask()) != 0 ? 1 : 0) : -1};
 }
 
@@ -147,37 +150,131 @@ void add_lengths(Builder& b) {
         if (share == 0.0) continue;
         for (const bool plus : {false, true}) {
           BondSample& sample = b.samples[key_at(b, w.column[a], sides, plus)];
-          if (s.split) {
-            sample.loose.push_back({q, {share, 0.0}, 0.0});
-          } else {
-            sample.length += share;
-          }
+          sample.length += share;
+          if (s.split) sample.loose.push_back({q, {share, 0.0}, 0.0});
         }
       }
     }
   }
 }
 
-// Mean total stress that a sample implies on the interface, on the + face.
-Vec2 traction(const std::vector<Elasticity>& rocks, const State& state, const Surface& surface,
-              const BondSample& sample) {
-  const Particles& p = state.particles;
-  Vec2 force = Vec2::Zero();
-  for (const BondSample::Share& share : sample.particles) {
-    const std::size_t q = share.index;
-    force += stress_of(rocks[p.rock[q]], p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]).on(share.weight);
-    if (!state.body.empty()) force -= p.m[q] * share.Phi * state.body[q];
+// Whether a bonded point is the first behind what has let go or behind the fracture, where that reaches the interface.
+bool begins_stretch(const State& state, const Band& band, const Surface& surface, std::size_t q) {
+  if (q == 0 || surface.points[q - 1].split) return true;
+  const SurfacePoint &s = surface.points[q], &before = surface.points[q - 1];
+  if (!state.has_fracture || ((s.sides ^ before.sides) & state.fracture().mask()) == 0) return false;
+  const auto parted = [&](int column, bool plus) {
+    return split_by_fracture(state, band, column, plus ? s.sides | surface.mask() : s.sides, plus);
+  };
+  return parted(s.column, false) || parted(s.column, true) || parted(before.column, false) ||
+         parted(before.column, true);
+}
+
+// sum_p m_p Phi N_ip by records.
+void add_inertia(Builder& b) {
+  if (b.scene.numerics.mechanics == Numerics::Mechanics::quasistatic) return;
+  const Particles& p = b.state.particles;
+  std::vector<std::size_t> bin_of(p.size());
+  for (std::size_t k = 0; k < b.state.bins.size(); ++k) {
+    const Bin& bin = b.state.bins[k];
+    for (int q = bin.first; q < bin.last; q += bin.stride) bin_of[static_cast<std::size_t>(q)] = k;
   }
+  for (auto& [key, sample] : b.samples) {
+    std::map<int, double> masses;
+    for (const BondSample::Share& share : sample.particles) {
+      const Bin& bin = b.state.bins[bin_of[share.index]];
+      const Gradients g = gradients_at(b.scene, b.state.grid, bin.i, bin.j, {p.x[share.index], p.y[share.index]},
+                                       p.half(share.index));
+      for (std::size_t n = 0; n < 9; ++n) masses[bin.record[n]] += p.m[share.index] * share.Phi * g.N[n];
+    }
+    for (const auto& [record, m] : masses) sample.inertia.push_back({record, m});
+  }
+}
+
+// Columns without a bonded point of their own: beyond an edge or the fracture they reach over with a corner of their
+// functions, and what they carry there is given to the column beside them; where the column has let go its copies carry
+// nothing but what its points exert.
+void join_columns(Builder& b) {
+  std::set<SampleKey> bonded;
+  std::set<int> loose;
+  for (const SurfacePoint& s : b.surface.points) {
+    if (s.split) loose.insert(s.column);
+    for (const bool plus : {false, true}) {
+      if (!s.split) bonded.insert(key_at(b, s.column, s.sides, plus));
+    }
+  }
+  std::map<SampleKey, BondSample> kept;
+  for (auto& [key, sample] : b.samples) {
+    const auto& [column, plus, side] = key;
+    SampleKey to = key;
+    for (const SampleKey& beside : {SampleKey{column + 1, plus, side}, SampleKey{column - 1, plus, side}}) {
+      if (!bonded.contains(key) && bonded.contains(beside)) to = beside;
+    }
+    if (loose.contains(column) || !bonded.contains(to)) continue;
+    BondSample& into = kept[to];
+    const auto append = [](auto& all, const auto& more) { all.insert(all.end(), more.begin(), more.end()); };
+    append(into.particles, sample.particles), append(into.faces, sample.faces), append(into.loose, sample.loose);
+    append(into.inertia, sample.inertia);
+    into.length += sample.length;
+  }
+  b.samples = std::move(kept);
+}
+
+// Traction of a sample's bonded places (Pa, on the + face, less the in-situ one) where its rock exerts a force.
+Vec2 traction(const State& state, const BondSample& sample, Vec2 force) {
   for (const BondSample::Share& share : sample.faces) {
     const SurfacePoint& s = state.fracture().points[share.index];
     force -= share.weight.x() * (s.P * s.n - s.in_situ + s.reaction);
   }
   force *= -sample.sign;
   for (const BondSample::Share& share : sample.loose) {
-    const SurfacePoint& s = surface.points[share.index];
+    const SurfacePoint& s = state.surfaces[sample.surface].points[share.index];
     force -= share.weight.x() * (s.reaction - s.in_situ);
   }
   return force / sample.length;
+}
+
+// The length (m) that a place of a stretch stands for. What has let go ends at the first node that is not split, as a
+// fracture does: the piece between the two belongs to it, though the force of its column is still carried.
+double piece_of(const Surface& surface, std::size_t point) {
+  const auto split = [&](std::size_t q) { return q < surface.points.size() && surface.points[q].split; };
+  return split(point + 1) || (point > 0 && split(point - 1)) ? 0.0 : surface.points[point].A;
+}
+
+// Judges the places of one stretch of bonded interface: what its pieces of a length carry on average counts for the
+// places in them that carry most.
+void judge(const Surface& surface, const InterfaceLaw& law, double length, std::span<BondedPlace> stretch) {
+  constexpr double round_off = 1e-9, as_bad = 1.0 - 1e-6;
+  const Vec2 n = surface.points.front().n, t = tangent_of(n);
+  const auto index_of = [&](const Vec2& carried) { return failure_index(law, carried.dot(n), carried.dot(t)); };
+  std::vector<double> piece, local;
+  for (BondedPlace& place : stretch) {
+    piece.push_back(piece_of(surface, place.point)), local.push_back(index_of(place.carried));
+    place.index = 0.0;
+  }
+  if (std::ranges::count(piece, 0.0) == std::ssize(piece)) {  // between two ends and nothing left of it
+    for (std::size_t k = 0; k < piece.size(); ++k) piece[k] = surface.points[stretch[k].point].A;
+  }
+  length = std::min(length, std::accumulate(piece.begin(), piece.end(), 0.0));
+  for (const bool back : {false, true}) {
+    const auto at = [&](std::size_t k) { return back ? stretch.size() - 1 - k : k; };
+    for (std::size_t from = 0; from < stretch.size(); ++from) {
+      Vec2 force = Vec2::Zero();
+      double left = length, most = 0.0;
+      std::size_t k = from;
+      for (; k < stretch.size() && left > 0.0; left -= piece[at(k)], ++k) {
+        const double share = piece[at(k)] > left ? left / piece[at(k)] : 1.0;
+        force += share * surface.points[stretch[at(k)].point].A * stretch[at(k)].carried;
+        if (!(local[at(k)] <= most)) most = local[at(k)];
+      }
+      if (left > round_off * length) break;  // the rest is shorter still
+      const double index = index_of(force / length);
+      for (std::size_t j = from; j < k; ++j) {
+        const bool counts = !(local[at(j)] < as_bad * most) && !(index <= stretch[at(j)].index);
+        if (counts) stretch[at(j)].index = index;  // one that is not a number stays
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -192,6 +289,10 @@ double failure_index(const InterfaceLaw& law, double n, double t) {
   return t == 0.0 ? 0.0 : std::abs(t) / (law.coefficient * n);
 }
 
+double failure_length(const Scene& scene, const InterfaceLaw& law) {
+  return law.failure_length_m.value_or(scene.fracture ? scene.fracture->increment_m : scene.numerics.cell_m);
+}
+
 Bonds find_bonds(const Scene& scene, const State& state) {
   Bonds bonds;
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
@@ -203,19 +304,21 @@ Bonds find_bonds(const Scene& scene, const State& state) {
     add_particles(b);
     add_faces(b);
     add_lengths(b);
+    add_inertia(b);
+    join_columns(b);
     std::map<SampleKey, std::size_t> at;
     for (auto& [key, sample] : b.samples) {
-      if (sample.length < least_share * state.grid.h) continue;
       sample.sign = std::get<1>(key) ? -1.0 : 1.0;
+      sample.surface = k;
       at.emplace(key, bonds.samples.size());
       bonds.samples.push_back(std::move(sample));
     }
     for (std::size_t q = 0; q < surface.points.size(); ++q) {
       const SurfacePoint& s = surface.points[q];
       if (s.split) continue;
-      BondedPlace place{k, q, {}, 0.0, Vec2::Zero()};
-      const bool below = split_by_fracture(state, b.band, s.column, false),
-                 above = split_by_fracture(state, b.band, s.column, true);
+      BondedPlace place{k, q, {}, begins_stretch(state, b.band, surface, q), Vec2::Zero(), 0.0};
+      const bool below = split_by_fracture(state, b.band, s.column, s.sides, false),
+                 above = split_by_fracture(state, b.band, s.column, s.sides | surface.mask(), true);
       for (const bool plus : {false, true}) {
         if (below != above && (plus ? above : below) == false) continue;  // the side that the fracture parts tells more
         const auto found = at.find(key_at(b, s.column, s.sides, plus));
@@ -227,18 +330,63 @@ Bonds find_bonds(const Scene& scene, const State& state) {
   return bonds;
 }
 
-void load_bonds(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, Bonds& bonds) {
-  std::vector<std::optional<Vec2>> of_sample(bonds.samples.size());  // places of a column share theirs
-  for (BondedPlace& place : bonds.places) {
-    const Surface& surface = state.surfaces[place.surface];
-    const SurfacePoint& s = surface.points[place.point];
-    place.carried = s.in_situ;
-    for (const std::size_t k : place.samples) {
-      if (!of_sample[k]) of_sample[k] = traction(rocks, state, surface, bonds.samples[k]);
-      place.carried += *of_sample[k] / static_cast<double>(place.samples.size());
+std::vector<Vec2> forces_of_rock(const std::vector<Elasticity>& rocks, const State& state, const Bonds& bonds) {
+  const Particles& p = state.particles;
+  std::vector<Vec2> forces;
+  for (const BondSample& sample : bonds.samples) {
+    Vec2& force = forces.emplace_back(Vec2::Zero());
+    for (const BondSample::Share& share : sample.particles) {
+      const std::size_t q = share.index;
+      force += stress_of(rocks[p.rock[q]], p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]).on(share.weight);
+      if (!state.body.empty()) force -= p.m[q] * share.Phi * state.body[q];
     }
-    const Vec2 t{s.n.y(), -s.n.x()};
-    place.index = failure_index(scene.laws[surface.law], place.carried.dot(s.n), place.carried.dot(t));
+    for (const BondSample::Mass& mass : sample.inertia) {
+      const NodeMotion node = state.motion[static_cast<std::size_t>(mass.record)];
+      force += mass.m / state.dt * Vec2{node.dv_x, node.dv_y};
+    }
+  }
+  return forces;
+}
+
+void judge_bonds(const Scene& scene, const State& state, const std::vector<Vec2>& forces, Bonds& bonds) {
+  std::vector<Vec2> of_sample;
+  for (std::size_t k = 0; k < forces.size(); ++k) of_sample.push_back(traction(state, bonds.samples[k], forces[k]));
+  for (BondedPlace& place : bonds.places) {
+    place.carried = state.surfaces[place.surface].points[place.point].in_situ;
+    for (const std::size_t k : place.samples) place.carried += of_sample[k] / static_cast<double>(place.samples.size());
+  }
+  bonds.worst = 0.0;
+  for (auto first = bonds.places.begin(); first != bonds.places.end();) {
+    const auto last = std::find_if(first + 1, bonds.places.end(), [](const BondedPlace& p) { return p.begins; });
+    const Surface& surface = state.surfaces[first->surface];
+    const InterfaceLaw& law = scene.laws[surface.law];
+    judge(surface, law, failure_length(scene, law), {first, last});
+    for (; first != last; ++first) {
+      if (!(first->index <= bonds.worst)) bonds.worst = first->index;
+    }
+  }
+}
+
+Columns failing_columns(const Scene& scene, const State& state, const Bonds& bonds) {
+  constexpr double as_bad = 1e-6;
+  Columns columns;
+  for (const BondedPlace& place : bonds.places) {
+    const Surface& surface = state.surfaces[place.surface];
+    const bool friction = scene.laws[surface.law].kind == InterfaceLaw::Kind::friction;
+    if (place.index >= (friction ? 1.0 : std::max(1.0, (1.0 - as_bad) * bonds.worst)))
+      columns.emplace(place.surface, surface.points[place.point].column);
+  }
+  return columns;
+}
+
+void let_go(const Columns& columns, const Bonds& bonds, State& state) {
+  for (const BondedPlace& place : bonds.places) {
+    SurfacePoint& s = state.surfaces[place.surface].points[place.point];
+    if (!columns.contains({place.surface, s.column})) continue;
+    s.split = true;
+    s.failed_s = state.time;
+    s.w = Vec2::Zero();  // what neighbours' splitting let it open while bonded is no gap, and no overlap to push back
+    s.reaction = place.carried - std::min(0.0, place.carried.dot(s.n)) * s.n;
   }
 }
 

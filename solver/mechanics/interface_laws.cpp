@@ -7,6 +7,7 @@
 
 #include "mechanics/failure.hpp"
 #include "mechanics/surface_law.hpp"
+#include "mechanics/total_surfaces.hpp"
 
 namespace strata {
 
@@ -139,18 +140,6 @@ void find_split_places(const Scene& scene, const std::vector<Elasticity>& rocks,
   }
 }
 
-// Mean total stress over the samples.
-Stress sampled_stress(const std::vector<Elasticity>& rocks, const Particles& p,
-                      const std::vector<StressSample>& samples) {
-  Stress mean;
-  for (const StressSample& sample : samples) {
-    const auto q = static_cast<std::size_t>(sample.particle);
-    const Stress change = stress_of(rocks[p.rock[q]], p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]);
-    mean = mean + sample.weight * (p.in_situ[q] + change);
-  }
-  return mean;
-}
-
 }  // namespace
 
 Reaction react(const InterfaceLaw& law, double k, const FreeJump& w) {
@@ -217,38 +206,12 @@ void require_settled(int sweeps, double change, double largest, const State& sta
                   state.step, sweeps, change, traction));
 }
 
-bool fails(const InterfaceLaw& law, const Reaction& r) {
-  return failure_index(law, r.n, r.t) >= 1.0;
-}
-
-bool fail_interfaces(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
-  bool any = false;
-  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
-    Surface& surface = state.surfaces[k];
-    if (state.stress_samples[k].empty()) continue;
-    std::vector<Vec2>& carried = state.carried;
-    std::vector<char>& failed = state.failed;
-    carried.resize(surface.points.size());
-    failed.assign(surface.points.size(), 0);  // by column; there are fewer columns than points
-    for (std::size_t q = 0; q < surface.points.size(); ++q) {
-      const SurfacePoint& s = surface.points[q];
-      if (s.split) continue;
-      carried[q] = -sampled_stress(rocks, state.particles, state.stress_samples[k][q]).on(s.n);
-      const Reaction r{carried[q].dot(s.n), carried[q].dot(Vec2{s.n.y(), -s.n.x()})};
-      if (fails(scene.laws[surface.law], r)) failed[static_cast<std::size_t>(s.column)] = 1;
-    }
-    for (std::size_t q = 0; q < surface.points.size(); ++q) {
-      SurfacePoint& s = surface.points[q];
-      if (s.split || failed[static_cast<std::size_t>(s.column)] == 0) continue;
-      s.split = true;
-      s.failed_s = state.time;
-      s.w = Vec2::Zero();  // what neighbours' splitting let it open while bonded is no gap, and no overlap to push back
-      // The law takes over from what was carried; tension it cannot carry, and shear only as far as friction holds it.
-      s.reaction = carried[q] - std::min(0.0, carried[q].dot(s.n)) * s.n;
-      any = true;
-    }
-  }
-  return any;
+bool bonds_fail(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+  Bonds& bonds = state.bonds;
+  if (bonds.places.empty() || (state.step % looks_at_bonds != 0 && bonds.worst < nearly_fails)) return false;
+  judge_bonds(scene, state, state.total.based ? forces_of_nodes(state) : forces_of_rock(rocks, state, bonds), bonds);
+  if (std::isnan(bonds.worst)) throw NumericalFailure("the load of a bonded interface is not finite");
+  return bonds.worst >= 1.0;
 }
 
 void solve_reactions(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {

@@ -62,13 +62,13 @@ void note_sweeps(int sweeps, double change, double largest, Monitors& monitors);
 /// are no solution. What is left below that is noted, and marks the run. Throws NumericalFailure.
 void require_settled(int sweeps, double change, double largest, const State& state);
 
-/// True if a bonded place fails under the reaction r: where failure_index() is 1 or more. Throws nothing.
-bool fails(const InterfaceLaw& law, const Reaction& r);
+// Bonded interfaces are looked at every so many steps; in every one once a place has come so near to failure.
+constexpr std::int64_t looks_at_bonds = 4;
+constexpr double nearly_fails = 0.9;
 
-/// Checks the bonded points of weak and friction interfaces against the mean total stress of the particles around them
-/// and splits the columns of those that fail. The law takes over from what they carried: compression, and shear as what
-/// friction remembers, which the law then bounds. Returns true if any did; the copies must then be rebuilt.
-bool fail_interfaces(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
+/// Whether any bonded place of a run with inertia fails now, by judge_bonds(), which is left in state.bonds. Throws
+/// NumericalFailure where what it carries is not finite.
+bool bonds_fail(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
 
 /// Finds the reactions of all split places and of the springs of tips together (successive over-relaxation on D M^-1
 /// D^T, started from the last step's reactions) and adds what they do to state.motion, which holds the motion without

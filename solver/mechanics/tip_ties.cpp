@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mechanics/failure.hpp"
 #include "state/rebuild.hpp"
 
 namespace strata {
@@ -30,7 +31,8 @@ double energy(const TipTie& tie) {
 }
 
 // The spring of a node pair behind a tip, or one of no stiffness.
-TipTie make_tie(double c, const Elasticity& rock, const State& state, int node, bool at_back) {
+TipTie make_tie(double c, const Elasticity& rock, const State& state, int node, const Tip& tip) {
+  const bool at_back = tip.at_back;
   const Grid& g = state.grid;
   const Surface& fracture = state.fracture();
   TipTie tie;
@@ -39,7 +41,7 @@ TipTie make_tie(double c, const Elasticity& rock, const State& state, int node, 
   tie.s.n = at_back ? fracture.points.back().n : fracture.points.front().n;
   tie.s.A = 1.0;
   tie.s.split = true;
-  tie.s.sides = sides_at(state, tie.s.x, fracture.bit);
+  tie.s.sides = sides_ahead(state, tip);  // rock behind an interface that is apart is cut through
   const Projection on = project(fracture, tie.s.x, extension(g));
   const double behind = (at_back ? fracture.length() - on.arc : on.arc) / g.h;
   if (behind <= slack_cells || behind >= 1.0 - slack_cells) return tie;
@@ -66,7 +68,7 @@ void update_tip_ties(const Scene& scene, const std::vector<Elasticity>& rocks, S
       const Vec2 x{state.grid.x(state.grid.column(node)), state.grid.y(state.grid.row(node))};
       // A tied node is less than a cell behind the tip and no more than 1.5 cells across: never as far as this.
       if ((x - at).norm() > 3.0 * state.grid.h) continue;
-      TipTie tie = make_tie(tip_tie_coefficient(scene), rock, state, node, tip.at_back);
+      TipTie tie = make_tie(tip_tie_coefficient(scene), rock, state, node, tip);
       if (tie.stiffness == 0.0) continue;
       const auto before = std::find_if(old.begin(), old.end(), [node](const TipTie& t) { return t.node == node; });
       if (before != old.end()) {
@@ -83,6 +85,7 @@ void update_tip_ties(const Scene& scene, const std::vector<Elasticity>& rocks, S
 void rebuild(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
   rebuild_copies(scene, state);
   update_tip_ties(scene, rocks, state);
+  if (scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics) state.bonds = find_bonds(scene, state);
 }
 
 }  // namespace strata

@@ -17,7 +17,8 @@ namespace strata {
 /// jump; energy in springs that vanish goes to the ledger's fracture term. Call after rebuild_copies().
 void update_tip_ties(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
 
-/// All that follows from particles and surfaces: rebuild_copies(), then the springs of the present tips. Throws
+/// All that follows from particles and surfaces: rebuild_copies(), then the springs of the present tips and, of runs
+/// with inertia, the bonded places of interfaces. Throws
 /// NumericalFailure as rebuild_copies() does.
 void rebuild(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "mechanics/failure.hpp"
 #include "mechanics/held_reactions.hpp"
 #include "mechanics/interface_laws.hpp"
 #include "mechanics/surface_law.hpp"
@@ -280,22 +281,20 @@ BondSensor::Entry& entry_at(BondSensor& sensor, int slot) {
   return sensor.entries.emplace_back(BondSensor::Entry{slot, 0.0, 0.0, 0.0, 0.0});
 }
 
-void add_sample(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
-                const StressSample& sample, const Bin& bin, const Vec2& n, BondSensor& sensor) {
+// What a particle of a sample adds to its force where the nodes of its bin move.
+void add_particle(const Scene& scene, const Elasticity& rock, const State& state, const BondSample::Share& share,
+                  const Bin& bin, BondSensor& sensor) {
   const Particles& p = state.particles;
-  const auto q = static_cast<std::size_t>(sample.particle);
-  const Elasticity& rock = rocks[p.rock[q]];
-  const Stress change = stress_of(rock, p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]);
-  sensor.base -= sample.weight * (p.in_situ[q] + change).on(n);
+  const std::size_t q = share.index;
   const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
   for (std::size_t k = 0; k < 9; ++k) {
     const auto r = static_cast<std::size_t>(bin.record[k]);
     const Master& master = state.masters[r];
-    const Vec2 by_x = sample.weight * stress_of(rock, g.N_x[k], g.N_y[k], 0.0, 0.0).on(n);
-    const Vec2 by_y = sample.weight * stress_of(rock, 0.0, 0.0, g.N_x[k], g.N_y[k]).on(n);
+    const Vec2 by_x = stress_of(rock, g.N_x[k], g.N_y[k], 0.0, 0.0).on(share.weight);
+    const Vec2 by_y = stress_of(rock, 0.0, 0.0, g.N_x[k], g.N_y[k]).on(share.weight);
     BondSensor::Entry& entry = entry_at(sensor, state.total.op->slots.of_record[r]);
-    entry.xx -= master.x * by_x.x(), entry.yx -= master.x * by_x.y();
-    entry.xy -= master.y * by_y.x(), entry.yy -= master.y * by_y.y();
+    entry.xx += master.x * by_x.x(), entry.yx += master.x * by_x.y();
+    entry.xy += master.y * by_y.x(), entry.yy += master.y * by_y.y();
   }
 }
 
@@ -305,37 +304,34 @@ std::vector<BondSensor> make_bond_sensors(const Scene& scene, const std::vector<
                                           const State& state) {
   std::vector<BondSensor> sensors;
   const std::vector<int> bin_of = bins_of_particles(state);
-  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
-    const Surface& surface = state.surfaces[k];
-    for (std::size_t q = 0; q < state.stress_samples[k].size(); ++q) {
-      const SurfacePoint& s = surface.points[q];
-      if (s.split) continue;
-      BondSensor sensor;
-      sensor.surface = static_cast<int>(k), sensor.point = static_cast<int>(q);
-      for (const StressSample& sample : state.stress_samples[k][q]) {
-        const int b = bin_of[static_cast<std::size_t>(sample.particle)];
-        add_sample(scene, rocks, state, sample, state.bins[static_cast<std::size_t>(b)], s.n, sensor);
-      }
-      sensors.push_back(std::move(sensor));
+  for (const BondSample& sample : state.bonds.samples) {
+    BondSensor& sensor = sensors.emplace_back();
+    for (const BondSample::Share& share : sample.particles) {
+      const Bin& bin = state.bins[static_cast<std::size_t>(bin_of[share.index])];
+      add_particle(scene, rocks[state.particles.rock[share.index]], state, share, bin, sensor);
     }
+    for (const BondSample::Mass& mass : sample.inertia)
+      entry_at(sensor, state.total.op->slots.of_record[static_cast<std::size_t>(mass.record)]).m += mass.m;
   }
+  Bonds still = state.bonds;
+  for (BondSample& sample : still.samples) sample.inertia.clear();
+  const std::vector<Vec2> base = forces_of_rock(rocks, state, still);
+  for (std::size_t k = 0; k < sensors.size(); ++k) sensors[k].base = base[k];
   return sensors;
 }
 
-bool any_bond_fails(const Scene& scene, const State& state) {
+std::vector<Vec2> forces_of_nodes(const State& state) {
   const TotalMotion& t = state.total;
+  std::vector<Vec2> forces;
   for (const BondSensor& sensor : t.bonds) {
-    Vec2 carried = sensor.base;
+    Vec2& force = forces.emplace_back(sensor.base);
     for (const BondSensor::Entry& e : sensor.entries) {
       const auto slot = static_cast<std::size_t>(e.slot);
-      carried.x() += e.xx * t.u_x[slot] + e.xy * t.u_y[slot];
-      carried.y() += e.yx * t.u_x[slot] + e.yy * t.u_y[slot];
+      force.x() += e.xx * t.u_x[slot] + e.xy * t.u_y[slot] + e.m * t.a_x[slot];
+      force.y() += e.yx * t.u_x[slot] + e.yy * t.u_y[slot] + e.m * t.a_y[slot];
     }
-    const Surface& surface = state.surfaces[static_cast<std::size_t>(sensor.surface)];
-    const SurfacePoint& s = surface.points[static_cast<std::size_t>(sensor.point)];
-    if (fails(scene.laws[surface.law], {carried.dot(s.n), carried.dot(tangent_of(s.n))})) return true;
   }
-  return false;
+  return forces;
 }
 
 }  // namespace strata

@@ -30,11 +30,11 @@ TotalSurfaces make_total_surfaces(const Scene& scene, const std::vector<Elastici
 /// keep: share of its velocity that a node keeps.
 double step_surfaces(double keep, State& state);
 
-/// The bonded places that may fail, with their tractions as linear functions of the nodal displacements since the base;
-/// see fail_interfaces().
+/// The forces of the rock of the samples of bonded places as linear functions of the nodal displacements since the base
+/// and accelerations; particles must be up to date. Throws nothing but std::bad_alloc.
 std::vector<BondSensor> make_bond_sensors(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state);
 
-/// Whether any bonded place fails under its present traction, by fails().
-bool any_bond_fails(const Scene& scene, const State& state);
+/// What forces_of_rock() gives, from the nodes (N/m). Throws nothing.
+std::vector<Vec2> forces_of_nodes(const State& state);
 
 }  // namespace strata

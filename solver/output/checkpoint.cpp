@@ -15,7 +15,7 @@ namespace strata {
 namespace {
 
 constexpr std::string_view magic = "strata-checkpoint\n";
-constexpr std::uint32_t format_version = 10;  // to be raised with every change of what is saved
+constexpr std::uint32_t format_version = 11;  // to be raised with every change of what is saved
 constexpr std::uint32_t byte_order = 0x01020304;
 
 // Values that are saved as the bytes they are.
@@ -77,11 +77,13 @@ void fields(Archive& ar, Is<TipTie> auto& tie) {
 
 template <class Archive>
 void fields(Archive& ar, Is<Tip> auto& tip) {
-  auto& [at_back, growing, stopped_by, K_I, K_II, J, J_spread, ring_m, kink, turn, closed, near, crossed, last_growth_s,
-         last_growth_Pa, due_s, runs_until_s, J_at_growth, J_spread_at_growth, G_trial, G, G_by_J, criterion, has_grown,
+  auto& [at_back, growing, stopped_by, K_I, K_II, J, J_spread, ring_m, kink, turn, closed, near, crossed, no_length,
+         last_growth_s,
+         last_growth_Pa, due_s, runs_until_s, J_at_growth, J_spread_at_growth, G_trial, G, G_by_J, criterion, grew_by, has_grown,
          arrested, reached] = tip;
-  ar(at_back, growing, stopped_by, K_I, K_II, J, J_spread, ring_m, kink, turn, closed, near, crossed, last_growth_s,
-     last_growth_Pa, due_s, runs_until_s, J_at_growth, J_spread_at_growth, G_trial, G, G_by_J, criterion, has_grown,
+  ar(at_back, growing, stopped_by, K_I, K_II, J, J_spread, ring_m, kink, turn, closed, near, crossed, no_length,
+     last_growth_s,
+     last_growth_Pa, due_s, runs_until_s, J_at_growth, J_spread_at_growth, G_trial, G, G_by_J, criterion, grew_by, has_grown,
      arrested, reached);
 }
 

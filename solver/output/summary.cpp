@@ -48,7 +48,7 @@ Json tips_json(const Scene& scene, const State& state) {
                     {"K_II_Pa_sqrt_m", told.K_II_Pa_sqrt_m},
                     {"J_N_m", told.J_N_m},
                     {"J_spread", told.J_spread},
-                    {"G_N_m", tip.criterion == "energy" ? tip.G_trial : tip.G},
+                    {"G_N_m", tip.criterion == Criterion::energy || tip.criterion == Criterion::slope ? tip.G_trial : tip.G},
                     {"kink_deg", told.kink_deg},
                     {"reason", told.reason},
                     {"near", name_of(tip.near)},

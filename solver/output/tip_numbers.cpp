@@ -39,9 +39,14 @@ TipNumbers tip_numbers(const Scene& scene, const Tip& tip) {
   if (tip.crossed && !shut) {
     told = {none, none, none, none, none, std::string("the rings on which J and K are measured cross ")};
     told.reason += words_of(tip.near).crossed;
+    if (tip.no_length)
+      told.reason = "the tip stands on an interface whose faces have come apart: it has no length in the rock ahead";
   } else if (tip.closed) {
     told.kink_deg = none;
     told.reason = "the tip is closed: it has no direction to open into";
+  } else if (tip.near == Obstacle::interface) {
+    told.J_N_m = told.J_spread = none;
+    told.reason = "the rings on which J is measured reach over an interface whose faces have come apart";
   } else if (tip.J < 0.0 && scene.numerics.mechanics == Numerics::Mechanics::quasistatic) {
     told.J_N_m = told.J_spread = none;
     told.reason =

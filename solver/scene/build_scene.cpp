@@ -95,7 +95,7 @@ void build_law(const Entries& entries, const std::string& name, std::size_t inde
     if (!key.path.starts_with("interface.")) continue;
     const auto given = entries.values.find(full_path(key, name));
     if (given == entries.values.end()) continue;
-    if (key.law.empty() || key.law == in_force) {
+    if (key.is_of(in_force)) {
       apply(given->second, index, scene);
     } else if (known && given->second.where.rank >= law->second.where.rank) {
       faults.add(given->second.where,
@@ -136,17 +136,6 @@ void choose_inlet(const Positions& positions, Scene& scene, Faults& faults) {
                            "pressure, inlet = {{start_Pa, rate_Pa_s}}: a fracture fed at a rate starts at its closing "
                            "stress.",
                            start == pressure ? "start_Pa" : "rate_Pa_s"));
-  }
-}
-
-// The criterion of crossing left out of a quasi-static scene is energy. It, which no other can use, falls back on its
-// default where a variant or --set above it has chosen mechanics = "explicit".
-void follow_mechanics(const Positions& positions, Scene& scene) {
-  if (!scene.fracture) return;
-  if (scene.numerics.mechanics == Numerics::Mechanics::quasistatic) {
-    if (!positions.given("fracture.crossing")) scene.fracture->crossing = Fracture::Crossing::energy;
-  } else if (rank_of(positions, "numerics.mechanics") > rank_of(positions, "fracture.crossing")) {
-    scene.fracture->crossing = Fracture::Crossing::J;
   }
 }
 
@@ -337,7 +326,6 @@ Scene build_scene(const Entries& entries, const Positions& positions, Faults& fa
   if (has_table(entries, "fracture")) scene.fracture.emplace();
   apply_plain_keys(entries, scene);
   choose_inlet(positions, scene, faults);
-  follow_mechanics(positions, scene);
   build_rocks(entries, scene);
   build_laws(entries, scene, faults);
   check_required(entries, positions, faults);

@@ -18,12 +18,6 @@ void check_explicit(const Scene& scene, const Positions& positions, Faults& faul
   const auto refuse = [&](std::string_view path, const std::string& typed, std::string_view advice) {
     if (positions.sound(path)) faults.add(where_is(positions, path), fmt::format("{} {}", typed, advice));
   };
-  if (scene.fracture && scene.fracture->crossing == Fracture::Crossing::energy) {
-    refuse("fracture.crossing",
-           "fracture.crossing = \"energy\" compares equilibria and needs mechanics = "
-           "\"quasistatic\", but mechanics = \"explicit\".",
-           "Use crossing = \"J\", or leave it out.");
-  }
   if (scene.fracture && scene.fracture->growth == Fracture::Growth::energy) {
     refuse("fracture.growth",
            "fracture.growth = \"energy\" compares equilibria and needs mechanics = \"quasistatic\", "

@@ -54,9 +54,12 @@ struct Key {
   std::vector<std::string> variables;  // that formulas may use
   Place place;
   bool required = false;
-  std::string law;     // the interface law that the key belongs to; empty: any
+  std::string law;     // the interface law or laws that the key belongs to; empty: any
   std::string advice;  // what to do where the value is out of bounds
   std::string help;
+
+  /// Whether the key is one of an interface with this law. Throws nothing.
+  bool is_of(std::string_view name) const { return law.empty() || (!name.empty() && law.find(name) != law.npos); }
 };
 
 /// All keys, in the order in which a scene is written. Throws nothing but std::bad_alloc.

@@ -43,4 +43,23 @@ std::optional<std::pair<std::size_t, std::size_t>> self_contact(const std::vecto
   return std::nullopt;
 }
 
+std::vector<Point> legs_between_interfaces(const Scene& scene, const Point& from, const Point& to) {
+  constexpr double on_it = 1e-6;  // of the line: an end that stands on an interface
+  const std::size_t axis = scene.strata.along == Strata::Along::y ? 1 : 0;
+  std::vector<double> shares;
+  for (const InterfacePlace& place : scene.strata.interfaces) {
+    if (scene.laws[place.law].kind == InterfaceLaw::Kind::perfect) continue;
+    const double share = (place.at_m - from[axis]) / (to[axis] - from[axis]);
+    if (share > on_it && share < 1.0 - on_it) shares.push_back(share);
+  }
+  std::sort(shares.begin(), shares.end());
+  std::vector<Point> ends;
+  for (const double share : shares) {
+    Point& end = ends.emplace_back();
+    for (std::size_t k = 0; k < 2; ++k) end[k] = from[k] + share * (to[k] - from[k]);
+  }
+  ends.push_back(to);
+  return ends;
+}
+
 }  // namespace strata

@@ -84,6 +84,7 @@ struct InterfaceLaw {
   double shear_strength_Pa = 0.5e6;      // weak
   double tensile_strength_Pa = 0.5e6;    // weak
   double residual_friction = 0.0;        // weak, after failure
+  std::optional<double> failure_length_m;  // weak, friction; absent: the increment of growth (see mechanics/failure.hpp)
   double normal_stiffness_Pa_m = 0.5e6;  // soft
   double shear_stiffness_Pa_m = 0.5e6;   // soft
   Compression compression = Compression::contact;
@@ -130,7 +131,7 @@ struct Fracture {
   double increment_m = 1.0;
   double turn_share = 0.5;  // largest share of the maximum-hoop kink that an increment turns by
   Direction direction = Direction::straight;
-  Crossing crossing = Crossing::J;             // left out of a quasi-static scene: energy
+  Crossing crossing = Crossing::energy;
   std::optional<double> crossing_increment_m;  // absent: increment_m
   Faces faces = Faces::contact;
 

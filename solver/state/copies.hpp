@@ -16,8 +16,8 @@ namespace strata {
 
 struct CutNode {
   SideWord mask = 0;              // the surfaces that split this node
-  std::vector<SideWord> entered;  // with interfaces too: the sides of them that the fracture has entered; elsewhere
-                                  // it does not split the node, although its extension passes there
+  std::vector<SideWord> entered;  // with interfaces too: the sides of them on which the fracture splits it, those that
+                                  // it has entered; ahead of a tip only those behind an interface that is apart
   SideWord fracture = 0;          // the fracture's bit, where it splits this node
   std::vector<std::array<SideWord, 2>>
       joined;                  // a corner with hardly any rock, and the one that its particles belong to
@@ -72,12 +72,6 @@ struct Strip {
 struct Master {
   int record = 0;
   double x = 1.0, y = 1.0;
-};
-
-// A particle's share in the mean stress on a piece of interface that is still bonded.
-struct StressSample {
-  int particle = 0;
-  double weight = 0.0;
 };
 
 // The nodes that a place on a surface reaches: D w = sum_i N_i (u[plus_i] - u[minus_i]).

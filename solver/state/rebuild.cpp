@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "state/blocks.hpp"
+#include "state/elasticity.hpp"
 #include "state/light_copies.hpp"
 #include "state/make_grid.hpp"
 #include "state/parts.hpp"
@@ -113,42 +114,83 @@ int mirror_of(const Grid& g, const Mirrors& m, int node, bool across_x) {
   return -1;
 }
 
-std::vector<SideWord> node_masks(const Scene& scene, const State& state) {
-  std::vector<SideWord> mask(static_cast<std::size_t>(state.grid.nodes()), 0);
-  for (const Surface& s : state.surfaces) {
-    if (s.kind == Surface::Kind::fracture) mark_fracture(scene, state, mask);
-    if (s.kind == Surface::Kind::interface) mark_interface(scene, state, s, mask);
+// What splits each node, and which of them the fracture splits ahead of a tip: the number of that tip + 1.
+struct NodeMasks {
+  std::vector<SideWord> word;
+  std::vector<char> ahead;
+};
+
+// The sides of some interfaces that the fracture has entered; but for those of the rock ahead of a tip, where one is
+// given.
+std::vector<SideWord> entered_sides(const State& state, SideWord interfaces, const Tip* tip) {
+  std::vector<SideWord> entered;
+  for (const SurfacePoint& point : state.fracture().points) {
+    const SideWord word = point.sides & interfaces;
+    if (std::find(entered.begin(), entered.end(), word) == entered.end()) entered.push_back(word);
   }
+  if (tip != nullptr) std::erase(entered, sides_ahead(state, *tip) & interfaces);
+  return entered;
+}
+
+// Where an interface has come apart, a tip on it or beyond it belongs to the rock ahead alone: the rock behind is cut
+// through, by the fracture's straight extension where its copies belong to nodes that are not behind the tip.
+void mark_ahead(const Scene& scene, const State& state, NodeMasks& masks) {
+  const Surface& s = state.fracture();
+  const Grid& g = state.grid;
+  const double half = (support_in_cells(scene) - slack_cells) * g.h;
+  for (std::size_t t = 0; t < state.tips.size(); ++t) {
+    const Vec2 at = tip_position(state, state.tips[t]);
+    const Vec2 to = at + extension(g) * tip_direction(s, state.tips[t].at_back);
+    const int i = g.column_at(at.x()), j = g.row_at(at.y()), reach = static_cast<int>(extension(g) / g.h) + 2;
+    for (int b = std::max(j - reach, -1); b <= std::min(j + reach, g.ny + 1); ++b) {
+      for (int a = std::max(i - reach, -1); a <= std::min(i + reach, g.nx + 1); ++a) {
+        const auto node = static_cast<std::size_t>(g.node(a, b));
+        SideWord& word = masks.word[node];
+        if (word == 0 || (word & s.mask()) != 0 || !segment_meets_box(at, to, {g.x(a), g.y(b)}, half)) continue;
+        if (entered_sides(state, word, &state.tips[t]).empty()) continue;
+        word |= s.mask();
+        masks.ahead[node] = static_cast<char>(t + 1);
+      }
+    }
+  }
+}
+
+NodeMasks node_masks(const Scene& scene, const State& state) {
+  const auto nodes = static_cast<std::size_t>(state.grid.nodes());
+  NodeMasks masks{std::vector<SideWord>(nodes, 0), std::vector<char>(nodes, 0)};
+  for (const Surface& s : state.surfaces) {
+    if (s.kind == Surface::Kind::fracture) mark_fracture(scene, state, masks.word);
+    if (s.kind == Surface::Kind::interface) mark_interface(scene, state, s, masks.word);
+  }
+  if (state.has_fracture) mark_ahead(scene, state, masks);
   const Mirrors mirrors = mirrored_edges(scene);
   for (const bool across_x : {true, false}) {
     for (int node = 0; node < state.grid.nodes(); ++node) {
       const int inside = mirror_of(state.grid, mirrors, node, across_x);
-      if (inside >= 0) mask[static_cast<std::size_t>(node)] = mask[static_cast<std::size_t>(inside)];
+      if (inside < 0) continue;
+      const auto ghost = static_cast<std::size_t>(node), image = static_cast<std::size_t>(inside);
+      masks.word[ghost] = masks.word[image], masks.ahead[ghost] = masks.ahead[image];
     }
   }
-  return mask;
+  return masks;
 }
 
-void make_cut_nodes(const State& state, const std::vector<SideWord>& mask, Copies& copies) {
-  copies.cut_of_node.assign(mask.size(), -1);
+void make_cut_nodes(const State& state, const NodeMasks& masks, Copies& copies) {
+  copies.cut_of_node.assign(masks.word.size(), -1);
   copies.cut.clear();
-  copies.node_of_record.resize(mask.size());
+  copies.node_of_record.resize(masks.word.size());
   std::iota(copies.node_of_record.begin(), copies.node_of_record.end(), 0);
   const SideWord fracture = state.has_fracture ? state.fracture().mask() : 0;
-  for (std::size_t node = 0; node < mask.size(); ++node) {
-    if (mask[node] == 0) continue;
+  for (std::size_t node = 0; node < masks.word.size(); ++node) {
+    if (masks.word[node] == 0) continue;
     copies.cut_of_node[node] = static_cast<int>(copies.cut.size());
     CutNode cut;
-    cut.mask = mask[node];
-    cut.fracture = mask[node] & fracture;
-    const SideWord interfaces = mask[node] & ~fracture;
-    if (cut.fracture != 0 && interfaces != 0) {
-      for (const SurfacePoint& point : state.fracture().points) {
-        const SideWord entered = point.sides & interfaces;
-        if (std::find(cut.entered.begin(), cut.entered.end(), entered) == cut.entered.end())
-          cut.entered.push_back(entered);
-      }
-    }
+    cut.mask = masks.word[node];
+    cut.fracture = cut.mask & fracture;
+    const SideWord interfaces = cut.mask & ~fracture;
+    const int tip = masks.ahead[node] - 1;
+    if (cut.fracture != 0 && interfaces != 0)
+      cut.entered = entered_sides(state, interfaces, tip < 0 ? nullptr : &state.tips[static_cast<std::size_t>(tip)]);
     copies.cut.push_back(std::move(cut));
   }
 }
@@ -332,60 +374,6 @@ void make_masters(const Scene& scene, State& state) {
   }
 }
 
-// Half the width along an interface (m) of the hat with which its points in one column (row) sample stress: no more
-// than the distance to the particles of the next.
-double half_along(const Grid& g, bool along_x, int column) {
-  const auto span = [&](int k) { return along_x ? g.span_x(k) : g.span_y(k); };
-  return 0.5 * std::min({span(column - 1), span(column), span(column + 1)});
-}
-
-// Stress at a point of a bonded interface: the mean over the particles around it, weighted with a hat half a cell wide
-// to each side. Exact where stress is uniform or linear. With 4 points a cell on a grid line these are the two
-// particles right above and below: a wider mean would hide the shear beside an approaching tip, which changes sign
-// across it.
-std::vector<std::vector<StressSample>> sample_stress(const Scene& scene, const State& state, const Surface& s) {
-  const Grid& g = state.grid;
-  const double half = 0.5 * g.h;
-  const bool along_x = scene.strata.along == Strata::Along::y;
-  const Particles& p = state.particles;
-  const Vec2 from = s.vertices.front().x, to = s.vertices.back().x;
-  const Vec2 along = (to - from).normalized(), across{-along.y(), along.x()};
-  std::vector<std::vector<StressSample>> samples(s.points.size());
-  for (int q = 0; q < static_cast<int>(p.size()); ++q) {
-    const auto k = static_cast<std::size_t>(q);
-    const Vec2 off = Vec2{p.x[k], p.y[k]} - from;
-    const double share = 1.0 - std::abs(off.dot(across)) / half;
-    if (share <= 0.0) continue;
-    const int column = along_x ? g.column_at(p.x[k]) : g.row_at(p.y[k]);
-    const std::ptrdiff_t near = 2 * column;  // points 2 i - 1 and 2 i stand in the span of column i
-    for (std::ptrdiff_t c = near - 3; c <= near + 2; ++c) {
-      if (c < 0 || c >= static_cast<std::ptrdiff_t>(s.points.size())) continue;
-      const auto point = static_cast<std::size_t>(c);
-      const double width = half_along(g, along_x, s.points[point].column);
-      const double weight = share * (1.0 - std::abs(off.dot(along) - s.points[point].arc) / width) * p.V[k];
-      if (weight > 1e-3 * p.V[k]) samples[point].push_back({q, weight});
-    }
-  }
-  for (auto& point : samples) {
-    double sum = 0.0;
-    for (const StressSample& sample : point) sum += sample.weight;
-    for (StressSample& sample : point) sample.weight /= sum;
-  }
-  return samples;
-}
-
-void make_stress_samples(const Scene& scene, State& state) {
-  state.stress_samples.assign(state.surfaces.size(), {});
-  if (scene.numerics.mechanics == Numerics::Mechanics::quasistatic) return;  // which has bonds of its own
-  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
-    const Surface& s = state.surfaces[k];
-    if (s.kind != Surface::Kind::interface) continue;
-    const auto kind = scene.laws[s.law].kind;
-    if (kind == InterfaceLaw::Kind::weak || kind == InterfaceLaw::Kind::friction)
-      state.stress_samples[k] = sample_stress(scene, state, s);
-  }
-}
-
 SurfaceStencil stencil_at(const State& state, const Surface& s, const SurfacePoint& point) {
   SurfaceStencil stencil;
   const Grid& g = state.grid;
@@ -415,6 +403,12 @@ void make_surface_stencils(State& state) {
 
 }  // namespace
 
+SideWord sides_ahead(const State& state, const Tip& tip) {
+  const Surface& fracture = state.fracture();
+  const Vec2 step = ahead_cells * state.grid.h * tip_direction(fracture, tip.at_back);
+  return sides_at(state, tip_position(state, tip) + step, fracture.bit);
+}
+
 double support_in_cells(const Scene& scene) {
   return scene.numerics.shape == Numerics::Shape::bspline2 ? 1.5 : 1.0;
 }
@@ -428,10 +422,10 @@ SideWord sides_at(const State& state, const Vec2& x, int except) {
 }
 
 void rebuild_copies(const Scene& scene, State& state) {
-  const std::vector<SideWord> mask = node_masks(scene, state);
-  make_cut_nodes(state, mask, state.copies);
+  const NodeMasks masks = node_masks(scene, state);
+  make_cut_nodes(state, masks, state.copies);
   join_corners(scene, state);
-  const std::vector<SideWord> reach = reach_of(state.grid, mask);
+  const std::vector<SideWord> reach = reach_of(state.grid, masks.word);
   const std::vector<SortKey> keys = sorted(state.grid, sort_keys(state, reach));
   make_bins(state, reach, keys);
   std::vector<std::size_t> order(keys.size());
@@ -445,7 +439,6 @@ void rebuild_copies(const Scene& scene, State& state) {
   find_cut_bins(state, reach);
   make_strips(state);
   make_masters(scene, state);
-  make_stress_samples(scene, state);
   make_surface_stencils(state);
   join_light_copies(scene, state);
   state.x_spans = spans_along_x(state.grid), state.y_spans = spans_along_y(state.grid);

@@ -1,5 +1,5 @@
-// Builds everything in a State that follows from particles and surfaces: copies of nodes, bins, strips, masters,
-// samples of stress on bonded interfaces and surface stencils. Called at the start, after growth or failure, and when
+// Builds everything in a State that follows from particles and surfaces: copies of nodes, bins, strips, masters
+// and surface stencils. Called at the start, after growth or failure, and when
 // particles have changed bins.
 #pragma once
 
@@ -24,6 +24,9 @@ constexpr double bin_reach_cells = 0.5 + 1e-3;
 
 /// The side word of a place (m): the one rule side() applied to every surface but `except` (-1: to all).
 SideWord sides_at(const State& state, const Vec2& x, int except);
+
+/// The side word of the rock that a tip is about to enter. Throws nothing.
+SideWord sides_ahead(const State& state, const Tip& tip);
 
 // How far surfaces are extended straight when sides are told apart (m).
 inline double extension(const Grid& grid) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scene/scene.hpp"
+#include "state/bonds.hpp"
 #include "state/copies.hpp"
 #include "state/fluid_line.hpp"
 #include "state/grid.hpp"
@@ -30,6 +31,11 @@ struct TipTie {
 // apart, a bonded border of two rocks, the symmetry line or an edge of the block, another part of the fracture.
 enum class Obstacle { none, interface, rock_border, symmetry_line, edge, fracture };
 
+// What decides whether a tip grows. J: the J-integral. K: (K_I^2 + K_II^2)/E', as the interaction integral has it or,
+// nearer to an interface than that can tell, as the slope of the energy with the fracture's length. energy: what a
+// finite increment releases.
+enum class Criterion { J, K, slope, energy };
+
 struct Tip {
   bool at_back = true;  // at the last vertex of the fracture, or at the first
   bool growing = true;  // false once it may not grow any more (see stopped_by)
@@ -43,6 +49,7 @@ struct Tip {
   bool closed = false;             // the faces touch: no direction to open into
   Obstacle near = Obstacle::none;  // what is so near that J and K are not to be trusted
   bool crossed = false;            // it is within the rings: J and K are no numbers of the tip
+  bool no_length = false;          // the tip stands on an interface that is apart: it has no length in the rock ahead
   double last_growth_s = -1.0;     // time of its last growth, -1 before the first
   double last_growth_Pa = 0.0;     // inlet pressure then
   double due_s = -1.0;             // explicit: no increment before this time (s), since Rayleigh waves are no faster
@@ -52,7 +59,8 @@ struct Tip {
   double G_trial = 0.0;         // what growth by energy would release now, by the increment's length (N/m)
   double G = 0.0;               // what its last increment released, by its length (N/m)
   double G_by_J = 0.0;          // the same from J along it (N/m); 0 where that does not tell
-  std::string criterion = "J";  // what decides its growth where it stands: "J" or "energy"
+  Criterion criterion = Criterion::J;  // what decides its growth where it stands
+  std::string grew_by;                 // and what decided its last growth: "J", "K" or "energy"
   bool has_grown = false;
   bool arrested = false;
   std::vector<int> reached;  // interfaces (index into Scene::strata) already reported as reached
@@ -64,7 +72,7 @@ struct Event {
   double inlet_Pa = 0.0;
   double tip_x_m = 0.0, tip_y_m = 0.0;
   bool at_interface = false;  // decided by a J too near to an interface to be trusted
-  std::string by;             // what decided it: "J" or "energy"
+  std::string by;             // what decided it: "J", "K" or "energy"
 };
 
 // Energy per metre of thickness (J/m) since the start. Work done on the rock is positive, and so is dissipation.
@@ -126,8 +134,7 @@ struct State {
   // last end (see parts.hpp): a master's tied records are all in its part.
   std::vector<int> tied;
   std::vector<std::size_t> tied_of_part;
-  std::vector<std::vector<std::vector<StressSample>>>
-      stress_samples;  // of each surface's points; empty where it never fails
+  Bonds bonds;  // of runs with inertia, by mechanics/interface_laws.hpp
   std::vector<std::vector<SurfaceStencil>> point_stencils, vertex_stencils;  // of each surface
   SpanTable x_spans, y_spans;
   NodalSums sums;
@@ -141,8 +148,6 @@ struct State {
   std::vector<ParticleReport> reports;  // of each strip
   std::vector<SplitPlace> places;       // of the solve for reactions
   std::vector<InterfaceLaw> tie_laws;   // the same
-  std::vector<Vec2> carried;            // by the points of an interface, to see whether they fail
-  std::vector<char> failed;             // its columns that do
 
   const Surface& fracture() const { return surfaces.front(); }
   Surface& fracture() { return surfaces.front(); }

@@ -118,14 +118,14 @@ struct TotalSurfaces {
   std::shared_ptr<const HeldFactor> held;        // of the places held last (solve_held_reactions())
 };
 
-// A bonded place that may fail: its traction is `base` + sum of T u over slots.
+// The force of the rock of a sample of bonded places (see BondSample): `base` + sum of T u + m a over slots.
 struct BondSensor {
   struct Entry {
     int slot = 0;
-    double xx = 0.0, xy = 0.0, yx = 0.0, yy = 0.0;  // Pa/m
+    double xx = 0.0, xy = 0.0, yx = 0.0, yy = 0.0;  // Pa
+    double m = 0.0;                                 // kg/m
   };
-  int surface = 0, point = 0;
-  Vec2 base = Vec2::Zero();  // what it carries, on the + face (Pa)
+  Vec2 base = Vec2::Zero();  // N/m
   std::vector<Entry> entries;
 };
 

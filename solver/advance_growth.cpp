@@ -1,0 +1,122 @@
+#include "advance_growth.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fracture/growth.hpp"
+
+namespace strata {
+
+namespace {
+
+bool needs_energy(const Tip& tip) {
+  return tip.criterion == Criterion::energy || tip.criterion == Criterion::slope;
+}
+
+std::ptrdiff_t split_points(const State& state) {
+  std::ptrdiff_t n = 0;
+  for (const Surface& surface : state.surfaces)
+    n += std::ranges::count_if(surface.points, [](const SurfacePoint& s) { return s.split; });
+  return n;
+}
+
+// The same particles without inertia. They are all of one lattice already: none stands for four (see refines_ahead()).
+Scene without_inertia(const Scene& scene) {
+  Scene resting = scene;
+  resting.numerics.mechanics = Numerics::Mechanics::quasistatic;
+  resting.numerics.particles_per_cell = 16;
+  // uGIMP particles weigh as points do where they have not moved.
+  if (scene.numerics.shape == Numerics::Shape::gimp) resting.numerics.shape = Numerics::Shape::linear;
+  return resting;
+}
+
+// Splits particles beside what tips would grow by, in the state itself: then the trials' stiffness is its own.
+void refine_beside_growth(const Scene& scene, State& state) {
+  for (std::size_t k = 0; k < state.tips.size(); ++k) {
+    if (!needs_energy(state.tips[k])) continue;
+    State longer = state;
+    extend_tip(scene, longer, longer.tips[k], increment_of(scene, state.tips[k]));
+    const std::size_t old = state.fracture().points.size(), all = longer.fracture().points.size();
+    const bool at_back = state.tips[k].at_back;
+    const Surface own = std::exchange(state.fracture(), longer.fracture());
+    refine_particles(scene, state, at_back ? old : 0, at_back ? all : all - old);
+    state.fracture() = own;
+  }
+}
+
+Resting make_resting(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
+  auto resting = std::make_unique<RestingRock>();
+  resting->scene = without_inertia(scene);
+  State& own = resting->state;
+  own = state;
+  own.total = {};
+  own.bonds = {};
+  own.dt = 1.0;  // J's inertia divides by it; there is none
+  refine_beside_growth(resting->scene, own);
+  update_equations(resting->scene, rocks, own, resting->model, false);
+  resting->trials = make_trials(resting->scene, rocks, own, resting->model, {}, false);
+  return resting;
+}
+
+// Takes over what the run's surfaces bear now, and what friction remembers of it.
+void follow(const State& state, RestingRock& resting) {
+  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
+    auto& own = resting.state.surfaces[k].points;
+    for (std::size_t q = 0; q < own.size(); ++q) {
+      own[q].P = state.surfaces[k].points[q].P;
+      own[q].w = state.surfaces[k].points[q].w, own[q].reaction = state.surfaces[k].points[q].reaction;
+    }
+  }
+  for (ContactPlace& place : resting.model.places) {
+    if (place.tie >= 0) continue;
+    const SurfacePoint& s = state.surfaces[place.surface].points[place.point];
+    place.w_t_start = s.w.dot(tangent_of(place.n)), place.r_t_start = s.reaction.dot(tangent_of(place.n));
+  }
+  resting.state.fluid = state.fluid;
+  resting.state.time = state.time;
+  for (std::size_t k = 0; k < state.tips.size(); ++k) resting.state.tips[k] = state.tips[k];
+}
+
+// Whether the pressures have come far enough since the last look.
+bool is_due(const State& state, const RestingRock& resting) {
+  constexpr double least = 2e-3, of_the_rest = 1.0 / 3.0;
+  if (resting.P.empty()) return true;
+  double change = 0.0, net = 0.0;
+  const auto& points = state.fracture().points;
+  for (std::size_t q = 0; q < points.size(); ++q) {
+    change = std::max(change, std::abs(points[q].P - resting.P[q]));
+    net = std::max(net, std::abs(points[q].P - points[q].closing_stress()));
+  }
+  const double missing = resting.nearest > 0.0 ? std::max(0.0, 1.0 / resting.nearest - 1.0) : 1.0;
+  return change >= std::clamp(of_the_rest * missing, least, 0.1) * net && change > 0.0;
+}
+
+}  // namespace
+
+void weigh_growth(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Resting& resting) {
+  for (Tip& tip : state.tips) tip.criterion = criterion_of(scene, state, tip);
+  if (std::ranges::none_of(state.tips, needs_energy)) return resting.reset();
+  const auto same = [&](const State& other) {
+    return other.fracture().points.size() == state.fracture().points.size() &&
+           split_points(other) == split_points(state);
+  };
+  if (!resting || !same(resting->state)) resting = make_resting(scene, rocks, state);
+  if (!is_due(state, *resting)) return;
+  follow(state, *resting);
+  if (!trials_hold(scene, resting->state, resting->trials))
+    resting->trials =
+        make_trials(resting->scene, rocks, resting->state, resting->model, std::move(resting->trials), false);
+  const Equilibrium rest = find_equilibrium(resting->scene, state.time, resting->state, resting->model);
+  resting->nearest = 0.0;
+  for (std::size_t k = 0; k < state.tips.size(); ++k) {
+    Tip& tip = state.tips[k];
+    if (!needs_energy(tip)) continue;
+    tip.G_trial = energy_release(resting->scene, resting->state, resting->model, rest, k, resting->trials);
+    const double J_c = rocks[rock_ahead(scene, state, tip)].J_c;
+    if (J_c > 0.0) resting->nearest = std::max(resting->nearest, std::sqrt(std::max(0.0, tip.G_trial) / J_c));
+  }
+  resting->P.clear();
+  for (const SurfacePoint& s : state.fracture().points) resting->P.push_back(s.P);
+}
+
+}  // namespace strata

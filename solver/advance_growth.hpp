@@ -1,0 +1,32 @@
+// Growth of runs with inertia where energy decides: between equilibria of the same particles at the present pressures.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "advance_trials.hpp"
+#include "state/elasticity.hpp"
+#include "state/state.hpp"
+
+namespace strata {
+
+// The rock of a run with inertia as it would be at rest. All of it follows from the state.
+struct RestingRock {
+  Scene scene;  // the run's, without inertia
+  State state;
+  QuasistaticModel model;
+  std::vector<GrowthTrial> trials;
+  std::vector<double> P;  // of the fracture's points when it was last looked at (Pa)
+  double nearest = 0.0;   // sqrt(G/J_c) of the tip nearest to growth then
+};
+
+// Made where it is first needed; forget it (reset) wherever a resumed run would begin.
+using Resting = std::unique_ptr<RestingRock>;
+
+/// Notes what decides about each tip and, where that is energy, what growth would release at the present pressures, in
+/// tip.G_trial. It is looked at again once pressures have changed by a third of what is missing, and by 0.2 % at least,
+/// of the net pressure. Throws NumericalFailure as find_equilibrium() does.
+void weigh_growth(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Resting& resting);
+
+}  // namespace strata

@@ -1,0 +1,91 @@
+#include "fracture/criterion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "state/rebuild.hpp"
+
+namespace strata {
+
+namespace {
+
+constexpr double on_it_cells = 0.1;    // nearer than this a tip stands on the interface (see ahead_cells)
+constexpr double slope_cells = 2.0;    // from here on K is right to 0.5 % between like rocks and 3 % between unlike ones
+constexpr double ring_need_cells = 4.0;  // the narrowest ring and what nodes' functions reach beyond it
+
+// Whether the faces of an interface are apart within a cell of a place.
+bool apart_at(const Surface& surface, const Vec2& x, double h) {
+  return std::ranges::any_of(surface.points, [&](const SurfacePoint& s) { return s.split && (s.x - x).norm() < h; });
+}
+
+bool real_interface(const Scene& scene, std::size_t k) {
+  return scene.laws[scene.strata.interfaces[k].law].kind != InterfaceLaw::Kind::perfect ||
+         scene.strata.layers[k].rock != scene.strata.layers[k + 1].rock;
+}
+
+double stacking(const Scene& scene, const Vec2& x) {
+  return scene.strata.along == Strata::Along::y ? x.y() : x.x();
+}
+
+// Distance (m) from a tip to the nearest real interface ahead of it (sign 1) or behind (-1); one it stands on is both.
+double to_interface(const Scene& scene, const State& state, const Tip& tip, double sign) {
+  const double at = stacking(scene, tip_position(state, tip));
+  const double way = stacking(scene, tip_direction(state.fracture(), tip.at_back));
+  double nearest = HUGE_VAL;
+  for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
+    const double off = scene.strata.interfaces[k].at_m - at;
+    const bool beside = std::abs(way) < 1e-6, on = std::abs(off) < on_it_cells * state.grid.h;
+    if (real_interface(scene, k) && (beside || on || sign * off * way > 0.0)) nearest = std::min(nearest, std::abs(off));
+  }
+  return nearest;
+}
+
+}  // namespace
+
+double past_open_interface(const Scene& scene, const State& state, const Tip& tip) {
+  const Surface& fracture = state.fracture();
+  const Vec2 at = tip_position(state, tip), way = tip_direction(fracture, tip.at_back);
+  const SideWord ahead = sides_ahead(state, tip);
+  const double h = state.grid.h;
+  double nearest = HUGE_VAL;
+  for (const Surface& surface : state.surfaces) {
+    if (surface.kind != Surface::Kind::interface) continue;
+    const bool behind = std::ranges::any_of(
+        fracture.points, [&](const SurfacePoint& s) { return ((s.sides ^ ahead) & surface.mask()) != 0; });
+    const double off = stacking(scene, at - surface.vertices.front().x), rate = stacking(scene, way);
+    if (!behind || std::abs(rate) < 1e-6 || !apart_at(surface, at - off / rate * way, h)) continue;
+    nearest = std::min(nearest, std::abs(off) < on_it_cells * h ? 0.0 : std::abs(off));
+  }
+  return nearest;
+}
+
+Criterion criterion_of(const Scene& scene, const State& state, const Tip& tip) {
+  if (scene.fracture->growth == Fracture::Growth::energy) return Criterion::energy;
+  if (scene.fracture->crossing != Fracture::Crossing::energy) return Criterion::J;
+  const double h = state.grid.h, da = scene.fracture->crossing_increment() + 0.01 * h;
+  const double past = past_open_interface(scene, state, tip);
+  if (past == 0.0) return Criterion::energy;
+  if (to_interface(scene, state, tip, 1.0) <= da) return Criterion::energy;
+  if (past < (slope_cells - 0.01) * h) return Criterion::slope;
+  if (past < ring_need_cells * h) return Criterion::K;
+  const double behind = to_interface(scene, state, tip, -1.0);
+  return behind <= da && behind < past - 0.01 * h ? Criterion::energy : Criterion::J;
+}
+
+const char* name_of(Criterion criterion) {
+  switch (criterion) {
+    case Criterion::J: return "J";
+    case Criterion::energy: return "energy";
+    default: return "K";
+  }
+}
+
+double driving_J(const Elasticity& rock, const Tip& tip, bool by_K) {
+  const double G = (tip.K_I * tip.K_I + tip.K_II * tip.K_II) / rock.E_prime;
+  if (tip.K_I <= 0.0) return 0.0;
+  if (by_K) return G;
+  if (tip.J <= 0.0) return 0.0;
+  return tip.near != Obstacle::none ? tip.J : std::min(tip.J, 2.0 * G);
+}
+
+}  // namespace strata

@@ -1,0 +1,50 @@
+// What bonded places of interfaces carry, and how near they are to failure: see mechanics/failure.hpp.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "state/types.hpp"
+
+namespace strata {
+
+// How the traction on a bonded place follows from the rock on one side of it. A column of the grid, moved with the
+// weight Phi = sum N_i over the nodes that the interface would split, is in balance:
+//   int t Phi ds = sum_p (V_p sigma_p grad Phi + m_p (a_p - b_p) Phi) - sum_faces A Phi t_face,
+// the force that a split node's copy would need to stay where it is. Beside a fracture that ends on the interface the
+// rock on its two sides moves apart, and each has a column of its own: stress there rises as 1/sqrt(r) and changes sign
+// across the fracture, so that a mean over both sides, or of points above and below, sees next to nothing of it.
+struct BondSample {
+  struct Share {
+    std::size_t index = 0;       // particle, or point of the fracture or of the interface
+    Vec2 weight = Vec2::Zero();  // V_p grad Phi (m); of a point: its A Phi (m) with the face's sign, in x
+    double Phi = 0.0;            // at the particle
+  };
+  struct Mass {
+    int record = 0;
+    double m = 0.0;  // sum_p m_p Phi N_ip (kg/m)
+  };
+  std::size_t surface = 0;
+  std::vector<Share> particles, faces;
+  std::vector<Share> loose;    // points of the interface that have let go already
+  std::vector<Mass> inertia;   // of runs with inertia
+  double length = 0.0;         // int Phi ds (m)
+  double sign = 1.0;           // of the outward normal against the surface's: 1 for the rock on the - side
+};
+
+// A bonded place: from which samples its traction is taken (mean of them), and what came of it.
+struct BondedPlace {
+  std::size_t surface = 0, point = 0;
+  std::vector<std::size_t> samples;
+  bool begins = false;          // a stretch of bonded places, behind what has let go or a fracture
+  Vec2 carried = Vec2::Zero();  // what it carries, on the + face (Pa)
+  double index = 0.0;           // how near it is to failure (1: fails)
+};
+
+struct Bonds {
+  std::vector<BondSample> samples;
+  std::vector<BondedPlace> places;
+  double worst = 0.0;  // the largest index when they were last judged
+};
+
+}  // namespace strata
