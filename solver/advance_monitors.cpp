@@ -158,7 +158,9 @@ void require_finite(const State& state) {
                                      {"transfer", l.transfer},
                                      {"integration", l.integration},
                                      {"friction", l.friction},
-                                     {"fracture", l.fracture}}) {
+                                     {"failure", l.failure},
+                                     {"fracture", l.fracture},
+                                     {"excess", l.excess}}) {
     if (!std::isfinite(energy)) which += (which.empty() ? "" : ", ") + std::string(name);
   }
   throw NumericalFailure(

@@ -95,10 +95,10 @@ void equilibrate(const Scene& scene, const std::vector<Elasticity>& rocks, State
   run.margin = margin_of(scene, rocks, state, run);
 }
 
-// Energy bookkeeping of an accepted change of load or geometry.
+// Energy bookkeeping of an accepted change of load or geometry; surface: what new surface takes (J/m).
 enum class Change { load, growth, failure };
 
-void close_ledger(const Quasistatic& run, const LoadPoint& before, Change change, State& state) {
+void close_ledger(const Quasistatic& run, const LoadPoint& before, Change change, double surface, State& state) {
   Ledger& ledger = state.ledger;
   double in_situ = 0.0;
   const double fluid = work_of_loads(state, before, in_situ), stored = ledger.strain + ledger.interface_strain;
@@ -110,14 +110,17 @@ void close_ledger(const Quasistatic& run, const LoadPoint& before, Change change
   ledger.interface_strain = stored_in_surfaces(run.model, run.equilibrium);
   const double released = fluid + in_situ + body - (ledger.strain + ledger.interface_strain - stored);
   const double friction = dissipated_by_friction(run.model, run.equilibrium);
-  ledger.friction += change == Change::failure ? released : friction;
-  if (change == Change::growth) ledger.fracture += released - friction;
+  ledger.friction += friction;
+  if (change == Change::failure) ledger.failure += released - friction;
+  if (change == Change::growth) ledger.excess += released - friction - surface;
+  ledger.fracture += surface;
   ledger.note_scale();
   require_finite(state);
 }
 
-void accept(const Scene& scene, const LoadPoint& before, Change change, State& state, Quasistatic& run) {
-  close_ledger(run, before, change, state);
+void accept(const Scene& scene, const LoadPoint& before, Change change, State& state, Quasistatic& run,
+            double surface = 0.0) {
+  close_ledger(run, before, change, surface, state);
   remember(state, run.model, run.equilibrium);
   Monitors& monitors = state.monitors;
   monitors.contact_sweeps += run.equilibrium.iterations;
@@ -131,12 +134,12 @@ void accept(const Scene& scene, const LoadPoint& before, Change change, State& s
 }
 
 void rebuild_all(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
-  const double fracture = state.ledger.fracture;
+  const double excess = state.ledger.excess;
   for (GrowthTrial& trial : run.trials) trial.model.body.reset(), trial.model.condensed = {};
   update_model(scene, rocks, state, run.model);
   state.monitors.mirror = run.model.body->halved();
   run.rules = make_tip_rules(scene, rocks, state);
-  state.ledger.fracture = fracture;  // what springs of tips give back is in the difference of stored energy already
+  state.ledger.excess = excess;  // what springs of tips give back is in the difference of stored energy already
   run.trials = make_trials(scene, rocks, state, run.model, std::move(run.trials));
 }
 
@@ -161,6 +164,7 @@ struct Growing {
   double increment = 0.0;  // m
   double J = 0.0;          // N/m
   double P = 0.0;          // Pa
+  double J_c = 0.0;        // of the rock ahead (N/m)
 };
 
 std::vector<Growing> tips_that_grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state,
@@ -169,7 +173,8 @@ std::vector<Growing> tips_that_grow(const Scene& scene, const std::vector<Elasti
   for (std::size_t k = 0; k < state.tips.size(); ++k) {
     Tip& tip = state.tips[k];
     if (!may_grow(scene, state, tip) || tip_margin(scene, rocks, state, run, k, tip) < 1.0) continue;
-    due.push_back({k, increment_of(scene, tip), tip.J, tip.at_back ? state.fluid.P.back() : state.fluid.P.front()});
+    due.push_back({k, increment_of(scene, tip), tip.J, tip.at_back ? state.fluid.P.back() : state.fluid.P.front(),
+                   rocks[rock_ahead(scene, state, tip)].J_c});
   }
   return due;
 }
@@ -229,7 +234,9 @@ void let_happen(const Scene& scene, const std::vector<Elasticity>& rocks, State&
   const FluidStep fluid = advance_fluid(scene, 0.0, state, run.model);
   if (!fluid.found) no_way_on("just after growth or failure", state.time, fluid.reason);
   equilibrate(scene, rocks, state, run);
-  accept(scene, before, growing.empty() ? Change::failure : Change::growth, state, run);
+  double surface = 0.0;
+  for (const Growing& g : growing) surface += g.J_c * g.increment;
+  accept(scene, before, growing.empty() ? Change::failure : Change::growth, state, run, surface);
   state.dt = first_flow_step;
   state.fluid.w_rate.clear();
 }
@@ -323,7 +330,7 @@ void start_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks,
     }
     return point;
   }();
-  close_ledger(run, unloaded, Change::load, state);
+  close_ledger(run, unloaded, Change::load, 0.0, state);
 }
 
 void restart_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {

@@ -6,6 +6,7 @@
 
 #include "fracture/growth.hpp"
 #include "fracture/refine_beside.hpp"
+#include "mechanics/columns.hpp"
 #include "mechanics/equilibrium.hpp"
 #include "mechanics/explicit_step.hpp"
 #include "mechanics/failure.hpp"
@@ -140,6 +141,7 @@ State initialise(const Scene& scene, const std::vector<Elasticity>& rocks) {
   if (state.has_fracture) refine_particles(scene, state, 0, state.fracture().points.size());
   for (std::size_t q = 0; q < p.size(); ++q) p.sides[q] = sides_at(state, {p.x[q], p.y[q]}, -1);
   for (Surface& surface : state.surfaces) place_points(scene, state, surface);
+  if (scene.in_situ.initialise == InSitu::Initialise::loaded) hand_over_in_situ(scene, state);
   set_start_reactions(state);
   set_initial_velocity(scene, state);
   rebuild(scene, rocks, state);

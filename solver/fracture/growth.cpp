@@ -37,12 +37,6 @@ bool real_interface(const Scene& scene, std::size_t k) {
          scene.strata.layers[k].rock != scene.strata.layers[k + 1].rock;
 }
 
-bool two_way_spring(const Scene& scene, const Surface& surface) {
-  const InterfaceLaw& law = scene.laws[surface.law];
-  return surface.kind == Surface::Kind::interface && law.kind == InterfaceLaw::Kind::soft &&
-         law.compression == InterfaceLaw::Compression::spring;
-}
-
 // Length of the next `times` increments of da from `tip` along `direction`: they end on the first interface that they
 // would cross or nearly reach.
 double increment_to_interface(const Scene& scene, const Vec2& tip, const Vec2& direction, double da, double times) {
@@ -268,9 +262,11 @@ void refine_particles(const Scene& scene, State& state, std::size_t first, std::
 void place_points(const Scene& scene, State& state, Surface& surface) {
   for (SurfacePoint& s : surface.points) {
     s.sides = sides_at(state, s.x, surface.bit);
-    // A spring that also takes compression goes on carrying the in-situ stress; its reaction is the change from it.
-    s.in_situ = two_way_spring(scene, surface) ? Vec2{Vec2::Zero()} : Vec2{-in_situ_at(scene, state, s.x).on(s.n)};
-    if (surface.kind == Surface::Kind::fracture) s.split = true;
+    const bool fracture = surface.kind == Surface::Kind::fracture;
+    if (fracture) s.split = true;
+    if (!fracture && scene.laws[surface.law].takes_all_compression()) continue;
+    if (fracture || scene.in_situ.initialise == InSitu::Initialise::uniform)
+      s.in_situ = -in_situ_at(scene, state, s.x).on(s.n);
   }
   for (SurfacePoint& vertex : surface.vertices) vertex.sides = sides_at(state, vertex.x, surface.bit);
 }
@@ -388,11 +384,14 @@ bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state
       tip.stopped_by = what_stops(scene, state, tip);
       continue;
     }
-    double times = increments_due(scene, rocks[rock_ahead(scene, state, tip)], state, tip);
+    const Elasticity& ahead = rocks[rock_ahead(scene, state, tip)];
+    double times = increments_due(scene, ahead, state, tip);
     const bool finite = tip.criterion == Criterion::energy;
     if (finite) times = 1.0;
     note_growth(state, tip, name_of(tip.criterion), tip.criterion != Criterion::J || !at_interface(tip));
-    extend_tip(scene, state, tip, finite ? scene.fracture->crossing_increment() : scene.fracture->increment_m, times);
+    const double increment = finite ? scene.fracture->crossing_increment() : scene.fracture->increment_m;
+    const double surface = ahead.J_c * extend_tip(scene, state, tip, increment, times);
+    state.ledger.fracture += surface, state.ledger.excess -= surface;  // the motion gives none of it
     tip.G = tip.G_trial;
     tip.G_trial = 0.0;
     moved = true;

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
 #include <span>
 #include <tuple>
 
+#include "mechanics/columns.hpp"
 #include "mechanics/stiffness.hpp"
 #include "state/rebuild.hpp"
 
@@ -15,26 +15,11 @@ namespace strata {
 
 namespace {
 
-// The rows (for a vertical interface: columns) of nodes that an interface splits when it lets go.
-struct Band {
-  bool along_x = true;
-  int first = 0, last = 0;
-  bool holds(int across) const { return across >= first && across <= last; }
-};
-
-Band band_of(const Scene& scene, const State& state, const Surface& surface) {
-  const Grid& g = state.grid;
-  Band band;
-  band.along_x = scene.strata.along == Strata::Along::y;
-  const Vec2 x = surface.vertices.front().x;
-  const int at = band.along_x ? g.row_at(x.y()) : g.column_at(x.x());
-  const double offset =
-      (band.along_x ? x.y() - g.y(at) : x.x() - g.x(at)) / g.h;  // 0 on a grid line, +-1/2 at mid-cell
-  const double reach = support_in_cells(scene) - 0.02;
-  band.first = at + static_cast<int>(std::ceil(offset - reach));
-  band.last = at + static_cast<int>(std::floor(offset + reach));
-  return band;
-}
+// Places under friction give nothing up where they are split: they stick. So they are split at this share of what makes
+// them slide, and slip zones run in rock that is split already. The friction work of a slip zone 20 m long is then 128
+// to 133 J/m at cells of 1, 0.5 and 0.25 m, graded or not, where spectral elements have 134.8; columns that are split
+// as they slide make 130 to 270 J/m of it.
+constexpr double lets_go_sticking = 0.3;
 
 // Whether the fracture splits the nodes of a column on one side of the interface, for rock on these sides of others.
 bool split_by_fracture(const State& state, const Band& band, int column, SideWord sides, bool plus) {
@@ -63,29 +48,6 @@ SampleKey key_at(const Builder& b, int column, SideWord sides, bool plus) {
   return {column, plus, parted ? ((sides & b.state.fracture().mask()) != 0 ? 1 : 0) : -1};
 }
 
-// The weight Phi and its gradient of the three columns around a place.
-struct ColumnWeights {
-  std::array<int, 3> column{};
-  std::array<double, 3> Phi{};
-  std::array<Vec2, 3> grad{Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
-};
-
-ColumnWeights column_weights(const Builder& b, const Vec2& x, const Vec2& half) {
-  const Grid& g = b.state.grid;
-  const int i = std::clamp(g.column_at(x.x()), 0, g.nx), j = std::clamp(g.row_at(x.y()), 0, g.ny);
-  const Gradients N = gradients_at(b.scene, g, i, j, x, half);
-  ColumnWeights out;
-  for (std::size_t n = 0; n < 9; ++n) {
-    const int node_i = i + static_cast<int>(n % 3) - 1, node_j = j + static_cast<int>(n / 3) - 1;
-    const std::size_t a = b.band.along_x ? n % 3 : n / 3;
-    out.column[a] = b.band.along_x ? node_i : node_j;
-    if (!b.band.holds(b.band.along_x ? node_j : node_i)) continue;
-    out.Phi[a] += N.N[n];
-    out.grad[a] += Vec2{N.N_x[n], N.N_y[n]};
-  }
-  return out;
-}
-
 void add_particles(Builder& b) {
   const Particles& p = b.state.particles;
   const Grid& g = b.state.grid;
@@ -99,7 +61,7 @@ void add_particles(Builder& b) {
     const Vec2 x{p.x[q], p.y[q]};
     const int across = b.band.along_x ? g.row_at(x.y()) : g.column_at(x.x());
     if (across < b.band.first - 2 || across > b.band.last + 2) continue;
-    const ColumnWeights w = column_weights(b, x, p.half(q));
+    const ColumnWeights w = column_weights(b.scene, b.state.grid, b.band, x, p.half(q));
     const bool plus = (p.sides[q] & b.surface.mask()) != 0;
     for (std::size_t a = 0; a < 3; ++a) {
       if (w.grad[a].isZero() && (!has_body || w.Phi[a] == 0.0)) continue;
@@ -119,7 +81,7 @@ void add_faces(Builder& b) {
     const Grid& g = b.state.grid;
     const int across = b.band.along_x ? g.row_at(s.x.y()) : g.column_at(s.x.x());
     if (across < b.band.first - 2 || across > b.band.last + 2) continue;
-    const ColumnWeights w = column_weights(b, s.x, Vec2::Zero());
+    const ColumnWeights w = column_weights(b.scene, b.state.grid, b.band, s.x, Vec2::Zero());
     const bool plus = (s.sides & b.surface.mask()) != 0;
     for (std::size_t a = 0; a < 3; ++a) {
       if (w.Phi[a] == 0.0) continue;
@@ -143,7 +105,7 @@ void add_lengths(Builder& b) {
     for (int part = 0; part < parts; ++part) {
       const Vec2 along{s.n.y(), -s.n.x()};
       const Vec2 x = s.x + s.A * ((part + 0.5) / parts - 0.5) * along;
-      const ColumnWeights w = column_weights(b, x, Vec2::Zero());
+      const ColumnWeights w = column_weights(b.scene, b.state.grid, b.band, x, Vec2::Zero());
       const SideWord sides = sides_at(b.state, x, b.surface.bit);
       for (std::size_t a = 0; a < 3; ++a) {
         const double share = s.A / parts * w.Phi[a];
@@ -234,41 +196,57 @@ Vec2 traction(const State& state, const BondSample& sample, Vec2 force) {
   return force / sample.length;
 }
 
-// The length (m) that a place of a stretch stands for. What has let go ends at the first node that is not split, as a
-// fracture does: the piece between the two belongs to it, though the force of its column is still carried.
-double piece_of(const Surface& surface, std::size_t point) {
-  const auto split = [&](std::size_t q) { return q < surface.points.size() && surface.points[q].split; };
-  return split(point + 1) || (point > 0 && split(point - 1)) ? 0.0 : surface.points[point].A;
+// A place of a stretch as it is judged: the length that it stands for (m) and the force on it (N/m).
+struct Piece {
+  double length = 0.0;
+  Vec2 force = Vec2::Zero();
+};
+
+// What has let go ends at the first node that is not split, as a fracture does: the piece between the two belongs to it
+// and carries what it does; the rest of what the node's column carries is that of the place's other piece.
+Piece piece_of(const Surface& surface, const BondedPlace& place) {
+  const auto& points = surface.points;
+  const SurfacePoint& s = points[place.point];
+  const SurfacePoint* beside = nullptr;
+  if (place.point > 0 && points[place.point - 1].split) beside = &points[place.point - 1];
+  if (place.point + 1 < points.size() && points[place.point + 1].split) beside = &points[place.point + 1];
+  if (beside == nullptr) return {s.A, s.A * place.carried};
+  return {0.0, s.A * (place.carried - beside->reaction)};
 }
 
 // Judges the places of one stretch of bonded interface: what its pieces of a length carry on average counts for the
-// places in them that carry most.
+// places in them that carry most, or that slide.
 void judge(const Surface& surface, const InterfaceLaw& law, double length, std::span<BondedPlace> stretch) {
   constexpr double round_off = 1e-9, as_bad = 1.0 - 1e-6;
   const Vec2 n = surface.points.front().n, t = tangent_of(n);
-  const auto index_of = [&](const Vec2& carried) { return failure_index(law, carried.dot(n), carried.dot(t)); };
-  std::vector<double> piece, local;
+  const double least = law.kind == InterfaceLaw::Kind::friction ? lets_go_sticking : 1.0;
+  const auto index_of = [&](const Vec2& carried) { return failure_index(law, carried.dot(n), carried.dot(t)) / least; };
+  std::vector<Piece> pieces;
+  std::vector<double> local;
+  double all = 0.0;
   for (BondedPlace& place : stretch) {
-    piece.push_back(piece_of(surface, place.point)), local.push_back(index_of(place.carried));
+    all += pieces.emplace_back(piece_of(surface, place)).length, local.push_back(index_of(place.carried));
     place.index = 0.0;
   }
-  if (std::ranges::count(piece, 0.0) == std::ssize(piece)) {  // between two ends and nothing left of it
-    for (std::size_t k = 0; k < piece.size(); ++k) piece[k] = surface.points[stretch[k].point].A;
+  for (std::size_t k = 0; all == 0.0 && k < pieces.size(); ++k) {  // one column between two ends
+    const double A = surface.points[stretch[k].point].A;
+    pieces[k] = {A, A * stretch[k].carried};
   }
-  length = std::min(length, std::accumulate(piece.begin(), piece.end(), 0.0));
+  length = std::min(length, all > 0.0 ? all : pieces.front().length);
   for (const bool back : {false, true}) {
     const auto at = [&](std::size_t k) { return back ? stretch.size() - 1 - k : k; };
     for (std::size_t from = 0; from < stretch.size(); ++from) {
       Vec2 force = Vec2::Zero();
       double left = length, most = 0.0;
       std::size_t k = from;
-      for (; k < stretch.size() && left > 0.0; left -= piece[at(k)], ++k) {
-        const double share = piece[at(k)] > left ? left / piece[at(k)] : 1.0;
-        force += share * surface.points[stretch[at(k)].point].A * stretch[at(k)].carried;
+      for (; k < stretch.size() && left > 0.0; left -= pieces[at(k)].length, ++k) {
+        const double share = pieces[at(k)].length > left ? left / pieces[at(k)].length : 1.0;
+        force += share * pieces[at(k)].force;
         if (!(local[at(k)] <= most)) most = local[at(k)];
       }
       if (left > round_off * length) break;  // the rest is shorter still
       const double index = index_of(force / length);
+      if (law.kind == InterfaceLaw::Kind::friction) most = std::min(most, 1.0);  // all that slide let go
       for (std::size_t j = from; j < k; ++j) {
         const bool counts = !(local[at(j)] < as_bad * most) && !(index <= stretch[at(j)].index);
         if (counts) stretch[at(j)].index = index;  // one that is not a number stays
@@ -287,10 +265,6 @@ double failure_index(const InterfaceLaw& law, double n, double t) {
   if (law.kind != InterfaceLaw::Kind::friction) return 0.0;
   if (n < 0.0) return HUGE_VAL;
   return t == 0.0 ? 0.0 : std::abs(t) / (law.coefficient * n);
-}
-
-double failure_length(const Scene& scene, const InterfaceLaw& law) {
-  return law.failure_length_m.value_or(scene.fracture ? scene.fracture->increment_m : scene.numerics.cell_m);
 }
 
 Bonds find_bonds(const Scene& scene, const State& state) {

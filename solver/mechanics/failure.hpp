@@ -15,10 +15,6 @@ namespace strata {
 /// infinite in tension; other laws: 0.
 double failure_index(const InterfaceLaw& law, double n, double t);
 
-/// The length (m) of bonded interface over which the mean traction decides: failure_length_m or, where it is left out,
-/// the increment of growth, or the cell where there is no fracture. Throws nothing.
-double failure_length(const Scene& scene, const InterfaceLaw& law);
-
 /// The bonded places of a state's weak and friction interfaces, with their samples; its copies must be built. Throws
 /// nothing.
 Bonds find_bonds(const Scene& scene, const State& state);

@@ -73,13 +73,13 @@ void update_tip_ties(const Scene& scene, const std::vector<Elasticity>& rocks, S
       const auto before = std::find_if(old.begin(), old.end(), [node](const TipTie& t) { return t.node == node; });
       if (before != old.end()) {
         tie.s.w = before->s.w;
-        state.ledger.fracture += energy(*before) - energy(tie);
+        state.ledger.excess += energy(*before) - energy(tie);
         before->stiffness = 0.0;
       }
       state.ties.push_back(tie);
     }
   }
-  for (const TipTie& tie : old) state.ledger.fracture += energy(tie);
+  for (const TipTie& tie : old) state.ledger.excess += energy(tie);
 }
 
 void rebuild(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {

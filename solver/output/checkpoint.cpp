@@ -96,9 +96,9 @@ void fields(Archive& ar, Is<Event> auto& event) {
 template <class Archive>
 void fields(Archive& ar, Is<Ledger> auto& ledger) {
   auto& [kinetic, strain, interface_strain, fluid_work, in_situ_work, body_work, initial_kinetic, edge_work, damping,
-         transfer, integration, friction, fracture, largest] = ledger;
+         transfer, integration, friction, failure, fracture, excess, largest] = ledger;
   ar(kinetic, strain, interface_strain, fluid_work, in_situ_work, body_work, initial_kinetic, edge_work, damping,
-     transfer, integration, friction, fracture, largest);
+     transfer, integration, friction, failure, fracture, excess, largest);
 }
 
 template <class Archive>

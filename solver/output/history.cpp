@@ -40,7 +40,9 @@ constexpr HistoryColumn columns[] = {
     {"transfer_J", "J/m", &HistoryRow::transfer_J},
     {"integration_J", "J/m", &HistoryRow::integration_J},
     {"friction_J", "J/m", &HistoryRow::friction_J},
+    {"failure_J", "J/m", &HistoryRow::failure_J},
     {"fracture_J", "J/m", &HistoryRow::fracture_J},
+    {"excess_J", "J/m", &HistoryRow::excess_J},
     {"energy_closure", "1", &HistoryRow::energy_closure},
     {"J_spread", "1", &HistoryRow::J_spread},
     {"kink_deg", "deg", &HistoryRow::kink_deg},
@@ -181,7 +183,9 @@ HistoryRow history_row(const Scene& scene, const State& state) {
   row.transfer_J = ledger.transfer;
   row.integration_J = ledger.integration;
   row.friction_J = ledger.friction;
+  row.failure_J = ledger.failure;
   row.fracture_J = ledger.fracture;
+  row.excess_J = ledger.excess;
   row.energy_closure = ledger.closure();
   return row;
 }

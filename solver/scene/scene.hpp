@@ -92,6 +92,9 @@ struct InterfaceLaw {
   // Whether its faces are apart from the start: nothing bonds springs, nor faces without friction.
   bool apart_at_start() const { return kind == Kind::soft || (kind == Kind::friction && coefficient == 0.0); }
 
+  // Whether its springs go on carrying the in-situ stress, so that their reaction is the change from it.
+  bool takes_all_compression() const { return kind == Kind::soft && compression == Compression::spring; }
+
   bool operator==(const InterfaceLaw&) const = default;
 };
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "scene/scene.hpp"
 #include "state/types.hpp"
 
 namespace strata {
@@ -46,5 +47,11 @@ struct Bonds {
   std::vector<BondedPlace> places;
   double worst = 0.0;  // the largest index when they were last judged
 };
+
+/// The length (m) of bonded interface over which the mean traction decides: failure_length_m or, where it is left out,
+/// the increment of growth, or the cell where there is no fracture. Throws nothing.
+inline double failure_length(const Scene& scene, const InterfaceLaw& law) {
+  return law.failure_length_m.value_or(scene.fracture ? scene.fracture->increment_m : scene.numerics.cell_m);
+}
 
 }  // namespace strata

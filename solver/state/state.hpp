@@ -88,13 +88,16 @@ struct Ledger {
   double damping = 0.0;      // dissipated by damping_1_s
   double transfer = 0.0;     // dissipated between particles and grid
   double integration = 0.0;  // lost by the time step itself: sum of dt^2 (f M^-1 f - v K v)/2, most of it at shocks
-  double friction = 0.0;     // dissipated by sliding, the failure of interfaces and the implicit step of springs
-  double fracture = 0.0;     // released from the springs of tips that moved on (see TipTie)
+  double friction = 0.0;     // dissipated by sliding and the implicit step of springs
+  double failure = 0.0;      // released by bonded places that let go
+  double fracture = 0.0;     // what new surface takes: J_c times its length
+  double excess = 0.0;       // released by growth beyond that (also from springs of tips, see TipTie), which nothing takes
+                             // up; < 0: what growth lacked. With inertia surface costs the motion nothing: all is lacking
   double largest = 0.0;      // largest fluid, in-situ or body work or kinetic energy so far, the scale for closure()
 
   double supplied() const { return fluid_work + in_situ_work + edge_work + body_work + initial_kinetic; }
   double stored() const { return kinetic + strain + interface_strain; }
-  double dissipated() const { return damping + transfer + integration + friction + fracture; }
+  double dissipated() const { return damping + transfer + integration + friction + failure + fracture + excess; }
   double open() const { return stored() + dissipated() - supplied(); }
   double closure() const { return largest == 0.0 ? 0.0 : open() / largest; }
   bool finite() const { return std::isfinite(open()) && std::isfinite(largest); }
