@@ -9,9 +9,9 @@ namespace {
 
 using Index = Eigen::Index;
 
-// Of the shortest length: K is then right to 1e-5. Finer elements are so flat that round-off in the energy, their shape
-// times 1e-16, shows in its differences.
-constexpr double kFinest = 1e-4;
+// The finest element over the shortest length: K is then right to 1e-5. Finer ones are so flat that round-off in the
+// energy, their length over their height times 1e-16, shows in its differences; so the least over the block, too.
+constexpr double kFinest = 3e-4, kFlattest = 1e-7;
 
 void check(const CutBlock& block) {
   for (const double length : {block.width, block.height, block.interface})
@@ -77,7 +77,8 @@ void CutBlocks::set_lines() {
   if (ends) shortest = std::min({shortest, block_.slipped, half - block_.slipped});
   if (crossed) shortest = std::min(shortest, block_.fresh);
   if (block_.ahead > 0) shortest = std::min({shortest, block_.ahead, half - block_.slipped - block_.ahead});
-  const double finest = kFinest * shortest, reach = block_.slipped + block_.ahead;
+  const double finest = std::max(kFinest * shortest, kFlattest * std::max(half, block_.height)),
+               reach = block_.slipped + block_.ahead;
   const auto append = [](std::vector<double>& to, const std::vector<double>& lines) {
     to.insert(to.end(), lines.begin(), lines.end());
   };
@@ -255,7 +256,7 @@ double CutBlocks::energy_rate() const {
       rate -= stretch * u.dot(element_stiffness(line_, rock(r), h_x(c), h_y(r), true) * u);
     }
     if (r < tip_row_)
-      for (int j = 0; j <= line_.order; ++j)
+      for (Index j = 0; j <= line_.order; ++j)
         rate += 2 * stretch * 0.5 * h_y(r) * line_.weights(j) * u_[r][0](2 * (line_.order + 1) * j);
   }
   return rate;
@@ -276,7 +277,7 @@ double CutBlocks::opening(double y) const {
   const auto r = std::size_t(std::upper_bound(y_.begin(), y_.end(), y) - y_.begin()) - 1;
   const Eigen::VectorXd N = line_.values(2 * (y - y_[r]) / h_y(r) - 1);
   double u = 0;
-  for (int j = 0; j <= line_.order; ++j) u += N(j) * u_[r][0](2 * (line_.order + 1) * j);
+  for (Index j = 0; j <= line_.order; ++j) u += N(j) * u_[r][0](2 * (line_.order + 1) * j);
   return 2 * u;
 }
 

@@ -8,7 +8,7 @@
 // across, s_xx = -p, s_yy = 0; it lifts the upper one, which stays free of stress:
 //   opening = p width/E', energy = p^2 width interface/(2 E'), E' of the lower rock (Hooke in plane strain).
 // Springs D take D p^2 width^3/(24 E'^2) from that energy, to first order in D.
-// Else by elements of high order (high_order_elements.hpp), graded geometrically to 1e-6 of the shortest length at the
+// Else by elements of high order (high_order_elements.hpp), graded geometrically to 3e-4 of the shortest length at the
 // tip, at the mouth on the interface and at the end of slip: the error falls exponentially with the order (Szabo &
 // Babuska 1991). K_I = sqrt(E' dU/d(fresh)), the energy's exact derivative as the elements between interface, tip
 // and top stretch (Parks 1974, Int. J. Fract. 10, 487).

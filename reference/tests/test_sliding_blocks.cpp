@@ -55,7 +55,7 @@ TEST_CASE("no friction to speak of leaves cut blocks, much of it a block without
 
 TEST_CASE("more friction shields the tip less and stores less; at no pressure to speak of nothing slides") {
   double K = 0, stored = 1e12;
-  for (const double friction : {0.05, 0.1, 0.2}) {
+  for (const double friction : {0.05, 0.2}) {
     const SlidingBlocks end = sliding_blocks(study(), friction, 3e6, 1e6, 4);
     CHECK(end.stored < stored);
     K = end.K_I, stored = end.stored;
