@@ -248,6 +248,7 @@ CutBlocks::Influence CutBlocks::unit_loads() const {
 double CutBlocks::energy_rate() const {
   const std::size_t from = block_.fresh > 0 ? interface_row_ : 0;
   const double tip = y_[tip_row_], below = tip - y_[from], above = y_.back() - tip;
+  const Index stride = 2 * Index(line_.order + 1);  // from a point to the one above
   double rate = 0;
   for (std::size_t r = from; r + 1 < y_.size(); ++r) {
     const double stretch = r < tip_row_ ? 1 / below : -1 / above;  // d ln(h_y)/d(tip)
@@ -257,7 +258,7 @@ double CutBlocks::energy_rate() const {
     }
     if (r < tip_row_)
       for (Index j = 0; j <= line_.order; ++j)
-        rate += 2 * stretch * 0.5 * h_y(r) * line_.weights(j) * u_[r][0](2 * (line_.order + 1) * j);
+        rate += 2 * stretch * 0.5 * h_y(r) * line_.weights(j) * u_[r][0](stride * j);
   }
   return rate;
 }
@@ -276,8 +277,9 @@ double CutBlocks::opening(double y) const {
   if (!(y >= 0 && y < y_[tip_row_])) return 0;
   const auto r = std::size_t(std::upper_bound(y_.begin(), y_.end(), y) - y_.begin()) - 1;
   const Eigen::VectorXd N = line_.values(2 * (y - y_[r]) / h_y(r) - 1);
+  const Index stride = 2 * Index(line_.order + 1);
   double u = 0;
-  for (Index j = 0; j <= line_.order; ++j) u += N(j) * u_[r][0](2 * (line_.order + 1) * j);
+  for (Index j = 0; j <= line_.order; ++j) u += N(j) * u_[r][0](stride * j);
   return 2 * u;
 }
 

@@ -46,7 +46,8 @@ class CutBlocks {
 
   // U/p^2 = (1/(2 p)) int opening dy over the fracture, the stored energy of the whole width, m^2/Pa.
   double energy() const { return energy_; }
-  // K_I/p of the tip, sqrt(m). Throws std::invalid_argument for a tip on a decoupled interface or between two rocks.
+  // K_I/p of the tip, sqrt(m). Throws std::invalid_argument for a tip on a decoupled interface or between two rocks,
+  // std::runtime_error where round-off leaves nothing of it.
   double K_I() const;
   // Opening over p at y, m/Pa; on the interface that of the lower rock. Zero beyond the tip and outside the block.
   double opening(double y) const;

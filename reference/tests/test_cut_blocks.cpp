@@ -98,7 +98,7 @@ TEST_CASE("the largest tension on the interface: on a stiff lower block that on 
   stiff.below.youngs_modulus = 1e13;
   const BlockCrack exact = held_block(80, 70, 20);
   double largest = 0;
-  for (double x = 0.5; x < 40; x += 0.5) largest = std::max(largest, exact.field(x, 0).s_yy);
+  for (int i = 1; i < 80; ++i) largest = std::max(largest, exact.field(0.5 * i, 0).s_yy);
   CHECK(CutBlocks(stiff).largest_tension() == near(largest, 0.01));
 }
 
