@@ -109,6 +109,7 @@ PressureKnots knots_of(const Inputs& inputs);
 std::vector<Input> joined(std::vector<Input> first, const std::vector<Input>& second);
 
 // Parts of the catalogue, a file each.
+std::vector<Entry> block_entries();
 std::vector<Entry> crack_entries();
 std::vector<Entry> flow_entries();
 std::vector<Entry> interface_entries();

@@ -100,6 +100,33 @@ TEST_CASE("settings reach the solution") {
   CHECK(pressures[1] == Approx(380203.53).epsilon(1e-8));
 }
 
+TEST_CASE("settings reach the cut blocks") {
+  const Answer crossed = solve("cut_blocks", {"order=6"});
+  CHECK(value_of(crossed, "F") == Approx(1.0683).epsilon(1e-4));
+  CHECK(value_of(crossed, "stored_J_m") == Approx(38475.4).epsilon(1e-6));
+  CHECK(value_of(crossed, "critical_pressure_Pa") == Approx(0.7658e6).epsilon(1e-4));
+  const Answer cut = solve("cut_blocks", {"width_m=30", "interface_m=40", "height_m=100", "youngs_modulus_Pa=7e9",
+                                          "poisson_ratio=0.3", "pressure_Pa=2e6", "fresh_m=0", "shear_stiffness_Pa_m=0",
+                                          "beyond_youngs_modulus_Pa=2e9", "y_m=39", "order=4"});
+  CHECK(value_of(cut, "opening_m") == Approx(2e6 * 30 * 0.91 / 7e9).epsilon(1e-6));
+  CHECK(value_of(cut, "volume_m2") == Approx(40 * value_of(cut, "cut_opening_m")).epsilon(1e-7));
+  CHECK(value_of(cut, "stored_J_m") == Approx(value_of(cut, "cut_stored_J_m")).epsilon(1e-7));
+  CHECK(value_of(solve("cut_blocks", {"slipped_m=0", "beyond_poisson_ratio=0.4", "order=4"}), "K_I") !=
+        Approx(value_of(solve("cut_blocks", {"slipped_m=0", "order=4"}), "K_I")).epsilon(1e-3));
+  CHECK(value_of(solve("crossing_pressure", {"order=6"}), "net_pressure_Pa") == Approx(1.0794e6).epsilon(3e-4));
+  CHECK(value_of(solve("crossing_pressure", {"toughness_Pa_sqrt_m=2.9e6", "increment_m=2", "order=4"}),
+                 "net_pressure_Pa") < 2 * 0.8 * 1.0794e6);
+  const Answer ahead = solve("interface_ahead", {"slipped_m=8", "pressure_Pa=2e6", "shear_strength_Pa=1e6", "order=6"});
+  CHECK(value_of(ahead, "shear_Pa") == Approx(2 * 1.74695e6).epsilon(1e-4));
+  CHECK(value_of(ahead, "net_pressure_Pa") == Approx(1e6 / 1.74695).epsilon(1e-4));
+  CHECK(value_of(solve("interface_ahead", {"order=6"}), "normal_Pa") == Approx(0.67413e6).epsilon(1e-3));
+  CHECK(value_of(solve("sliding_blocks", {"order=4"}), "friction_work_J_m") == Approx(134.8).epsilon(1e-2));
+  CHECK(value_of(solve("sliding_blocks", {"friction=0.2", "compression_Pa=6e6", "steps=2", "order=4"}),
+                 "friction_work_J_m") < 100);
+  CHECK_THAT(refusal("cut_blocks", {"fresh_m=70"}), Contains("below the block's top"));
+  CHECK_THAT(refusal("interface_ahead", {"slipped_m=40"}), Contains("inside the block"));
+}
+
 TEST_CASE("numbers of unknowns reach the solution, and its error estimate holds for them") {
   const auto off = [](const std::string& name, const std::string& of, const std::string& setting) {
     const Answer asked = solve(name, {setting});
