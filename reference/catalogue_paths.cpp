@@ -13,8 +13,6 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kDegrees = 180 / pi;
-
 std::vector<Input> plane_inputs(const std::string& interface) {
   return joined(joined(rock_inputs("", 5e9), rock_inputs("beyond_", 10e9, true)),
                 {word_input("interface", "bonded at x = interface_x_m, or none: one rock", {"bonded", "none"}),

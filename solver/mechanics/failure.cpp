@@ -47,7 +47,7 @@ bool split_by_fracture(const State& state, const Band& band, int column, bool pl
 // Column, side of the interface, side of the fracture (-1: not told apart).
 using SampleKey = std::tuple<int, bool, int>;
 
-struct Builder {
+struct SampleBuilder {
   const Scene& scene;
   const State& state;
   const Surface& surface;
@@ -55,7 +55,7 @@ struct Builder {
   std::map<SampleKey, BondSample> samples;
 };
 
-SampleKey key_at(const Builder& b, int column, SideWord sides, bool plus) {
+SampleKey key_at(const SampleBuilder& b, int column, SideWord sides, bool plus) {
   const bool parted = b.state.has_fracture && split_by_fracture(b.state, b.band, column, plus);
   return {column, plus, parted ? ((sides & b.state.fracture().mask()) != 0 ? 1 : 0) : -1};
 }
@@ -67,7 +67,7 @@ struct ColumnWeights {
   std::array<Vec2, 3> grad{Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
 };
 
-ColumnWeights column_weights(const Builder& b, const Vec2& x, const Vec2& half) {
+ColumnWeights column_weights(const SampleBuilder& b, const Vec2& x, const Vec2& half) {
   const Grid& g = b.state.grid;
   const int i = std::clamp(g.column_at(x.x()), 0, g.nx), j = std::clamp(g.row_at(x.y()), 0, g.ny);
   const Gradients N = gradients_at(b.scene, g, i, j, x, half);
@@ -83,7 +83,7 @@ ColumnWeights column_weights(const Builder& b, const Vec2& x, const Vec2& half) 
   return out;
 }
 
-void add_particles(Builder& b) {
+void add_particles(SampleBuilder& b) {
   const Particles& p = b.state.particles;
   const Grid& g = b.state.grid;
   struct Last {
@@ -108,7 +108,7 @@ void add_particles(Builder& b) {
 }
 
 // The fracture's two faces load the columns on its two sides.
-void add_faces(Builder& b) {
+void add_faces(SampleBuilder& b) {
   if (!b.state.has_fracture) return;
   const Surface& fracture = b.state.fracture();
   for (std::size_t q = 0; q < fracture.points.size(); ++q) {
@@ -131,7 +131,7 @@ void add_faces(Builder& b) {
 
 // The same rule along the interface as the particles': then a uniform stress implies its own traction to round-off, at
 // columns that an edge or the fracture cuts off too.
-void add_lengths(Builder& b) {
+void add_lengths(SampleBuilder& b) {
   const auto& sizes = b.band.along_x ? b.state.particles.half_x : b.state.particles.half_y;
   const double half = *std::min_element(sizes.begin(), sizes.end());
   for (std::size_t q = 0; q < b.surface.points.size(); ++q) {
@@ -199,7 +199,7 @@ Bonds find_bonds(const Scene& scene, const State& state) {
     if (surface.kind != Surface::Kind::interface) continue;
     const InterfaceLaw::Kind kind = scene.laws[surface.law].kind;
     if (kind != InterfaceLaw::Kind::weak && kind != InterfaceLaw::Kind::friction) continue;
-    Builder b{scene, state, surface, band_of(scene, state, surface), {}};
+    SampleBuilder b{scene, state, surface, band_of(scene, state, surface), {}};
     add_particles(b);
     add_faces(b);
     add_lengths(b);
