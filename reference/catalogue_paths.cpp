@@ -11,8 +11,6 @@
 namespace strata::reference {
 namespace {
 
-using std::numbers::pi;
-
 std::vector<Input> plane_inputs(const std::string& interface) {
   return joined(joined(rock_inputs("", 5e9), rock_inputs("beyond_", 10e9, true)),
                 {word_input("interface", "bonded at x = interface_x_m, or none: one rock", {"bonded", "none"}),
