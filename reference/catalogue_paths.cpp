@@ -1,7 +1,6 @@
 // The catalogue's entries for cracks that are not straight, and for the paths they take.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "arc_crack.hpp"
