@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <set>
 #include <string>
 #include <variant>
@@ -14,6 +15,8 @@
 #include "rock.hpp"
 
 namespace strata::reference {
+
+constexpr double kDegrees = 180 / std::numbers::pi;  // in a radian
 
 // A number, a list of numbers, or a word.
 using InputValue = std::variant<double, std::vector<double>, std::string>;

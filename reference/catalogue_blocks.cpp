@@ -26,7 +26,7 @@ std::vector<Input> block_inputs(double fresh, double order) {
        number_input("order", "of the elements", order, 4, 12)});
 }
 
-CutBlock block_of(const Inputs& inputs) {
+CutBlock cut_block_of(const Inputs& inputs) {
   CutBlock block;
   block.width = inputs.number("width_m"), block.height = inputs.number("height_m");
   block.interface = inputs.number("interface_m"), block.fresh = inputs.number("fresh_m");
@@ -55,7 +55,7 @@ constexpr const char* kBasis = "change from elements of the order less two, rela
 constexpr double kRoundOff = 1e-8;
 
 Answer solve_cut_blocks(const Inputs& inputs) {
-  CutBlock block = block_of(inputs);
+  CutBlock block = cut_block_of(inputs);
   block.slipped = inputs.number("slipped_m");
   block.shear_stiffness = inputs.number("shear_stiffness_Pa_m");
   const int order = inputs.count("order");
@@ -101,7 +101,7 @@ Entry crossing_pressure_entry() {
           std::string(kSource) + "; finite increment: Leguillon 2002, Eur. J. Mech. A 21, 61",
           "as cut_blocks; released energy over the increment is J_c of the rock above; pressure_Pa is not used",
           [](const Inputs& inputs) {
-            CutBlock block = block_of(inputs);
+            CutBlock block = cut_block_of(inputs);
             block.shear_stiffness = inputs.number("shear_stiffness_Pa_m");
             const double da = inputs.number("increment_m"), K_Ic = inputs.number("toughness_Pa_sqrt_m");
             const int order = inputs.count("order");
@@ -123,7 +123,7 @@ Entry interface_ahead() {
           "as cut_blocks; shear is the size of s_xy, normal s_yy without the in-situ stress, tension positive; "
           "slipped_m + ahead_m within the block",
           [](const Inputs& inputs) {
-            CutBlock block = block_of(inputs);
+            CutBlock block = cut_block_of(inputs);
             block.slipped = inputs.number("slipped_m"), block.ahead = inputs.number("ahead_m");
             block.shear_stiffness = inputs.number("shear_stiffness_Pa_m");
             const int order = inputs.count("order");
@@ -148,7 +148,7 @@ Entry sliding_blocks_entry() {
           std::string(kSource) + "; linear complementarity (Klarbring 1986)",
           "as cut_blocks, tip at fresh_m > 0 from the start, pressure from 0; refused where the interface opens",
           [](const Inputs& inputs) {
-            CutBlock block = block_of(inputs);
+            CutBlock block = cut_block_of(inputs);
             block.widest = 1.0 / 16;
             const int order = inputs.count("order");
             const auto solved = [&](int n) {

@@ -14,8 +14,6 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kDegrees = 180 / pi;
-
 std::vector<Input> two_rocks() {
   return joined(rock_inputs("", 10e9), rock_inputs("beyond_", 5e9, true));
 }

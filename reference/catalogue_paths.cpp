@@ -1,7 +1,6 @@
 // The catalogue's entries for cracks that are not straight, and for the paths they take.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "arc_crack.hpp"
@@ -10,10 +9,6 @@
 
 namespace strata::reference {
 namespace {
-
-using std::numbers::pi;
-
-constexpr double kDegrees = 180 / pi;
 
 std::vector<Input> plane_inputs(const std::string& interface) {
   return joined(joined(rock_inputs("", 5e9), rock_inputs("beyond_", 10e9, true)),

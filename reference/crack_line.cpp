@@ -23,7 +23,7 @@ Eigen::VectorXd node_places(double a, int n) {
   return nodes;
 }
 
-void check_crack(double half_length, double E_prime) {
+void check_line(double half_length, double E_prime) {
   if (!(half_length > 0 && E_prime > 0) || !std::isfinite(half_length) || !std::isfinite(E_prime))
     throw std::invalid_argument("half_length and E_prime must be positive and finite");
 }
@@ -58,7 +58,7 @@ Eigen::VectorXd plane_strengths(double a, double E_prime, const PressureKnots& p
 
 CrackLine::CrackLine(double half_length, double E_prime, const CrackKernel& kernel, const CrackLoad& load, int n)
     : a_(half_length), E_prime_(E_prime) {
-  check_crack(half_length, E_prime);
+  check_line(half_length, E_prime);
   settle(
       kernel, [&load](int) { return load; }, n);
   rest_ = strengths_;
@@ -66,7 +66,7 @@ CrackLine::CrackLine(double half_length, double E_prime, const CrackKernel& kern
 
 CrackLine::CrackLine(double half_length, double E_prime, const CrackKernel& kernel, const PressureKnots& p, int n)
     : a_(half_length), E_prime_(E_prime) {
-  check_crack(half_length, E_prime);
+  check_line(half_length, E_prime);
   plane_ = LinearlyPressurisedCrack(half_length, E_prime, p);
   // The rest answers the traction that the plane's part sends back to the crack.
   const auto returned = [&](int count) -> CrackLoad {

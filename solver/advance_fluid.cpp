@@ -86,10 +86,6 @@ void add_place(const ContactPlace& place, const LawAnswer& r, double w, RockResp
 // The rock at a time (s) as the flow sees it: openings and their change with the pressures, in equilibrium with all
 // surfaces.
 RockModel rock_of(const Scene& scene, double time, State& state, QuasistaticModel& model) {
-  struct Known {  // the change is the same as long as no place opens or closes
-    Pieces pieces;
-    Eigen::MatrixXd dw_dP;
-  };
   const auto& points = state.fracture().points;
   Eigen::VectorXd E_prime(points.size()), closing(points.size());
   const std::vector<Elasticity> rocks = make_elasticities(scene);
@@ -97,12 +93,15 @@ RockModel rock_of(const Scene& scene, double time, State& state, QuasistaticMode
     const SurfacePoint& s = points[static_cast<std::size_t>(k)];
     E_prime[k] = rocks[rock_at(scene, s.x)].E_prime, closing[k] = s.closing_stress();
   }
-  return [&scene, time, &state, &model, E_prime, closing, known = Known{}](const Eigen::VectorXd& P) mutable {
+  if (model.dw_dP_of != model.factor.pieces) model.dw_dP.resize(0, 0);
+  return [&scene, time, &state, &model, E_prime, closing](const Eigen::VectorXd& P) {
     set_point_pressures(P, state);
     const Equilibrium at = find_equilibrium(scene, time, state, model);
-    if (known.pieces != at.pieces || known.dw_dP.size() == 0)
-      known = {at.pieces, opening_per_pressure(state, model.condensed, model.places, at, model.factor)};
-    RockResponse rock{Eigen::VectorXd::Zero(P.size()), known.dw_dP, E_prime, closing};
+    if (model.dw_dP_of != at.pieces || model.dw_dP.size() == 0) {  // the same as long as no place opens or closes
+      model.dw_dP = opening_per_pressure(state, model.condensed, model.places, at, model.factor);
+      model.dw_dP_of = at.pieces;
+    }
+    RockResponse rock{Eigen::VectorXd::Zero(P.size()), model.dw_dP, E_prime, closing};
     for (std::size_t k = 0; k < model.places.size(); ++k) {
       const ContactPlace& place = model.places[k];
       if (place.tie < 0 && place.surface == 0) add_place(place, at.answers[k], at.w[k].dot(place.n), rock);

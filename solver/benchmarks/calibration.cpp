@@ -6,17 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <chrono>
 
 namespace strata::bench {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 constexpr std::size_t chains = 12;
 constexpr double window_s = 0.01, trip_window_s = 0.001;

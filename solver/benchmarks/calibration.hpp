@@ -1,10 +1,17 @@
 // Kernels that tell how fast the machine is while something else is timed.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <memory>
 
 namespace strata::bench {
+
+using Clock = std::chrono::steady_clock;
+
+inline double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 // What the machine gives so many threads together.
 struct Rates {

@@ -3,7 +3,6 @@
 
 #include <benchmark/benchmark.h>
 
-#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -69,12 +68,6 @@ void time_part(benchmark::State& bench, Shop& shop, const About& about, const st
 /// Registers a benchmark of a fixed number of iterations. What it throws is told as its error.
 benchmark::internal::Benchmark* add(const std::string& name, std::int64_t iterations,
                                     const std::function<void(benchmark::State&)>& run);
-
-using Clock = std::chrono::steady_clock;
-
-inline double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Median of numbers; NaN of none.
 double median(std::vector<double> values);

@@ -47,11 +47,11 @@ double fall_along(const Side& side, double net) {
 
 // A stretch that fluid flows through: what its pressure falls by and is beyond it (Pa), and what it would fall by, over
 // that, without the floor.
-struct Stretch {
+struct FlowStretch {
   double fall, beyond, more;
 };
 
-Stretch stretch(const Scene& scene, const Side& side, std::size_t k) {
+FlowStretch flow_stretch(const Scene& scene, const Side& side, std::size_t k) {
   const double floor = scene.fluid.minimum_opening_m;
   if (scene.fluid.law == Fluid::Law::paper) {  // between the vertices of a point
     const std::size_t at = side.index(k);
@@ -73,7 +73,7 @@ double missing_along(const Scene& scene, const Side& side) {
     const double open = std::max(side[k].opening(), paper ? 0.0 : side[k + 1].opening());
     if (open <= roughness) break;
     x += side[k].A;
-    const auto [fall, beyond, more] = stretch(scene, side, k);
+    const auto [fall, beyond, more] = flow_stretch(scene, side, k);
     if (!(fall > 0.0)) continue;
     const double further =
         std::clamp(fall * (more - 1.0), 0.0, std::max(0.0, beyond - scene.fluid.cavitation_Pa - lost));

@@ -84,7 +84,8 @@ struct Balance {
   RockResponse rock;
   VectorXd held, inflow;  // theta w A (m^2), net flow into the cell (m^2/s), both at the cavitation pressure
   VectorXd residual;      // held - held before - dt inflow
-  MatrixXd by_P, by_w;    // d inflow/d P, d inflow/d w, bands of three
+  // d inflow/d P, d inflow/d w of a cell (rows) by the cell before it, itself and the one behind it (columns).
+  Eigen::MatrixX3d by_P, by_w;
   double inlet_Pa = 0.0;
   double flux = 0.0;       // into the fracture, at the inlet's pressure (m^2/s)
   double mass_flux = 0.0;  // the same at the cavitation pressure
@@ -116,12 +117,12 @@ Place place(const Step& step, const Trial& trial, const Balance& b, Index k, boo
 void add_flow(Balance& b, Index to, const Dual& flow, Index l, Index r) {
   b.inflow(to) += flow.value();
   if (l >= 0) {
-    b.by_P(to, l) += flow.derivatives()(0);
-    b.by_w(to, l) += flow.derivatives()(1);
+    b.by_P(to, l - to + 1) += flow.derivatives()(0);
+    b.by_w(to, l - to + 1) += flow.derivatives()(1);
   }
   if (r >= 0) {
-    b.by_P(to, r) += flow.derivatives()(2);
-    b.by_w(to, r) += flow.derivatives()(3);
+    b.by_P(to, r - to + 1) += flow.derivatives()(2);
+    b.by_w(to, r - to + 1) += flow.derivatives()(3);
   }
 }
 
@@ -201,7 +202,7 @@ Balance evaluate(const Step& step, const Trial& trial) {
   Balance b;
   b.rock = step.rock(trial.P);
   b.held = b.inflow = VectorXd::Zero(n);
-  b.by_P = b.by_w = MatrixXd::Zero(n, n);
+  b.by_P = b.by_w = Eigen::MatrixX3d::Zero(n, 3);
   add_faces(step, trial, b);
   add_inlet(step, trial, b);
   for (Index k = 0; k < n; ++k)
@@ -214,15 +215,18 @@ Balance evaluate(const Step& step, const Trial& trial) {
 // d residual/d(unknown): the unknown of a column is P where the cell is full, phi elsewhere.
 MatrixXd jacobian(const Step& step, const Trial& trial, const Balance& b) {
   const Index n = trial.P.size();
-  MatrixXd by_w = -step.dt * b.by_w;
-  for (Index k = 0; k < n; ++k)
-    if (b.rock.w(k) > thinnest) by_w(k, k) += b.held(k) / b.rock.w(k);
-  MatrixXd J = -step.dt * b.by_P;
+  Eigen::MatrixX3d by_P = -step.dt * b.by_P, by_w = -step.dt * b.by_w;
   for (Index k = 0; k < n; ++k) {
-    J(k, k) += b.held(k) / (density(step.fluid, trial.P(k)) * step.fluid.bulk_modulus_Pa);
-    for (Index j = std::max<Index>(k - 1, 0); j <= std::min(k + 1, n - 1); ++j)
-      J.row(k) += by_w(k, j) * b.rock.dw_dP.row(j);
+    by_P(k, 1) += b.held(k) / (density(step.fluid, trial.P(k)) * step.fluid.bulk_modulus_Pa);
+    if (b.rock.w(k) > thinnest) by_w(k, 1) += b.held(k) / b.rock.w(k);
   }
+  MatrixXd J = MatrixXd::Zero(n, n);
+  J.diagonal(-1) = by_P.col(0).tail(n - 1);
+  J.diagonal() = by_P.col(1);
+  J.diagonal(1) = by_P.col(2).head(n - 1);
+  J.bottomRows(n - 1) += by_w.col(0).tail(n - 1).asDiagonal() * b.rock.dw_dP.topRows(n - 1);
+  J += by_w.col(1).asDiagonal() * b.rock.dw_dP;
+  J.topRows(n - 1) += by_w.col(2).head(n - 1).asDiagonal() * b.rock.dw_dP.bottomRows(n - 1);
   for (Index k = 0; k < n; ++k) {
     if (trial.full[static_cast<std::size_t>(k)]) continue;
     J.col(k).setZero();
@@ -267,19 +271,18 @@ double trusted_fraction(const Step& step, const Trial& trial, const VectorXd& dx
 bool balanced(const Step& step, const Trial& trial, const Balance& b, const MatrixXd& J) {
   const double total = std::max(b.held.sum(), step.dt * std::abs(b.mass_flux));
   const double digit = 4.0 * std::numeric_limits<double>::epsilon() * trial.P.maxCoeff();
-  for (Index k = 0; k < b.residual.size(); ++k) {
-    double round_off = 0.0;
-    for (Index j = 0; j < b.residual.size(); ++j)
-      if (trial.full[static_cast<std::size_t>(j)]) round_off += digit * std::abs(J(k, j));
-    if (std::abs(b.residual(k)) > step.options.tolerance * total + round_off) return false;
+  VectorXd of_cell = VectorXd::Zero(b.residual.size());  // round-off
+  double of_whole = 0.0;
+  for (Index j = 0; j < b.residual.size(); ++j) {
+    if (!trial.full[static_cast<std::size_t>(j)]) continue;
+    of_cell += digit * J.col(j).cwiseAbs();
+    of_whole += digit * std::abs(J.col(j).sum());
   }
+  if ((b.residual.array().abs() > step.options.tolerance * total + of_cell.array()).any()) return false;
   // Flows between cells, whose round-off counts above, are none of the whole's, of which a tenth of what marks a run
   // may be missing.
   constexpr double of_all = 1e-9;
-  double round_off = 0.0;
-  for (Index j = 0; j < b.residual.size(); ++j)
-    if (trial.full[static_cast<std::size_t>(j)]) round_off += digit * std::abs(J.col(j).sum());
-  return std::abs(b.residual.sum()) <= of_all * total + round_off;
+  return std::abs(b.residual.sum()) <= of_all * total + of_whole;
 }
 
 struct Iterate {

@@ -18,13 +18,8 @@ bool apart_at(const Surface& surface, const Vec2& x, double h) {
   return std::ranges::any_of(surface.points, [&](const SurfacePoint& s) { return s.split && (s.x - x).norm() < h; });
 }
 
-bool real_interface(const Scene& scene, std::size_t k) {
-  return scene.laws[scene.strata.interfaces[k].law].kind != InterfaceLaw::Kind::perfect ||
-         scene.strata.layers[k].rock != scene.strata.layers[k + 1].rock;
-}
-
 double stacking(const Scene& scene, const Vec2& x) {
-  return scene.strata.along == Strata::Along::y ? x.y() : x.x();
+  return scene.stacking(x.x(), x.y());
 }
 
 // Distance (m) from a tip to the nearest real interface ahead of it (sign 1) or behind (-1); one it stands on is both.
@@ -35,7 +30,7 @@ double to_interface(const Scene& scene, const State& state, const Tip& tip, doub
   for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
     const double off = scene.strata.interfaces[k].at_m - at;
     const bool beside = std::abs(way) < 1e-6, on = std::abs(off) < on_it_cells * state.grid.h;
-    if (real_interface(scene, k) && (beside || on || sign * off * way > 0.0)) nearest = std::min(nearest, std::abs(off));
+    if (scene.changes_at(k) && (beside || on || sign * off * way > 0.0)) nearest = std::min(nearest, std::abs(off));
   }
   return nearest;
 }

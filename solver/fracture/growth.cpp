@@ -29,12 +29,7 @@ double fine_cells(const Scene& scene) {
 }
 
 double stacking_coordinate(const Scene& scene, const Vec2& x) {
-  return scene.strata.along == Strata::Along::y ? x.y() : x.x();
-}
-
-bool real_interface(const Scene& scene, std::size_t k) {
-  return scene.laws[scene.strata.interfaces[k].law].kind != InterfaceLaw::Kind::perfect ||
-         scene.strata.layers[k].rock != scene.strata.layers[k + 1].rock;
+  return scene.stacking(x.x(), x.y());
 }
 
 // Length of the next `times` increments of da from `tip` along `direction`: they end on the first interface that they
@@ -43,7 +38,7 @@ double increment_to_interface(const Scene& scene, const Vec2& tip, const Vec2& d
   double length = (times + sliver) * da;
   bool meets = false;
   for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
-    if (!real_interface(scene, k)) continue;
+    if (!scene.changes_at(k)) continue;
     const double rate = stacking_coordinate(scene, direction);
     const double distance = scene.strata.interfaces[k].at_m - stacking_coordinate(scene, tip);
     if (std::abs(rate) < 1e-6) continue;

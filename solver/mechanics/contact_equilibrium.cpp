@@ -213,7 +213,7 @@ bool factor_tangent(const Condensed& condensed, const std::vector<ContactPlace>&
 
 // Force out of balance over the load that counts as none: places on the border of two pieces may change by round-off
 // for ever.
-constexpr double balanced = 1e-9;
+constexpr double least_unbalanced = 1e-9;
 
 // Slope (J/m) along a step of what the laws hold less the work of the loads on surfaces: at the jumps w (m) of places,
 // which change by dw (m) along it.
@@ -277,7 +277,7 @@ bool iterate(const State& state, const Condensed& condensed, const std::vector<C
   constexpr double lost_digits = 1e-4;  // no more is out of balance for the digits that a factor has lost
   if (bounds_held) {
     evaluate(state, condensed, places, at);
-    if (at.residual < balanced) return true;
+    if (at.residual < least_unbalanced) return true;
   } else {
     answer(state, places, at);
   }
@@ -303,13 +303,14 @@ bool iterate(const State& state, const Condensed& condensed, const std::vector<C
     if (!bounds_held && at.pieces != pieces && at.iterations < solved_from) continue;
     evaluate(state, condensed, places, at);
     // Places on the border of two pieces go by digits that a factor which has followed changes lost.
-    if (length == 1.0 && at.pieces != pieces && factor.changed() && at.residual > balanced &&
+    if (length == 1.0 && at.pieces != pieces && factor.changed() && at.residual > least_unbalanced &&
         at.residual < lost_digits) {
       at.j += factor.solve(at.unbalanced);
       evaluate(state, condensed, places, at);
     }
     stays = bounds_held && length < 1.0 && at.pieces == pieces;
-    const bool solved = at.residual < balanced && (bounds_held || (length == 1.0 && at.iterations >= solved_from));
+    const bool solved =
+        at.residual < least_unbalanced && (bounds_held || (length == 1.0 && at.iterations >= solved_from));
     const bool settled = solved || (length == 1.0 && at.pieces == pieces);
     if (!settled) continue;
     if (singular && !bounds_held) report_mechanism(state, places);

@@ -34,7 +34,7 @@ bool split_by_fracture(const State& state, const Band& band, int column, SideWor
 // Column, side of the interface, side of the fracture (-1: not told apart).
 using SampleKey = std::tuple<int, bool, int>;
 
-struct Builder {
+struct SampleBuilder {
   const Scene& scene;
   const State& state;
   const Surface& surface;
@@ -42,13 +42,13 @@ struct Builder {
   std::map<SampleKey, BondSample> samples;
 };
 
-SampleKey key_at(const Builder& b, int column, SideWord sides, bool plus) {
+SampleKey key_at(const SampleBuilder& b, int column, SideWord sides, bool plus) {
   sides = plus ? sides | b.surface.mask() : sides & ~b.surface.mask();
   const bool parted = b.state.has_fracture && split_by_fracture(b.state, b.band, column, sides, plus);
   return {column, plus, parted ? ((sides & b.state.fracture().mask()) != 0 ? 1 : 0) : -1};
 }
 
-void add_particles(Builder& b) {
+void add_particles(SampleBuilder& b) {
   const Particles& p = b.state.particles;
   const Grid& g = b.state.grid;
   struct Last {
@@ -73,7 +73,7 @@ void add_particles(Builder& b) {
 }
 
 // The fracture's two faces load the columns on its two sides.
-void add_faces(Builder& b) {
+void add_faces(SampleBuilder& b) {
   if (!b.state.has_fracture) return;
   const Surface& fracture = b.state.fracture();
   for (std::size_t q = 0; q < fracture.points.size(); ++q) {
@@ -96,7 +96,7 @@ void add_faces(Builder& b) {
 
 // The same rule along the interface as the particles': then a uniform stress implies its own traction to round-off, at
 // columns that an edge or the fracture cuts off too.
-void add_lengths(Builder& b) {
+void add_lengths(SampleBuilder& b) {
   const auto& sizes = b.band.along_x ? b.state.particles.half_x : b.state.particles.half_y;
   const double half = *std::min_element(sizes.begin(), sizes.end());
   for (std::size_t q = 0; q < b.surface.points.size(); ++q) {
@@ -133,7 +133,7 @@ bool begins_stretch(const State& state, const Band& band, const Surface& surface
 }
 
 // sum_p m_p Phi N_ip by records.
-void add_inertia(Builder& b) {
+void add_inertia(SampleBuilder& b) {
   if (b.scene.numerics.mechanics == Numerics::Mechanics::quasistatic) return;
   const Particles& p = b.state.particles;
   std::vector<std::size_t> bin_of(p.size());
@@ -156,7 +156,7 @@ void add_inertia(Builder& b) {
 // Columns without a bonded point of their own: beyond an edge or the fracture they reach over with a corner of their
 // functions, and what they carry there is given to the column beside them; where the column has let go its copies carry
 // nothing but what its points exert.
-void join_columns(Builder& b) {
+void join_columns(SampleBuilder& b) {
   std::set<SampleKey> bonded;
   std::set<int> loose;
   for (const SurfacePoint& s : b.surface.points) {
@@ -197,14 +197,14 @@ Vec2 traction(const State& state, const BondSample& sample, Vec2 force) {
 }
 
 // A place of a stretch as it is judged: the length that it stands for (m) and the force on it (N/m).
-struct Piece {
+struct BondPiece {
   double length = 0.0;
   Vec2 force = Vec2::Zero();
 };
 
 // What has let go ends at the first node that is not split, as a fracture does: the piece between the two belongs to it
 // and carries what it does; the rest of what the node's column carries is that of the place's other piece.
-Piece piece_of(const Surface& surface, const BondedPlace& place) {
+BondPiece piece_of(const Surface& surface, const BondedPlace& place) {
   const auto& points = surface.points;
   const SurfacePoint& s = points[place.point];
   const SurfacePoint* beside = nullptr;
@@ -221,18 +221,20 @@ void judge(const Surface& surface, const InterfaceLaw& law, double length, std::
   const Vec2 n = surface.points.front().n, t = tangent_of(n);
   const double least = law.kind == InterfaceLaw::Kind::friction ? lets_go_sticking : 1.0;
   const auto index_of = [&](const Vec2& carried) { return failure_index(law, carried.dot(n), carried.dot(t)) / least; };
-  std::vector<Piece> pieces;
+  std::vector<BondPiece> pieces;
   std::vector<double> local;
   double all = 0.0;
   for (BondedPlace& place : stretch) {
     all += pieces.emplace_back(piece_of(surface, place)).length, local.push_back(index_of(place.carried));
     place.index = 0.0;
   }
-  for (std::size_t k = 0; all == 0.0 && k < pieces.size(); ++k) {  // one column between two ends
-    const double A = surface.points[stretch[k].point].A;
-    pieces[k] = {A, A * stretch[k].carried};
+  if (all == 0.0) {  // one column between two ends
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+      const double A = surface.points[stretch[k].point].A;
+      pieces[k] = {A, A * stretch[k].carried}, all += A;
+    }
   }
-  length = std::min(length, all > 0.0 ? all : pieces.front().length);
+  length = std::min(length, all);
   for (const bool back : {false, true}) {
     const auto at = [&](std::size_t k) { return back ? stretch.size() - 1 - k : k; };
     for (std::size_t from = 0; from < stretch.size(); ++from) {
@@ -274,7 +276,7 @@ Bonds find_bonds(const Scene& scene, const State& state) {
     if (surface.kind != Surface::Kind::interface) continue;
     const InterfaceLaw::Kind kind = scene.laws[surface.law].kind;
     if (kind != InterfaceLaw::Kind::weak && kind != InterfaceLaw::Kind::friction) continue;
-    Builder b{scene, state, surface, band_of(scene, state, surface), {}};
+    SampleBuilder b{scene, state, surface, band_of(scene, state, surface), {}};
     add_particles(b);
     add_faces(b);
     add_lengths(b);

@@ -71,11 +71,11 @@ bool is_uniform(const Grid& g, int middle, Span span) {
 
 // What bins are like each other by: their column, their row (-1: one among cells of width or height h, as all such) and
 // their rock.
-using Kind = std::tuple<int, int, int>;
+using Likeness = std::tuple<int, int, int>;
 
 // The kind of a bin of four particles that stand for four; none where it is like no other: among cells that are neither
 // of width nor of height h.
-std::optional<Kind> kind_of(const State& state, const Quarters& quarters, const Bin& bin) {
+std::optional<Likeness> kind_of(const State& state, const Quarters& quarters, const Bin& bin) {
   const Particles& p = state.particles;
   const Grid& g = state.grid;
   if (bin.last - bin.first != 4 * bin.stride) return std::nullopt;
@@ -86,7 +86,7 @@ std::optional<Kind> kind_of(const State& state, const Quarters& quarters, const 
   for (auto q = first; q < static_cast<std::size_t>(bin.last); q += static_cast<std::size_t>(bin.stride)) {
     if (!quarters.whole(p, q) || p.rock[q] != p.rock[first]) return std::nullopt;
   }
-  return Kind{along_x ? -1 : bin.i, along_y ? -1 : bin.j, p.rock[first]};
+  return Likeness{along_x ? -1 : bin.i, along_y ? -1 : bin.j, p.rock[first]};
 }
 
 bool any_whole(const State& state, const Quarters& quarters, const Bin& bin) {
@@ -103,13 +103,13 @@ void exert_quarters(const Scene& scene, const std::vector<Elasticity>& rocks, co
                     State& state) {
   const Quarters quarters(scene, state.grid);
   if (!quarters.in_use()) return;
-  std::map<Kind, LocalStiffness> alike;
+  std::map<Likeness, LocalStiffness> alike;
   for (const Bin& bin : state.bins) {
     if (!any_whole(state, quarters, bin)) continue;
     Motion moved;
     for (Eigen::Index n = 0; n < 9; ++n)
       moved.segment<2>(2 * n) = u[static_cast<std::size_t>(bin.record[static_cast<std::size_t>(n)])];
-    const std::optional<Kind> kind = kind_of(state, quarters, bin);
+    const std::optional<Likeness> kind = kind_of(state, quarters, bin);
     if (kind && !alike.contains(*kind)) alike.emplace(*kind, stiffness_of_quarters(scene, rocks, state, quarters, bin));
     const Motion f =
         kind ? Motion(alike.at(*kind) * moved) : forces_of_quarters(scene, rocks, state, quarters, bin, moved);

@@ -205,6 +205,7 @@ void update_equations(const Scene& scene, const std::vector<Elasticity>& rocks, 
   model.places = contact_places(scene, rocks, state, model.condensed);
   model.factor.outdate();
   model.j.resize(0);
+  model.dw_dP.resize(0, 0);
 }
 
 void forget_solution(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
@@ -212,6 +213,7 @@ void forget_solution(const Scene& scene, const std::vector<Elasticity>& rocks, c
   model.places = contact_places(scene, rocks, state, model.condensed);
   model.factor = TangentFactor{};
   model.j.resize(0);
+  model.dw_dP.resize(0, 0);
 }
 
 Equilibrium find_equilibrium(const Scene& scene, double time, State& state, QuasistaticModel& model) {

@@ -28,6 +28,8 @@ struct QuasistaticModel {
   Eigen::SparseMatrix<double, Eigen::RowMajor> vertex_jumps;  // jumps at all vertices (x and y) by the jump unknowns
   Eigen::VectorXd j;                                          // the last solution, as a first guess
   Eigen::VectorXd shown;                                      // the solution whose fields the state was given
+  Eigen::MatrixXd dw_dP;                                      // opening_per_pressure(), none where not known,
+  Pieces dw_dP_of;                                            // and the pieces for which it holds
 };
 
 /// Rebuilds what follows from the state's particles and surfaces (copies, springs of tips, stencils) and brings the

@@ -18,7 +18,7 @@ double tip_tie_coefficient(const Scene& scene) {
 }
 
 // Nearer than this to the tip (in cells) a node counts as standing on it, farther than 1 - this as a whole cell behind.
-constexpr double slack_cells = 0.02;
+constexpr double at_a_node_cells = 0.02;
 
 double spline(double f) {
   f = std::abs(f);
@@ -44,7 +44,7 @@ TipTie make_tie(double c, const Elasticity& rock, const State& state, int node, 
   tie.s.sides = sides_ahead(state, tip);  // rock behind an interface that is apart is cut through
   const Projection on = project(fracture, tie.s.x, extension(g));
   const double behind = (at_back ? fracture.length() - on.arc : on.arc) / g.h;
-  if (behind <= slack_cells || behind >= 1.0 - slack_cells) return tie;
+  if (behind <= at_a_node_cells || behind >= 1.0 - at_a_node_cells) return tie;
   tie.stiffness = c * rock.E_prime * (1.0 - behind) / behind * spline(on.distance / g.h);
   tie.plus = record_of(state.copies, node, tie.s.sides | fracture.mask());
   tie.minus = record_of(state.copies, node, tie.s.sides & ~fracture.mask());

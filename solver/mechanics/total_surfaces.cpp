@@ -52,7 +52,7 @@ std::vector<Weight> weights_of(const State& state, const TipTie& tie) {
   return weights;
 }
 
-struct Builder {
+struct SurfaceBuilder {
   const State& state;
   TotalSurfaces out;
   std::unordered_map<int, int> touched;  // index of a slot
@@ -213,7 +213,7 @@ void add_reaction(const TotalPlace& place, const Vec2& change, SurfacePoint& s, 
 }
 
 TotalSurfaces make_total_surfaces(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
-  Builder build{state, {}, {}};
+  SurfaceBuilder build{state, {}, {}};
   build.out.laws = scene.laws;
   for (std::size_t k = 0; k < state.ties.size(); ++k) {
     TotalPlace place{-1, static_cast<int>(k), build.out.laws.size(), 0.0, 0.0, 0.0, {}, {}};

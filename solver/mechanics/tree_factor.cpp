@@ -15,8 +15,8 @@ namespace strata {
 namespace {
 
 // Right-hand sides that go through the factor together.
-constexpr std::size_t lanes = 16;
-using Sixteen = Eigen::Array<double, lanes, 1>;
+constexpr std::size_t at_a_time = 16;
+using Sixteen = Eigen::Array<double, at_a_time, 1>;
 
 // CHOLMOD brings threads of its own, which wait for each other at every supernode however many the run was given.
 class OneThread {
@@ -217,8 +217,8 @@ std::vector<BranchVector> TreeFactor::forward(const std::vector<SparseVector>& g
   std::vector<Sixteen> y;
   std::vector<char> on(g.empty() ? 0 : blocks_.size(), 0);
   Branches together, own;
-  for (std::size_t from = 0; from < g.size(); from += lanes) {
-    const std::size_t count = std::min(lanes, g.size() - from);
+  for (std::size_t from = 0; from < g.size(); from += at_a_time) {
+    const std::size_t count = std::min(at_a_time, g.size() - from);
     together.clear();
     for (std::size_t c = 0; c < count; ++c) mark(g[from + c].index, on, together);
     std::sort(together.begin(), together.end());

@@ -9,10 +9,6 @@
 namespace strata {
 namespace {
 
-bool usable(const Positions& positions, std::string_view path) {
-  return positions.given(path) && positions.sound(path);
-}
-
 // What mechanics = "explicit" cannot do.
 void check_explicit(const Scene& scene, const Positions& positions, Faults& faults) {
   const auto refuse = [&](std::string_view path, const std::string& typed, std::string_view advice) {
@@ -71,7 +67,7 @@ void check_nine_points(const Scene& scene, const Positions& positions, std::stri
 
 void check_beyond(const Scene& scene, const Positions& positions, Faults& faults) {
   const double beyond = scene.domain.beyond_m, cell = scene.numerics.cell_m;
-  if (beyond == 0.0 || !usable(positions, "domain.beyond_m") || !usable(positions, "numerics.cell_m")) return;
+  if (beyond == 0.0 || !positions.usable("domain.beyond_m") || !positions.usable("numerics.cell_m")) return;
   const double least = 2.0 * std::max(cell, scene.numerics.far_cell_m.value_or(cell));  // shorter, cells would shrink
   if (beyond < least) {
     faults.add(where_is(positions, "domain.beyond_m"),
@@ -84,8 +80,7 @@ void check_beyond(const Scene& scene, const Positions& positions, Faults& faults
 
 void check_far_cell(const Scene& scene, const Positions& positions, Faults& faults) {
   const Numerics& numerics = scene.numerics;
-  if (!numerics.far_cell_m || !usable(positions, "numerics.far_cell_m") || !usable(positions, "numerics.cell_m"))
-    return;
+  if (!numerics.far_cell_m || !positions.usable("numerics.far_cell_m") || !positions.usable("numerics.cell_m")) return;
   if (*numerics.far_cell_m > numerics.cell_m)
     check_nine_points(scene, positions, "numerics.far_cell_m", *numerics.far_cell_m, faults);
   if (*numerics.far_cell_m >= numerics.cell_m) return;
@@ -108,7 +103,7 @@ void check_fine_ends(const Scene& scene, const Positions& positions, Faults& fau
   for (const End& end :
        {End{"numerics.fine_left_m", n.fine_left_m, 0, true}, End{"numerics.fine_right_m", n.fine_right_m, 0, false},
         End{"numerics.fine_bottom_m", n.fine_bottom_m, 1, true}, End{"numerics.fine_top_m", n.fine_top_m, 1, false}}) {
-    if (!end.at || !usable(positions, end.key)) continue;
+    if (!end.at || !positions.usable(end.key)) continue;
     if (!positions.given("numerics.far_cell_m")) {
       faults.add(
           where_is(positions, end.key),
@@ -116,7 +111,7 @@ void check_fine_ends(const Scene& scene, const Positions& positions, Faults& fau
                       "of cell_m. Give it, or leave {} out.",
                       end.key, number_text(*end.at), end.key.substr(end.key.find('.') + 1)));
     }
-    if (!usable(positions, "fracture.path_m")) continue;
+    if (!positions.usable("fracture.path_m")) continue;
     const auto [low, high] =
         std::ranges::minmax_element(scene.fracture->path_m, {}, [&](const auto& x) { return x[end.axis]; });
     const double fracture = (end.is_least ? *low : *high)[end.axis];
@@ -136,7 +131,7 @@ void check_fluid(const Scene& scene, const Positions& positions, Faults& faults)
                            "\"{}\". Use law = \"reynolds\", or inlet = {{start_Pa, rate_Pa_s}}.",
                            number_text(*fluid.rate_m2_s), fluid.law == Fluid::Law::paper ? "paper" : "uniform"));
   }
-  const bool sound = positions.sound("fluid.cavitation_Pa") && usable(positions, "fluid.inlet.start_Pa");
+  const bool sound = positions.sound("fluid.cavitation_Pa") && positions.usable("fluid.inlet.start_Pa");
   if (sound && !fluid.rate_m2_s && fluid.cavitation_Pa > fluid.start_Pa) {
     faults.add(where_is(positions, "fluid.cavitation_Pa"),
                fmt::format("fluid.cavitation_Pa = {} is above fluid.inlet.start_Pa = {}, but no pressure may be below "

@@ -42,6 +42,7 @@ struct Positions {
 
   bool given(std::string_view path) const { return at.contains(path); }
   bool sound(std::string_view path) const { return !unsound.contains(path); }
+  bool usable(std::string_view path) const { return given(path) && sound(path); }
 };
 
 /// The place of `path`, or of the innermost table or list that would hold it, or the start of the file.

@@ -27,11 +27,6 @@ Point direction(const Point& before, const Point& tip) {
   return {d[0] / length, d[1] / length};
 }
 
-bool rocks_or_law_change(const Scene& scene, std::size_t k) {
-  return scene.laws[scene.strata.interfaces[k].law].kind != InterfaceLaw::Kind::perfect ||
-         scene.strata.layers[k].rock != scene.strata.layers[k + 1].rock;
-}
-
 // Spans of one stretch of growing cells, for a trial q.
 struct Growth {
   enum class End { edge, neighbour, fine };  // an edge halves the last span; towards fine cells spans shrink again
@@ -158,7 +153,7 @@ std::vector<Stretch> fine_stretches(const Scene& scene, int axis) {
   }
   const bool across = (scene.strata.along == Strata::Along::x) == (axis == 0);
   for (std::size_t n = 0; across && n < scene.strata.interfaces.size(); ++n) {
-    if (!rocks_or_law_change(scene, n)) continue;
+    if (!scene.changes_at(n)) continue;
     const double at = scene.strata.interfaces[n].at_m;
     fine.push_back({at - fine_cells_at_interface * h, at + fine_cells_at_interface * h});
   }

@@ -15,7 +15,7 @@
 namespace strata {
 namespace {
 
-std::string quoted(const std::string& text) {
+std::string toml_text(const std::string& text) {
   std::ostringstream out;
   const toml::value<std::string> value(text);
   out << toml::toml_formatter{value, toml::format_flags::allow_unicode_strings};
@@ -34,13 +34,13 @@ std::string value_text(const Key& key, Scene& scene, std::size_t index) {
       return at(scene, index) ? number_text(*at(scene, index)) : std::string();
     }
     std::string operator()(IntegerPlace at) const { return fmt::format("{}", at(scene, index)); }
-    std::string operator()(TextPlace at) const { return quoted(at(scene, index)); }
+    std::string operator()(TextPlace at) const { return toml_text(at(scene, index)); }
     std::string operator()(FormulasPlace at) const {
       const std::optional<Formulas>& both = at(scene, index);
-      return both ? fmt::format("[{}, {}]", quoted((*both)[0]), quoted((*both)[1])) : std::string();
+      return both ? fmt::format("[{}, {}]", toml_text((*both)[0]), toml_text((*both)[1])) : std::string();
     }
     std::string operator()(const WordPlace& at) const {
-      return quoted(std::ranges::find(key.words, at.get(scene, index), &Word::value)->text);
+      return toml_text(std::ranges::find(key.words, at.get(scene, index), &Word::value)->text);
     }
   };
   return std::visit(Text{key, scene, index}, key.place);
@@ -58,7 +58,7 @@ std::string layers_text(const Scene& scene) {
   std::string text = "[\n";
   for (const Layer& layer : scene.strata.layers) {
     const bool is_last = &layer == &scene.strata.layers.back();
-    text += "  {rock = " + quoted(scene.rocks[layer.rock].name);
+    text += "  {rock = " + toml_text(scene.rocks[layer.rock].name);
     text += is_last ? "},\n" : ", thickness_m = " + thickness_text(layer, scene.numerics.cell_m) + "},\n";
   }
   return text + "]";
@@ -68,7 +68,7 @@ std::string list_text(const Key& key, const Scene& scene) {
   std::vector<std::string> items;
   if (key.type == KeyType::layers) return layers_text(scene);
   if (key.type == KeyType::names) {
-    for (const InterfacePlace& place : scene.strata.interfaces) items.push_back(quoted(scene.laws[place.law].name));
+    for (const InterfacePlace& place : scene.strata.interfaces) items.push_back(toml_text(scene.laws[place.law].name));
   } else if (key.type == KeyType::points) {
     for (const auto& point : scene.fracture->path_m) {
       items.push_back(fmt::format("[{}, {}]", number_text(point[0]), number_text(point[1])));

@@ -226,6 +226,15 @@ struct Scene {
   Output output;
   std::string resolved_toml;  // the scene as text, every key with its value, variant and --set applied
 
+  // Whether anything changes at an interface: a law, or another rock beyond it.
+  bool changes_at(std::size_t interface) const {
+    return laws[strata.interfaces[interface].law].kind != InterfaceLaw::Kind::perfect ||
+           strata.layers[interface].rock != strata.layers[interface + 1].rock;
+  }
+
+  // Coordinate of a place (m) along which layers are stacked.
+  double stacking(double x, double y) const { return strata.along == Strata::Along::y ? y : x; }
+
   bool operator==(const Scene&) const = default;
 };
 

@@ -13,10 +13,6 @@ namespace {
 
 constexpr double round_off = 1e-6;  // of a cell: lengths typed with as few digits still fit
 
-bool usable(const Positions& positions, std::string_view path) {
-  return positions.given(path) && positions.sound(path);
-}
-
 bool is_whole(double value) {
   return std::abs(value - std::round(value)) < round_off;
 }
@@ -178,8 +174,8 @@ void check_lie(const Scene& scene, const Positions& positions, Faults& faults) {
 }
 
 void check_fracture(const Scene& scene, const Positions& positions, bool cells_sound, Faults& faults) {
-  const bool block_sound = usable(positions, "domain.width_m") && usable(positions, "domain.height_m");
-  if (!usable(positions, "fracture.path_m") || !block_sound || !positions.sound("domain.bottom")) return;
+  const bool block_sound = positions.usable("domain.width_m") && positions.usable("domain.height_m");
+  if (!positions.usable("fracture.path_m") || !block_sound || !positions.sound("domain.bottom")) return;
   for (std::size_t k = 0; k < scene.fracture->path_m.size(); ++k) {
     check_point(scene, k, where_is(positions, fmt::format("fracture.path_m[{}]", k)), faults);
   }
@@ -190,12 +186,12 @@ void check_fracture(const Scene& scene, const Positions& positions, bool cells_s
 // Stops that have no meaning, or that the start has passed already.
 void check_stop_values(const Scene& scene, const Positions& positions, Faults& faults) {
   const double height_m = scene.domain.height_m;
-  if (usable(positions, "stop.tip_y_m") && usable(positions, "domain.height_m") && *scene.stop.tip_y_m >= height_m) {
+  if (positions.usable("stop.tip_y_m") && positions.usable("domain.height_m") && *scene.stop.tip_y_m >= height_m) {
     faults.add(where_is(positions, "stop.tip_y_m"),
                fmt::format("stop.tip_y_m = {} is not below the top of the block at {} m.{}",
                            number_text(*scene.stop.tip_y_m), number_text(height_m), upwards(height_m)));
   }
-  if (usable(positions, "stop.tip_y_m") && usable(positions, "fracture.path_m")) {
+  if (positions.usable("stop.tip_y_m") && positions.usable("fracture.path_m")) {
     const double tip_m = std::max(scene.fracture->path_m.front()[1], scene.fracture->path_m.back()[1]);
     if (*scene.stop.tip_y_m <= tip_m) {
       faults.add(
@@ -204,7 +200,7 @@ void check_stop_values(const Scene& scene, const Positions& positions, Faults& f
                       number_text(*scene.stop.tip_y_m), number_text(tip_m)));
     }
   }
-  if (usable(positions, "stop.inlet_Pa") && !scene.fluid.rate_m2_s && positions.sound("fluid.inlet.start_Pa") &&
+  if (positions.usable("stop.inlet_Pa") && !scene.fluid.rate_m2_s && positions.sound("fluid.inlet.start_Pa") &&
       scene.fluid.start_Pa >= *scene.stop.inlet_Pa) {
     faults.add(
         where_is(positions, "stop.inlet_Pa"),
@@ -251,13 +247,13 @@ void check_stop(const Scene& scene, const Positions& positions, Faults& faults) 
 }  // namespace
 
 void check_scene(const Scene& scene, const Positions& positions, Faults& faults) {
-  bool cells_sound = usable(positions, "numerics.cell_m") && positions.sound("numerics.particles_per_cell");
-  if (cells_sound && usable(positions, "domain.width_m") && usable(positions, "domain.height_m")) {
+  bool cells_sound = positions.usable("numerics.cell_m") && positions.sound("numerics.particles_per_cell");
+  if (cells_sound && positions.usable("domain.width_m") && positions.usable("domain.height_m")) {
     cells_sound = check_cells(scene, positions, faults);
   }
   const bool along_y = scene.strata.along == Strata::Along::y;
-  const bool layers_sound = usable(positions, "strata.layers") && positions.sound("strata.along") &&
-                            usable(positions, along_y ? "domain.height_m" : "domain.width_m");
+  const bool layers_sound = positions.usable("strata.layers") && positions.sound("strata.along") &&
+                            positions.usable(along_y ? "domain.height_m" : "domain.width_m");
   if (cells_sound && layers_sound) check_interfaces(scene, positions, faults);
   if (scene.fracture) check_fracture(scene, positions, cells_sound, faults);
   check_stop(scene, positions, faults);

@@ -75,4 +75,10 @@ std::string shortened(std::string_view text, std::size_t longest) {
   return fmt::format("{}...{} ({} characters)", text.substr(0, head), text.substr(tail), letters);
 }
 
+std::string_view trimmed(std::string_view text, std::string_view also_behind) {
+  const std::size_t first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r" + std::string(also_behind)) + 1 - first);
+}
+
 }  // namespace strata

@@ -26,4 +26,7 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 /// Throws nothing but std::bad_alloc.
 std::string shortened(std::string_view text, std::size_t longest);
 
+/// `text` without the spaces around it, nor what of `also_behind` is at its end. Throws nothing but std::bad_alloc.
+std::string_view trimmed(std::string_view text, std::string_view also_behind = "");
+
 }  // namespace strata

@@ -23,12 +23,6 @@ bool has(std::string_view set, char c) {
   return set.find(c) != std::string_view::npos;
 }
 
-std::string_view trimmed(std::string_view text, std::string_view also_behind = "") {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(fmt::format(" \t\r{}", also_behind)) + 1 - first);
-}
-
 bool is_toml(std::string_view value) {
   try {
     return toml::parse(fmt::format("value = {}", value)).size() == 1;

@@ -83,12 +83,6 @@ std::vector<Variant> read_variants(const toml::table& root, const std::string& f
   return variants;
 }
 
-std::string trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
-}
-
 bool is_bare_word(std::string_view text) {
   return !text.empty() && std::ranges::all_of(text, [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
@@ -101,12 +95,12 @@ void read_setting(const std::string& setting, std::vector<std::unique_ptr<toml::
   const Origin origin{"--set " + setting, 2};
   const Where where{origin.name, 0, 0, 2};
   const std::size_t equals = setting.find('=');
-  const std::string path = trimmed(std::string_view(setting).substr(0, equals));
+  const std::string path(trimmed(std::string_view(setting).substr(0, equals)));
   if (equals == std::string::npos || path.empty()) {
     faults.add(where, "this is not key.path=value.");
     return;
   }
-  const std::string value = trimmed(std::string_view(setting).substr(equals + 1));
+  const std::string value(trimmed(std::string_view(setting).substr(equals + 1)));
   Faults of_syntax;
   toml::table table = parse_toml("value = " + value, origin, of_syntax).table;
   if (!of_syntax.list.empty() && is_bare_word(value)) {

@@ -8,17 +8,13 @@
 #include <utility>
 #include <vector>
 
+#include "scene/spelling.hpp"
+
 namespace strata {
 namespace {
 
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
-}
-
-std::string trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  return first == std::string_view::npos ? ""
-                                         : std::string(text.substr(first, text.find_last_not_of(" \t\r") - first + 1));
 }
 
 void replace_all(std::string& text, std::string_view from, std::string_view to) {
@@ -34,7 +30,7 @@ std::string with_plain_signs(std::string_view typed) {
       {"\u03bc", "u"}, {"\u00b2", "^2"}, {"\u00b3", "^3"}, {"\u221a", "sqrt"}};
   std::string text(typed);
   for (const auto& [from, to] : signs) replace_all(text, from, to);
-  return trimmed(text);
+  return std::string(trimmed(text));
 }
 
 // A number taken apart; TOML takes sign, whole, '.', fraction, 'e', exponent.
@@ -134,7 +130,7 @@ std::optional<Number> read_number(std::string_view typed) {
   Number number;
   const bool signed_ = text.starts_with('-') || text.starts_with('+');
   if (text.starts_with('-')) number.sign = "-";
-  const std::string from = trimmed(std::string_view(text).substr(signed_ ? 1 : 0));
+  const std::string from(trimmed(std::string_view(text).substr(signed_ ? 1 : 0)));
   const std::size_t length = count_body(from);
   if (length == 0 || !read_body(from.substr(0, length), number)) return std::nullopt;
   number.behind = trimmed(std::string_view(from).substr(length));

@@ -24,7 +24,7 @@ bool beside(const Bin& bin, const Bin& next) {
   return true;
 }
 
-struct Builder {
+struct BlockBuilder {
   const std::vector<std::uint8_t>& rock;
   const std::vector<std::size_t>& from;  // the particles, bin by bin
   std::vector<Bin> bins{};
@@ -127,7 +127,7 @@ void number_along_rows(Copies& copies, std::vector<Bin>& bins) {
 }
 
 void make_blocks(const std::vector<std::uint8_t>& rock, std::vector<Bin>& bins, std::vector<std::size_t>& order) {
-  Builder builder{rock, order};
+  BlockBuilder builder{rock, order};
   builder.order.reserve(order.size());
   // At cut nodes there are bins of one place on both sides of a surface: a row at a time, sorted so that those beside
   // each other, whose records less their columns are the same, follow each other.
