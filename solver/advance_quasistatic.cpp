@@ -68,7 +68,8 @@ double margin_of(const Scene& scene, const std::vector<Elasticity>& rocks, State
     if (may_grow(scene, state, state.tips[k]))
       margin = std::max(margin, tip_margin(scene, rocks, state, run, k, state.tips[k]));
   }
-  judge_bonds(scene, state, forces_of_rock(rocks, state, run.model.bonds), run.model.bonds);
+  find_forces(rocks, state, run.model.bonds);
+  judge_bonds(scene, state, run.model.bonds);
   margin = std::max(margin, run.model.bonds.worst);
   bool sound = !std::isnan(run.model.bonds.worst);
   for (const Tip& tip : state.tips) sound = sound && std::isfinite(tip.G_trial);

@@ -75,6 +75,10 @@ std::vector<GrowthTrial> make_trials(const Scene& scene, const std::vector<Elast
       Tip& tried = trial.state.tips[k];
       trial.length =
           length > 0.0 ? extend_tip(scene, trial.state, tried, length) : -shorten_tip(trial.state, tried, -length);
+      if (trial.length == 0.0) {  // not a whole piece to take away
+        trials.pop_back();
+        continue;
+      }
       trial.model.body = model.body;
       trial.model.condensed = model.condensed;
       for (GrowthTrial& before : former) {

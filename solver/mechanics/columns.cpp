@@ -26,7 +26,11 @@ Band band_of(const Scene& scene, const State& state, const Surface& surface) {
 
 ColumnWeights column_weights(const Scene& scene, const Grid& g, const Band& band, const Vec2& x, const Vec2& half) {
   const int i = std::clamp(g.column_at(x.x()), 0, g.nx), j = std::clamp(g.row_at(x.y()), 0, g.ny);
-  const Gradients N = gradients_at(scene, g, i, j, x, half);
+  // A place without size weighs by hat functions where particles weigh by uGIMP's, as surfaces do.
+  const bool hat = scene.numerics.shape == Numerics::Shape::gimp && half.isZero();
+  const Gradients N = with_shape(hat ? Numerics::Shape::linear : scene.numerics.shape, [&](auto shape) {
+    return gradients_of<decltype(shape)>(g, i, j, x, half);
+  });
   ColumnWeights out;
   for (std::size_t n = 0; n < 9; ++n) {
     const int node_i = i + static_cast<int>(n % 3) - 1, node_j = j + static_cast<int>(n / 3) - 1;
@@ -75,6 +79,9 @@ void hand_over_in_situ(const Scene& scene, State& state) {
     }
     Eigen::SparseMatrix<double> M(columns, columns);
     M.setFromTriplets(entries.begin(), entries.end());
+    for (Eigen::Index c = 0; c < columns; ++c) {
+      if (M.coeff(c, c) == 0.0) M.coeffRef(c, c) = 1.0;  // hat functions do not reach in from beyond the edges
+    }
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(M);
     if (factor.info() != Eigen::Success)
       throw NumericalFailure("the loaded in-situ state cannot be handed to an interface: its columns are not told apart");

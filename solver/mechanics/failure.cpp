@@ -21,6 +21,8 @@ namespace {
 // as they slide make 130 to 270 J/m of it.
 constexpr double lets_go_sticking = 0.3;
 
+constexpr double least_share = 0.1;  // of a cell: a column that reaches less of the interface has no mean to speak of
+
 // Whether the fracture splits the nodes of a column on one side of the interface, for rock on these sides of others.
 bool split_by_fracture(const State& state, const Band& band, int column, SideWord sides, bool plus) {
   const int across = plus ? band.last : band.first;
@@ -179,6 +181,7 @@ void join_columns(SampleBuilder& b) {
     append(into.inertia, sample.inertia);
     into.length += sample.length;
   }
+  std::erase_if(kept, [&](const auto& entry) { return entry.second.length < least_share * b.state.grid.h; });
   b.samples = std::move(kept);
 }
 
@@ -196,22 +199,16 @@ Vec2 traction(const State& state, const BondSample& sample, Vec2 force) {
   return force / sample.length;
 }
 
-// A place of a stretch as it is judged: the length that it stands for (m) and the force on it (N/m).
-struct BondPiece {
-  double length = 0.0;
-  Vec2 force = Vec2::Zero();
-};
-
 // What has let go ends at the first node that is not split, as a fracture does: the piece between the two belongs to it
 // and carries what it does; the rest of what the node's column carries is that of the place's other piece.
-BondPiece piece_of(const Surface& surface, const BondedPlace& place) {
+void weigh(const Surface& surface, BondedPlace& place) {
   const auto& points = surface.points;
   const SurfacePoint& s = points[place.point];
   const SurfacePoint* beside = nullptr;
   if (place.point > 0 && points[place.point - 1].split) beside = &points[place.point - 1];
   if (place.point + 1 < points.size() && points[place.point + 1].split) beside = &points[place.point + 1];
-  if (beside == nullptr) return {s.A, s.A * place.carried};
-  return {0.0, s.A * (place.carried - beside->reaction)};
+  place.length = beside == nullptr ? s.A : 0.0;
+  place.force = s.A * (beside == nullptr ? place.carried : Vec2{place.carried - beside->reaction});
 }
 
 // Judges the places of one stretch of bonded interface: what its pieces of a length carry on average counts for the
@@ -221,17 +218,15 @@ void judge(const Surface& surface, const InterfaceLaw& law, double length, std::
   const Vec2 n = surface.points.front().n, t = tangent_of(n);
   const double least = law.kind == InterfaceLaw::Kind::friction ? lets_go_sticking : 1.0;
   const auto index_of = [&](const Vec2& carried) { return failure_index(law, carried.dot(n), carried.dot(t)) / least; };
-  std::vector<BondPiece> pieces;
-  std::vector<double> local;
   double all = 0.0;
   for (BondedPlace& place : stretch) {
-    all += pieces.emplace_back(piece_of(surface, place)).length, local.push_back(index_of(place.carried));
-    place.index = 0.0;
+    weigh(surface, place);
+    all += place.length, place.own = index_of(place.carried), place.index = 0.0;
   }
   if (all == 0.0) {  // one column between two ends
-    for (std::size_t k = 0; k < pieces.size(); ++k) {
-      const double A = surface.points[stretch[k].point].A;
-      pieces[k] = {A, A * stretch[k].carried}, all += A;
+    for (BondedPlace& place : stretch) {
+      place.length = surface.points[place.point].A, place.force = place.length * place.carried;
+      all += place.length;
     }
   }
   length = std::min(length, all);
@@ -241,17 +236,18 @@ void judge(const Surface& surface, const InterfaceLaw& law, double length, std::
       Vec2 force = Vec2::Zero();
       double left = length, most = 0.0;
       std::size_t k = from;
-      for (; k < stretch.size() && left > 0.0; left -= pieces[at(k)].length, ++k) {
-        const double share = pieces[at(k)].length > left ? left / pieces[at(k)].length : 1.0;
-        force += share * pieces[at(k)].force;
-        if (!(local[at(k)] <= most)) most = local[at(k)];
+      for (; k < stretch.size() && left > 0.0; ++k) {
+        const BondedPlace& place = stretch[at(k)];
+        force += (place.length > left ? left / place.length : 1.0) * place.force;
+        left -= place.length;
+        if (!(place.own <= most)) most = place.own;
       }
       if (left > round_off * length) break;  // the rest is shorter still
       const double index = index_of(force / length);
       if (law.kind == InterfaceLaw::Kind::friction) most = std::min(most, 1.0);  // all that slide let go
       for (std::size_t j = from; j < k; ++j) {
-        const bool counts = !(local[at(j)] < as_bad * most) && !(index <= stretch[at(j)].index);
-        if (counts) stretch[at(j)].index = index;  // one that is not a number stays
+        BondedPlace& place = stretch[at(j)];
+        if (!(place.own < as_bad * most) && !(index <= place.index)) place.index = index;  // no number stays
       }
     }
   }
@@ -289,6 +285,7 @@ Bonds find_bonds(const Scene& scene, const State& state) {
       at.emplace(key, bonds.samples.size());
       bonds.samples.push_back(std::move(sample));
     }
+    bonds.forces.reserve(bonds.samples.size());
     for (std::size_t q = 0; q < surface.points.size(); ++q) {
       const SurfacePoint& s = surface.points[q];
       if (s.split) continue;
@@ -306,30 +303,28 @@ Bonds find_bonds(const Scene& scene, const State& state) {
   return bonds;
 }
 
-std::vector<Vec2> forces_of_rock(const std::vector<Elasticity>& rocks, const State& state, const Bonds& bonds) {
+void find_forces(const std::vector<Elasticity>& rocks, const State& state, Bonds& bonds) {
   const Particles& p = state.particles;
-  std::vector<Vec2> forces;
-  for (const BondSample& sample : bonds.samples) {
-    Vec2& force = forces.emplace_back(Vec2::Zero());
-    for (const BondSample::Share& share : sample.particles) {
+  bonds.forces.assign(bonds.samples.size(), Vec2::Zero());
+  for (std::size_t k = 0; k < bonds.samples.size(); ++k) {
+    Vec2& force = bonds.forces[k];
+    for (const BondSample::Share& share : bonds.samples[k].particles) {
       const std::size_t q = share.index;
       force += stress_of(rocks[p.rock[q]], p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]).on(share.weight);
       if (!state.body.empty()) force -= p.m[q] * share.Phi * state.body[q];
     }
-    for (const BondSample::Mass& mass : sample.inertia) {
+    for (const BondSample::Mass& mass : bonds.samples[k].inertia) {
       const NodeMotion node = state.motion[static_cast<std::size_t>(mass.record)];
       force += mass.m / state.dt * Vec2{node.dv_x, node.dv_y};
     }
   }
-  return forces;
 }
 
-void judge_bonds(const Scene& scene, const State& state, const std::vector<Vec2>& forces, Bonds& bonds) {
-  std::vector<Vec2> of_sample;
-  for (std::size_t k = 0; k < forces.size(); ++k) of_sample.push_back(traction(state, bonds.samples[k], forces[k]));
+void judge_bonds(const Scene& scene, const State& state, Bonds& bonds) {
   for (BondedPlace& place : bonds.places) {
     place.carried = state.surfaces[place.surface].points[place.point].in_situ;
-    for (const std::size_t k : place.samples) place.carried += of_sample[k] / static_cast<double>(place.samples.size());
+    for (const std::size_t k : place.samples)
+      place.carried += traction(state, bonds.samples[k], bonds.forces[k]) / static_cast<double>(place.samples.size());
   }
   bonds.worst = 0.0;
   for (auto first = bonds.places.begin(); first != bonds.places.end();) {

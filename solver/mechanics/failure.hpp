@@ -19,16 +19,16 @@ double failure_index(const InterfaceLaw& law, double n, double t);
 /// nothing.
 Bonds find_bonds(const Scene& scene, const State& state);
 
-/// Force of each sample's rock, sum_p (V_p sigma_p grad Phi + m_p (a_p - b_p) Phi) (N/m), from the particles' present
+/// Forces of the samples' rock, sum_p (V_p sigma_p grad Phi + m_p (a_p - b_p) Phi) (N/m), from the particles' present
 /// strain and, in runs with inertia, the accelerations that forces gave the nodes. Throws nothing.
-std::vector<Vec2> forces_of_rock(const std::vector<Elasticity>& rocks, const State& state, const Bonds& bonds);
+void find_forces(const std::vector<Elasticity>& rocks, const State& state, Bonds& bonds);
 
-/// What bonded places carry where the rock exerts `forces` on their samples, under the present tractions on the
-/// fracture, and how near each is to failure. A place is judged on the mean traction over failure_length() of bonded
+/// What bonded places carry under these forces and the present tractions on the fracture, and how near each is to
+/// failure. A place is judged on the mean traction over failure_length() of bonded
 /// interface from it on, to either side, where so much of it is bonded: stress grows without bound towards the edge of
 /// what has let go and towards a tip, so that the value at a point would be the cell's. Where less is bonded between two
 /// edges, on the mean over all of it. Throws nothing.
-void judge_bonds(const Scene& scene, const State& state, const std::vector<Vec2>& forces, Bonds& bonds);
+void judge_bonds(const Scene& scene, const State& state, Bonds& bonds);
 
 // Columns of nodes, told by their surface, along an interface.
 using Columns = std::set<std::pair<std::size_t, int>>;

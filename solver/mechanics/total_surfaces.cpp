@@ -315,14 +315,14 @@ std::vector<BondSensor> make_bond_sensors(const Scene& scene, const std::vector<
   }
   Bonds still = state.bonds;
   for (BondSample& sample : still.samples) sample.inertia.clear();
-  const std::vector<Vec2> base = forces_of_rock(rocks, state, still);
-  for (std::size_t k = 0; k < sensors.size(); ++k) sensors[k].base = base[k];
+  find_forces(rocks, state, still);
+  for (std::size_t k = 0; k < sensors.size(); ++k) sensors[k].base = still.forces[k];
   return sensors;
 }
 
-std::vector<Vec2> forces_of_nodes(const State& state) {
+void forces_of_nodes(const State& state, std::vector<Vec2>& forces) {
   const TotalMotion& t = state.total;
-  std::vector<Vec2> forces;
+  forces.clear();
   for (const BondSensor& sensor : t.bonds) {
     Vec2& force = forces.emplace_back(sensor.base);
     for (const BondSensor::Entry& e : sensor.entries) {
@@ -331,7 +331,6 @@ std::vector<Vec2> forces_of_nodes(const State& state) {
       force.y() += e.yx * t.u_x[slot] + e.yy * t.u_y[slot] + e.m * t.a_y[slot];
     }
   }
-  return forces;
 }
 
 }  // namespace strata

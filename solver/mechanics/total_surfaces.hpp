@@ -34,7 +34,7 @@ double step_surfaces(double keep, State& state);
 /// and accelerations; particles must be up to date. Throws nothing but std::bad_alloc.
 std::vector<BondSensor> make_bond_sensors(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state);
 
-/// What forces_of_rock() gives, from the nodes (N/m). Throws nothing.
-std::vector<Vec2> forces_of_nodes(const State& state);
+/// What find_forces() gives, from the nodes (N/m). Throws nothing.
+void forces_of_nodes(const State& state, std::vector<Vec2>& forces);
 
 }  // namespace strata

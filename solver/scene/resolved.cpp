@@ -87,7 +87,7 @@ std::string law_name(Scene& scene, std::size_t index) {
 // A line "name = value", or nothing for a key that the scene does not have.
 std::string line(const Key& key, Scene& scene, std::size_t index) {
   if (key.path.find('[') != std::string::npos) return {};
-  if (!key.is_of(law_name(scene, index))) return {};
+  if (!key.law.empty() && !key.is_of(law_name(scene, index))) return {};
   // The inlet is given in one of two ways.
   if (scene.fluid.rate_m2_s && (key.path == "fluid.inlet.start_Pa" || key.path == "fluid.inlet.rate_Pa_s")) return {};
   std::string value = list_text(key, scene);

@@ -40,12 +40,16 @@ struct BondedPlace {
   bool begins = false;          // a stretch of bonded places, behind what has let go or a fracture
   Vec2 carried = Vec2::Zero();  // what it carries, on the + face (Pa)
   double index = 0.0;           // how near it is to failure (1: fails)
+  // As its stretch is judged: the length that it stands for (m), the force on it (N/m) and its own index.
+  double length = 0.0, own = 0.0;
+  Vec2 force = Vec2::Zero();
 };
 
 struct Bonds {
   std::vector<BondSample> samples;
   std::vector<BondedPlace> places;
-  double worst = 0.0;  // the largest index when they were last judged
+  double worst = 0.0;         // the largest index when they were last judged
+  std::vector<Vec2> forces;    // of the samples' rock (N/m)
 };
 
 /// The length (m) of bonded interface over which the mean traction decides: failure_length_m or, where it is left out,

@@ -37,6 +37,7 @@ inline Scene made_scene() {
   scene.laws.resize(2);
   scene.laws[1].name = "bedding";
   scene.laws[1].kind = InterfaceLaw::Kind::weak;
+  scene.laws[1].failure_length_m = 4.0;
   scene.strata.layers = {{0, 0.0, 3.0}, {1, 3.0, 5.0}, {0, 5.0, 8.0}};
   scene.strata.interfaces = {{0, 3.0}, {1, 5.0}};
   scene.fracture = Fracture{};

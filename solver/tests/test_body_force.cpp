@@ -253,7 +253,8 @@ TEST_CASE("an interface carries the weight of what lies on it") {
         CHECK(point.opening() == Approx(-weight / 1e8).epsilon(1e-9));
       continue;
     }
-    load_bonds(s.run.scene, s.run.rocks, s.state(), s.model.bonds);
+    find_forces(s.run.rocks, s.state(), s.model.bonds);
+    judge_bonds(s.run.scene, s.state(), s.model.bonds);
     REQUIRE_FALSE(s.model.bonds.places.empty());
     for (const BondedPlace& place : s.model.bonds.places) {
       CHECK(place.carried.y() == Approx(weight).epsilon(1e-9));

@@ -165,17 +165,18 @@ TEST_CASE("copies where a fracture crosses a failed interface") {
   }
 }
 
-// Requires that a fracture whose tip stands on a failed interface splits what lies below it only: three copies.
-// Mutation that fails: the rule of entered sides left out.
+// Requires that a fracture whose tip stands on a failed interface splits what lies below it only, and all of that, also
+// where it belongs to nodes on and beyond the tip's row: three copies. Mutations that fail: the rule of entered sides
+// left out; the rock behind split up to the tip's row only.
 TEST_CASE("copies where a fracture has reached a failed interface") {
   const Run run = crossing(6.0, 6.0);
   for (const int i : {5, 6, 7}) {
-    CHECK(copies_at(run.state, i, 5) == 3U);
-    CHECK(copies_at(run.state, i, 6) == 2U);
+    for (const int j : {5, 6, 7}) CHECK(copies_at(run.state, i, j) == 3U);
     CHECK(copies_at(run.state, i, 4) == 2U);
   }
   const Run beyond = crossing(6.0, 7.0);
   CHECK(copies_at(beyond.state, 6, 5) == 4U);
+  CHECK(copies_at(beyond.state, 6, 7) == 3U);
 }
 
 // Requires that a soft interface splits from the start, a bonded weak one not at all, a perfect one is no surface.

@@ -45,7 +45,8 @@ TEST_CASE("bonded places carry the traction of a uniform stress") {
         const Stress added = cracked ? Stress{-0.3e6, -0.7e6, 0.0} : Stress{0.4e6, -0.7e6, 0.3e6};
         Particles& p = s.state().particles;
         for (std::size_t q = 0; q < p.size(); ++q) strain(s.state(), q, gradient_of(scene.rocks[0], added));
-        load_bonds(scene, s.run.rocks, s.state(), s.model.bonds);
+        find_forces(s.run.rocks, s.state(), s.model.bonds);
+        judge_bonds(scene, s.state(), s.model.bonds);
         for (const BondedPlace& place : s.model.bonds.places) {
           const SurfacePoint& point = s.state().surfaces[place.surface].points[place.point];
           const Vec2 expected = point.in_situ - added.on(point.n);

@@ -240,25 +240,3 @@ TEST_CASE("a soft interface passes traction on along growing cells") {
     }
   }
 }
-
-// Requires that a bonded interface's points sample the stress of their own place along growing cells: with 4 points a
-// cell that of the two particles above and below at the same x, and that in-situ traction is found at every point.
-TEST_CASE("bonded points sample stress beside them along growing cells") {
-  Scene scene = GradedInterface::scene(15.0, Numerics::Shape::bspline2, 4);
-  scene.laws.back() = weak_law(0.5e6, 0.5e6);
-  scene.rocks[1] = scene.rocks[0];
-  scene.in_situ = {3e6, 2e6, InSitu::Initialise::loaded};
-  const Run run(scene);
-  const State& state = run.state;
-  for (std::size_t q = 0; q < state.surfaces[0].points.size(); ++q) {
-    const SurfacePoint& s = state.surfaces[0].points[q];
-    const auto& samples = state.stress_samples[0][q];
-    CHECK(s.closing_stress() == Approx(3e6).epsilon(1e-8));
-    REQUIRE(samples.size() == 2);
-    for (const StressSample& sample : samples) {
-      CHECK(state.particles.x[static_cast<std::size_t>(sample.particle)] == Approx(s.x.x()).epsilon(1e-12));
-      CHECK(std::abs(state.particles.y[static_cast<std::size_t>(sample.particle)] - 15.0) == Approx(0.25));
-      CHECK(sample.weight == Approx(0.5));
-    }
-  }
-}

@@ -310,8 +310,7 @@ TEST_CASE("a tip says what its rings are near") {
     CAPTURE(off);
     const double at = 14.0 + off, distance = std::abs(off);
     const auto is = [&](const Found& found, Obstacle what) {
-      const double least = what == Obstacle::interface ? 2.5 : 2.0;
-      return found.near == (distance < 4.0 ? what : Obstacle::none) && found.crossed == (distance < least);
+      return found.near == (distance < 4.0 ? what : Obstacle::none) && found.crossed == (distance < 2.0);
     };
     CHECK(is(upper(with(bond, at, 0), 0.0, 20.0), Obstacle::interface));
     CHECK(is(upper(with(soft_law(1e9, 1e9), at, 0), 0.0, 0.0), Obstacle::interface));
