@@ -9,7 +9,7 @@ from verification.harness.load import Run
 from verification.tests.cases import completed
 
 STORED = ("kinetic_J", "strain_J", "interface_strain_J")
-DISSIPATED = ("damping_J", "transfer_J", "integration_J", "friction_J", "fracture_J")
+DISSIPATED = ("damping_J", "transfer_J", "integration_J", "friction_J", "failure_J", "fracture_J", "excess_J")
 SUPPLIED = ("fluid_work_J", "in_situ_work_J", "edge_work_J", "body_work_J", "initial_kinetic_J")
 
 

@@ -50,7 +50,7 @@ mechanics = "explicit"
 kinematics = "total"
 cell_m = 1
 [stop]
-time_s = 0.05
+time_s = 0.2
 [variants.usual]
 interface.rough.residual_friction = 0.6
 """
