@@ -44,18 +44,16 @@ void refine_beside_growth(const Scene& scene, State& state) {
   }
 }
 
-Resting make_resting(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
-  auto resting = std::make_unique<RestingRock>();
-  resting->scene = without_inertia(scene);
-  State& own = resting->state;
-  own = state;
+// Equations and trials of resting.state, which is that of the run.
+void make_resting(const Scene& scene, const std::vector<Elasticity>& rocks, RestingRock& resting) {
+  resting.scene = without_inertia(scene);
+  State& own = resting.state;
   own.total = {};
   own.bonds = {};
   own.dt = 1.0;  // J's inertia divides by it; there is none
-  refine_beside_growth(resting->scene, own);
-  update_equations(resting->scene, rocks, own, resting->model, false);
-  resting->trials = make_trials(resting->scene, rocks, own, resting->model, {}, false);
-  return resting;
+  refine_beside_growth(resting.scene, own);
+  update_equations(resting.scene, rocks, own, resting.model, false);
+  resting.trials = make_trials(resting.scene, rocks, own, resting.model, {}, false);
 }
 
 // Takes over what the run's surfaces bear now, and what friction remembers of it.
@@ -93,6 +91,37 @@ bool is_due(const State& state, const RestingRock& resting) {
 
 }  // namespace
 
+namespace {
+
+// Whether something could be done with the rock at rest: inertia holds what has no equilibrium.
+template <class Do>
+bool finds_rest(Do something, RestingRock& resting) {
+  try {
+    something();
+  } catch (const NumericalFailure&) {
+    resting.restless = true;
+  }
+  return !resting.restless;
+}
+
+// G of the tips that energy decides about, at the present pressures.
+void weigh(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, RestingRock& resting) {
+  follow(state, resting);
+  if (!trials_hold(scene, resting.state, resting.trials))
+    resting.trials = make_trials(resting.scene, rocks, resting.state, resting.model, std::move(resting.trials), false);
+  const Equilibrium rest = find_equilibrium(resting.scene, state.time, resting.state, resting.model);
+  resting.nearest = 0.0;
+  for (std::size_t k = 0; k < state.tips.size(); ++k) {
+    Tip& tip = state.tips[k];
+    if (!needs_energy(tip)) continue;
+    tip.G_trial = energy_release(resting.scene, resting.state, resting.model, rest, k, resting.trials);
+    const double J_c = rocks[rock_ahead(scene, state, tip)].J_c;
+    if (J_c > 0.0) resting.nearest = std::max(resting.nearest, std::sqrt(std::max(0.0, tip.G_trial) / J_c));
+  }
+}
+
+}  // namespace
+
 void weigh_growth(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Resting& resting) {
   for (Tip& tip : state.tips) tip.criterion = criterion_of(scene, state, tip);
   if (std::ranges::none_of(state.tips, needs_energy)) return resting.reset();
@@ -100,23 +129,19 @@ void weigh_growth(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
     return other.fracture().points.size() == state.fracture().points.size() &&
            split_points(other) == split_points(state);
   };
-  if (!resting || !same(resting->state)) resting = make_resting(scene, rocks, state);
-  if (!is_due(state, *resting)) return;
-  follow(state, *resting);
-  if (!trials_hold(scene, resting->state, resting->trials))
-    resting->trials =
-        make_trials(resting->scene, rocks, resting->state, resting->model, std::move(resting->trials), false);
-  const Equilibrium rest = find_equilibrium(resting->scene, state.time, resting->state, resting->model);
-  resting->nearest = 0.0;
-  for (std::size_t k = 0; k < state.tips.size(); ++k) {
-    Tip& tip = state.tips[k];
-    if (!needs_energy(tip)) continue;
-    tip.G_trial = energy_release(resting->scene, resting->state, resting->model, rest, k, resting->trials);
-    const double J_c = rocks[rock_ahead(scene, state, tip)].J_c;
-    if (J_c > 0.0) resting->nearest = std::max(resting->nearest, std::sqrt(std::max(0.0, tip.G_trial) / J_c));
+  if (!resting || !same(resting->state)) {
+    resting = std::make_unique<RestingRock>();
+    resting->state = state;
+    if (!finds_rest([&] { make_resting(scene, rocks, *resting); }, *resting)) ++state.monitors.growth_unweighed;
   }
-  resting->P.clear();
-  for (const SurfacePoint& s : state.fracture().points) resting->P.push_back(s.P);
+  if (!resting->restless && is_due(state, *resting)) {
+    if (!finds_rest([&] { weigh(scene, rocks, state, *resting); }, *resting)) ++state.monitors.growth_unweighed;
+    resting->P.clear();
+    for (const SurfacePoint& s : state.fracture().points) resting->P.push_back(s.P);
+  }
+  for (Tip& tip : state.tips) {
+    if (resting->restless && needs_energy(tip)) tip.criterion = Criterion::K;
+  }
 }
 
 }  // namespace strata

@@ -19,6 +19,7 @@ struct RestingRock {
   std::vector<GrowthTrial> trials;
   std::vector<double> P;  // of the fracture's points when it was last looked at (Pa)
   double nearest = 0.0;   // sqrt(G/J_c) of the tip nearest to growth then
+  bool restless = false;  // there is no equilibrium
 };
 
 // Made where it is first needed; forget it (reset) wherever a resumed run would begin.
@@ -26,7 +27,8 @@ using Resting = std::unique_ptr<RestingRock>;
 
 /// Notes what decides about each tip and, where that is energy, what growth would release at the present pressures, in
 /// tip.G_trial. It is looked at again once pressures have changed by a third of what is missing, and by 0.2 % at least,
-/// of the net pressure. Throws NumericalFailure as find_equilibrium() does.
+/// of the net pressure. Where the rock at rest has no equilibrium, as where surfaces cut off parts that nothing but
+/// inertia holds, K decides, and monitors.growth_unweighed counts it. Throws nothing but std::bad_alloc.
 void weigh_growth(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Resting& resting);
 
 }  // namespace strata

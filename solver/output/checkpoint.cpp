@@ -106,13 +106,13 @@ void fields(Archive& ar, Is<Monitors> auto& monitors) {
   auto& [largest_courant, largest_penetration, contact_sweeps, contact_unconverged, largest_particle_velocity,
          contact_residual, volume_balance, mirror, largest_open_J, largest_made_J, largest_strain_J, largest_kinetic_J,
          expected_x, expected_y, largest_drift, largest_momentum, force_balance, largest_imbalance, delivered_m2,
-         growths, growths_apart, J_spread_sum, largest_J_spread, contact_left, largest_contact_Pa, largest_tension_Pa,
+         growths, growths_apart, growth_unweighed, J_spread_sum, largest_J_spread, contact_left, largest_contact_Pa, largest_tension_Pa,
          largest_strain, largest_rotation, largest_jump, net_at_start_Pa, largest_net_Pa, flow_growths, flow_fall_Pa,
          flow_fall, largest_flow_fall, floor_share, floor_share_sum] = monitors;
   ar(largest_courant, largest_penetration, contact_sweeps, contact_unconverged, largest_particle_velocity,
      contact_residual, volume_balance, mirror, largest_open_J, largest_made_J, largest_strain_J, largest_kinetic_J,
      expected_x, expected_y, largest_drift, largest_momentum, force_balance, largest_imbalance, delivered_m2, growths,
-     growths_apart, J_spread_sum, largest_J_spread, contact_left, largest_contact_Pa, largest_tension_Pa,
+     growths_apart, growth_unweighed, J_spread_sum, largest_J_spread, contact_left, largest_contact_Pa, largest_tension_Pa,
      largest_strain, largest_rotation, largest_jump, net_at_start_Pa, largest_net_Pa, flow_growths, flow_fall_Pa,
      flow_fall, largest_flow_fall, floor_share, floor_share_sum);
 }

@@ -88,6 +88,7 @@ Json monitors_json(const Monitors& monitors, const std::vector<Watched>& shares)
                {"mirror", monitors.mirror},
                {"growths", monitors.growths},
                {"growths_at_interfaces", monitors.growths_apart},
+               {"growth_unweighed", monitors.growth_unweighed},
                {"largest_contact_Pa", monitors.largest_contact_Pa},
                {"largest_tension_Pa", monitors.largest_tension_Pa},
                {"largest_kinetic_J", monitors.largest_kinetic_J},

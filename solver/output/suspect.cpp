@@ -241,6 +241,9 @@ void watch_speed(const Scene& scene, const State& state, std::vector<Watched>& o
 
 void watch_growth(const State& state, std::vector<Watched>& out) {
   const Monitors& m = state.monitors;
+  out.push_back({"growth_unweighed", static_cast<double>(m.growth_unweighed), 0.0,
+                 "energy should have decided about growth, but surfaces had cut off parts that nothing but inertia holds: K "
+                 "decided"});
   if (m.growths == 0) return;
   const auto n = static_cast<double>(m.growths);
   // A tenth of J is a twentieth of K, and of the pressure at which a tip grows.

@@ -247,7 +247,7 @@ def interface_failure_excess_Pa(run: Run, _: Run | None, parameters: Parameters)
 
 def interface_energy(run: Run, height_m: float) -> Measured:
     """Energy in interfaces (stored in springs, spent on sliding and failure) when the tip is at a height, J/m."""
-    energy = run.history["interface_strain_J"] + run.history["friction_J"]
+    energy = run.history["interface_strain_J"] + run.history["friction_J"] + run.history["failure_J"]
     reached = np.flatnonzero(run.history["tip_y_m"] >= height_m - SLACK_M)
     if reached.size:
         return exactly(energy[reached[0]])
@@ -319,15 +319,21 @@ def height_ratio(run: Run, against: Run | None, parameters: Parameters) -> Measu
     return exactly(float(np.max(run.history["tip_y_m"][before])) / height)
 
 
-def path_distance_m(run: Run, against: Run | None, _: Parameters) -> Measured:
-    """Root mean square distance of the path from the other's, over the length both have."""
+def path_change(run: Run, against: Run | None, _: Parameters) -> Measured:
+    """Root mean square distance of the path from the other's over what that one turns away by, over the length both have."""
     assert against is not None
     if not (grew(run) and grew(against)):
         return nothing("one of the paths does not grow")
     common = min(path_length(run.path), path_length(against.path))
-    points = resample(run.path, 0.25)[: int(common / 0.25) + 1]
+    steps = int(common / 0.25) + 1
+    points, others = (resample(one.path, 0.25)[:steps] for one in (run, against))
+    first = (against.path[1] - against.path[0]) / np.linalg.norm(against.path[1] - against.path[0])
+    off = (others - against.path[0]) @ np.array([-first[1], first[0]])
+    deflection = float(np.sqrt(np.mean(off**2)))
+    if deflection < 0.1:
+        return nothing(f"the other path is straight to {deflection:.2g} m: there is no deflection to measure against")
     flags = () if common >= 10.0 else (f"common path of {common:.1f} m only",)
-    return exactly(float(np.sqrt(np.mean(distances_to(points, against.path) ** 2))), *flags)
+    return exactly(float(np.sqrt(np.mean(distances_to(points, against.path) ** 2))) / deflection, *flags)
 
 
 @dataclass(frozen=True)
@@ -359,7 +365,7 @@ OBSERVABLES: dict[str, Observable] = {
     "pressure_shift_Pa": Observable(pressure_shift_Pa, "Pa", True),
     "pressure_at_height_difference_Pa": Observable(pressure_at_height_difference_Pa, "Pa", True),
     "height_ratio": Observable(height_ratio, "", True),
-    "path_distance_m": Observable(path_distance_m, "m", True),
+    "path_change": Observable(path_change, "", True),
 }
 
 

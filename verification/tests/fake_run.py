@@ -11,7 +11,7 @@ import numpy as np
 
 COLUMNS = (
     "time_s", "inlet_Pa", "tip_x_m", "tip_y_m", "height_m", "J_N_m", "K_I_Pa_sqrt_m", "K_II_Pa_sqrt_m", "mouth_opening_m",
-    "fracture_volume_m2", "kinetic_J", "strain_J", "interface_strain_J", "friction_J",
+    "fracture_volume_m2", "kinetic_J", "strain_J", "interface_strain_J", "friction_J", "failure_J",
 )  # fmt: skip
 
 SCENE = """
@@ -65,7 +65,7 @@ def write_history(folder: Path, steps: Sequence[Step], end_Pa: float, friction_J
     rows.append((end_Pa, *rows[-1][1:]))
     lines = [",".join(COLUMNS)]
     for p, x, y, spent in rows:
-        lines.append(",".join(str(v) for v in (time_of(p), p, x, y, y, 201.0, 1.4e6, 0.0, 1e-3, 1e-3, 1.0, 10.0, 0.0, spent)))
+        lines.append(",".join(str(v) for v in (time_of(p), p, x, y, y, 201.0, 1.4e6, 0.0, 1e-3, 1e-3, 1.0, 10.0, 0.0, 0.5 * spent, 0.5 * spent)))
     (folder / "history.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 

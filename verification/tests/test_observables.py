@@ -114,10 +114,10 @@ def test_paths(tmp_path: Path) -> None:
     assert measure("lateral_deflection_m", {}, left, None).value == pytest.approx(-15.0)
     assert measure("final_angle_deg", {}, right, None).value == pytest.approx(60.0)
     assert measure("final_angle_deg", {}, left, None).value == pytest.approx(60.0)
-    assert measure("path_distance_m", {}, straight, straight).value == pytest.approx(0.0, abs=1e-12)
-    distance = measure("path_distance_m", {}, right, straight).value
-    on_line = 5.0 / 35.0  # the share of the path that both have
-    assert distance == pytest.approx(15.0 * math.sqrt((1.0 - on_line) / 3.0), rel=0.02)
+    assert measure("path_change", {}, right, right).value == pytest.approx(0.0, abs=1e-12)
+    # Paths at 60 degrees to each other: at s from the kink s sin 60 apart, and the other one s sin 30 off its first direction.
+    assert measure("path_change", {}, right, left).value == pytest.approx(math.sqrt(3.0), rel=0.02)
+    assert measure("path_change", {}, right, straight).value is None
 
 
 def test_interface_failure_and_energy(tmp_path: Path) -> None:
