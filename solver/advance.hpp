@@ -19,8 +19,10 @@ constexpr std::int64_t steps_between_rebuilds = 250;
 /// the linear elastic part and the pressure's work exactly p dV. Tips are measured and may grow at multiples of
 /// numerics.tip_steps, and in every step while they run (runs()); look: they are measured at the end of this step in
 /// any case, so that its K and J are known. Under kinematics = "total" particles stand still until
-/// complete_particles(). resting: what energy needs where it decides about growth. Throws NumericalFailure; `state` is then that of the failure.
-void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Resting& resting, bool look = true);
+/// complete_particles(). resting: what energy needs where it decides about growth. Throws NumericalFailure; `state` is
+/// then that of the failure.
+void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Resting& resting,
+             bool look = true);
 
 /// The same where nothing is kept from one step to the next.
 void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, bool look = true);

@@ -70,8 +70,8 @@ void rebuild_total(const Scene& scene, const std::vector<Elasticity>& rocks, boo
 
 }  // namespace
 
-void advance_total(const Scene& scene, const std::vector<Elasticity>& rocks, bool look, bool grow_now,
-                   Resting& resting, State& state) {
+void advance_total(const Scene& scene, const std::vector<Elasticity>& rocks, bool look, bool grow_now, Resting& resting,
+                   State& state) {
   const double keep = 1.0 - scene.numerics.damping_1_s * state.dt;
   start_base(scene, rocks, state);                  // after events: a_i of the particles' stress
   advance_pressure(scene, state);                   // P(s) from the opening at the step's start

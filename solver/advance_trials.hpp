@@ -29,8 +29,7 @@ double increment_of(const Scene& scene, const Tip& tip);
 /// an interface is nearer. `model` is the state's own; factors of `former` trials are used again; halve: as in
 /// update_equations(), and throws as it does.
 std::vector<GrowthTrial> make_trials(const Scene& scene, const std::vector<Elasticity>& rocks, State& state,
-                                     const QuasistaticModel& model, std::vector<GrowthTrial> former,
-                                     bool halve = true);
+                                     const QuasistaticModel& model, std::vector<GrowthTrial> former, bool halve = true);
 
 /// Energy (N/m) that tip number `tip` would release per length at the present pressures, the new segment under the
 /// pressure of the tip, less what friction would dissipate: over the increment of its trial; with two trials, the slope

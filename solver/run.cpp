@@ -365,8 +365,7 @@ int run_in(const Scene& scene, const RunOptions& options, bool replace, Clock::t
   try {
     const State state = initialise(scene, rocks);
     return run_from({scene, rocks, recorder, state, state, recorder.mark(), 0, 0.0, -1.0, std::nullopt, nullptr},
-                    folder,
-                    options, start);
+                    folder, options, start);
   } catch (const NumericalFailure& failure) {
     return fail_at_start(scene, folder, failure, start);
   }
@@ -411,8 +410,9 @@ int resume_in(const RunFolder& folder, const RunOptions& options, Clock::time_po
     return fail_at_start(scene, folder, failure, start);
   }
   const double last_output = recorder->last_output_s();
-  return run_from({scene, rocks, *recorder, state, state, checkpoint->mark, state.step, 0.0, last_output, std::nullopt, nullptr},
-                  folder, options, start);
+  return run_from(
+      {scene, rocks, *recorder, state, state, checkpoint->mark, state.step, 0.0, last_output, std::nullopt, nullptr},
+      folder, options, start);
 }
 
 }  // namespace

@@ -9,8 +9,8 @@ namespace strata {
 
 namespace {
 
-constexpr double on_it_cells = 0.1;    // nearer than this a tip stands on the interface (see ahead_cells)
-constexpr double slope_cells = 2.0;    // from here on K is right to 0.5 % between like rocks and 3 % between unlike ones
+constexpr double on_it_cells = 0.1;  // nearer than this a tip stands on the interface (see ahead_cells)
+constexpr double slope_cells = 2.0;  // from here on K is right to 0.5 % between like rocks and 3 % between unlike ones
 constexpr double ring_need_cells = 4.0;  // the narrowest ring and what nodes' functions reach beyond it
 
 // Whether the faces of an interface are apart within a cell of a place.
@@ -69,9 +69,12 @@ Criterion criterion_of(const Scene& scene, const State& state, const Tip& tip) {
 
 const char* name_of(Criterion criterion) {
   switch (criterion) {
-    case Criterion::J: return "J";
-    case Criterion::energy: return "energy";
-    default: return "K";
+    case Criterion::J:
+      return "J";
+    case Criterion::energy:
+      return "energy";
+    default:
+      return "K";
   }
 }
 

@@ -28,9 +28,8 @@ ColumnWeights column_weights(const Scene& scene, const Grid& g, const Band& band
   const int i = std::clamp(g.column_at(x.x()), 0, g.nx), j = std::clamp(g.row_at(x.y()), 0, g.ny);
   // A place without size weighs by hat functions where particles weigh by uGIMP's, as surfaces do.
   const bool hat = scene.numerics.shape == Numerics::Shape::gimp && half.isZero();
-  const Gradients N = with_shape(hat ? Numerics::Shape::linear : scene.numerics.shape, [&](auto shape) {
-    return gradients_of<decltype(shape)>(g, i, j, x, half);
-  });
+  const Gradients N = with_shape(hat ? Numerics::Shape::linear : scene.numerics.shape,
+                                 [&](auto shape) { return gradients_of<decltype(shape)>(g, i, j, x, half); });
   ColumnWeights out;
   for (std::size_t n = 0; n < 9; ++n) {
     const int node_i = i + static_cast<int>(n % 3) - 1, node_j = j + static_cast<int>(n / 3) - 1;
@@ -84,7 +83,8 @@ void hand_over_in_situ(const Scene& scene, State& state) {
     }
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(M);
     if (factor.info() != Eigen::Success)
-      throw NumericalFailure("the loaded in-situ state cannot be handed to an interface: its columns are not told apart");
+      throw NumericalFailure(
+          "the loaded in-situ state cannot be handed to an interface: its columns are not told apart");
     const Eigen::MatrixX2d t = factor.solve(forces_from_below(scene, state, surface, band, even, columns));
     for (std::size_t q = 0; q < surface.points.size(); ++q) {
       SurfacePoint& s = surface.points[q];

@@ -31,8 +31,8 @@ ColumnWeights column_weights(const Scene& scene, const Grid& g, const Band& band
 /// Gives the points of interfaces what the bonded block of the in-situ state `loaded` hands over there, as tractions
 /// whose forces on the columns are those of the rock on the - side:
 ///   sum_s A_s Phi_c(x_s) t(x_s) = -sum_p V_p (sigma_p - sigma) grad Phi_c,  t(x) = sum_c Phi_c(x) t_c,
-/// and -sigma n on top, with sigma the stress that balances the edges' tractions (Pa). A mean of the particles around is
-/// up to 10 % off between unlike rocks, whose strain the splines make continuous. Springs that take compression keep
+/// and -sigma n on top, with sigma the stress that balances the edges' tractions (Pa). A mean of the particles around
+/// is up to 10 % off between unlike rocks, whose strain the splines make continuous. Springs that take compression keep
 /// what they have. Throws NumericalFailure where the columns cannot be told apart.
 void hand_over_in_situ(const Scene& scene, State& state);
 

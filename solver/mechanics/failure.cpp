@@ -147,8 +147,8 @@ void add_inertia(SampleBuilder& b) {
     std::map<int, double> masses;
     for (const BondSample::Share& share : sample.particles) {
       const Bin& bin = b.state.bins[bin_of[share.index]];
-      const Gradients g = gradients_at(b.scene, b.state.grid, bin.i, bin.j, {p.x[share.index], p.y[share.index]},
-                                       p.half(share.index));
+      const Gradients g =
+          gradients_at(b.scene, b.state.grid, bin.i, bin.j, {p.x[share.index], p.y[share.index]}, p.half(share.index));
       for (std::size_t n = 0; n < 9; ++n) masses[bin.record[n]] += p.m[share.index] * share.Phi * g.N[n];
     }
     for (const auto& [record, m] : masses) sample.inertia.push_back({record, m});

@@ -26,8 +26,8 @@ void find_forces(const std::vector<Elasticity>& rocks, const State& state, Bonds
 /// What bonded places carry under these forces and the present tractions on the fracture, and how near each is to
 /// failure. A place is judged on the mean traction over failure_length() of bonded
 /// interface from it on, to either side, where so much of it is bonded: stress grows without bound towards the edge of
-/// what has let go and towards a tip, so that the value at a point would be the cell's. Where less is bonded between two
-/// edges, on the mean over all of it. Throws nothing.
+/// what has let go and towards a tip, so that the value at a point would be the cell's. Where less is bonded between
+/// two edges, on the mean over all of it. Throws nothing.
 void judge_bonds(const Scene& scene, const State& state, Bonds& bonds);
 
 // Columns of nodes, told by their surface, along an interface.

@@ -78,13 +78,11 @@ void fields(Archive& ar, Is<TipTie> auto& tie) {
 template <class Archive>
 void fields(Archive& ar, Is<Tip> auto& tip) {
   auto& [at_back, growing, stopped_by, K_I, K_II, J, J_spread, ring_m, kink, turn, closed, near, crossed, no_length,
-         last_growth_s,
-         last_growth_Pa, due_s, runs_until_s, J_at_growth, J_spread_at_growth, G_trial, G, G_by_J, criterion, grew_by, has_grown,
-         arrested, reached] = tip;
+         last_growth_s, last_growth_Pa, due_s, runs_until_s, J_at_growth, J_spread_at_growth, G_trial, G, G_by_J,
+         criterion, grew_by, has_grown, arrested, reached] = tip;
   ar(at_back, growing, stopped_by, K_I, K_II, J, J_spread, ring_m, kink, turn, closed, near, crossed, no_length,
-     last_growth_s,
-     last_growth_Pa, due_s, runs_until_s, J_at_growth, J_spread_at_growth, G_trial, G, G_by_J, criterion, grew_by, has_grown,
-     arrested, reached);
+     last_growth_s, last_growth_Pa, due_s, runs_until_s, J_at_growth, J_spread_at_growth, G_trial, G, G_by_J, criterion,
+     grew_by, has_grown, arrested, reached);
 }
 
 template <class Archive>
@@ -106,15 +104,15 @@ void fields(Archive& ar, Is<Monitors> auto& monitors) {
   auto& [largest_courant, largest_penetration, contact_sweeps, contact_unconverged, largest_particle_velocity,
          contact_residual, volume_balance, mirror, largest_open_J, largest_made_J, largest_strain_J, largest_kinetic_J,
          expected_x, expected_y, largest_drift, largest_momentum, force_balance, largest_imbalance, delivered_m2,
-         growths, growths_apart, growth_unweighed, J_spread_sum, largest_J_spread, contact_left, largest_contact_Pa, largest_tension_Pa,
-         largest_strain, largest_rotation, largest_jump, net_at_start_Pa, largest_net_Pa, flow_growths, flow_fall_Pa,
-         flow_fall, largest_flow_fall, floor_share, floor_share_sum] = monitors;
+         growths, growths_apart, growth_unweighed, J_spread_sum, largest_J_spread, contact_left, largest_contact_Pa,
+         largest_tension_Pa, largest_strain, largest_rotation, largest_jump, net_at_start_Pa, largest_net_Pa,
+         flow_growths, flow_fall_Pa, flow_fall, largest_flow_fall, floor_share, floor_share_sum] = monitors;
   ar(largest_courant, largest_penetration, contact_sweeps, contact_unconverged, largest_particle_velocity,
      contact_residual, volume_balance, mirror, largest_open_J, largest_made_J, largest_strain_J, largest_kinetic_J,
      expected_x, expected_y, largest_drift, largest_momentum, force_balance, largest_imbalance, delivered_m2, growths,
-     growths_apart, growth_unweighed, J_spread_sum, largest_J_spread, contact_left, largest_contact_Pa, largest_tension_Pa,
-     largest_strain, largest_rotation, largest_jump, net_at_start_Pa, largest_net_Pa, flow_growths, flow_fall_Pa,
-     flow_fall, largest_flow_fall, floor_share, floor_share_sum);
+     growths_apart, growth_unweighed, J_spread_sum, largest_J_spread, contact_left, largest_contact_Pa,
+     largest_tension_Pa, largest_strain, largest_rotation, largest_jump, net_at_start_Pa, largest_net_Pa, flow_growths,
+     flow_fall_Pa, flow_fall, largest_flow_fall, floor_share, floor_share_sum);
 }
 
 // All of the state but what rebuild_copies() derives of it.

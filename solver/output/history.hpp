@@ -26,7 +26,8 @@ struct HistoryRow {
   double fracture_volume_m2 = 0.0;
   double kinetic_J = 0.0, strain_J = 0.0, interface_strain_J = 0.0;
   double fluid_work_J = 0.0, in_situ_work_J = 0.0, edge_work_J = 0.0;
-  double damping_J = 0.0, transfer_J = 0.0, integration_J = 0.0, friction_J = 0.0, failure_J = 0.0, fracture_J = 0.0, excess_J = 0.0;
+  double damping_J = 0.0, transfer_J = 0.0, integration_J = 0.0, friction_J = 0.0, failure_J = 0.0, fracture_J = 0.0,
+         excess_J = 0.0;
   double energy_closure = 0.0;
   double J_spread = 0.0;
   double kink_deg = 0.0;

@@ -227,8 +227,9 @@ void watch_failure(const Scene& scene, const State& state, std::vector<Watched>&
   }
   if (least == HUGE_VAL) return;
   constexpr double resolved_cells = 2.0;  // with one, slip runs 19 m where it should run 23; with two, 22
-  out.push_back({"failure_length_unresolved", resolved_cells / least, 1.0,
-                 "an interface has failed in part whose failure_length_m is less than two cells: where it stops is the cell's"});
+  out.push_back(
+      {"failure_length_unresolved", resolved_cells / least, 1.0,
+       "an interface has failed in part whose failure_length_m is less than two cells: where it stops is the cell's"});
 }
 
 // New surface takes nothing from the motion: a tip in motion has that much too much, and runs as the cell lets it.
@@ -241,9 +242,10 @@ void watch_speed(const Scene& scene, const State& state, std::vector<Watched>& o
 
 void watch_growth(const State& state, std::vector<Watched>& out) {
   const Monitors& m = state.monitors;
-  out.push_back({"growth_unweighed", static_cast<double>(m.growth_unweighed), 0.0,
-                 "energy should have decided about growth, but surfaces had cut off parts that nothing but inertia holds: K "
-                 "decided"});
+  out.push_back(
+      {"growth_unweighed", static_cast<double>(m.growth_unweighed), 0.0,
+       "energy should have decided about growth, but surfaces had cut off parts that nothing but inertia holds: K "
+       "decided"});
   if (m.growths == 0) return;
   const auto n = static_cast<double>(m.growths);
   // A tenth of J is a twentieth of K, and of the pressure at which a tip grows.

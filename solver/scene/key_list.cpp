@@ -191,12 +191,13 @@ std::vector<Key> interface_keys() {
                          "interface.NAME.residual_friction", "", not_negative,
                          +[](Scene& s, std::size_t i) -> double& { return s.laws[i].residual_friction; },
                          "Coulomb coefficient where it has failed.")),
-      of_law("weak or friction",
-             number(
-                 "interface.NAME.failure_length_m", "m", positive,
-                 +[](Scene& s, std::size_t i) -> std::optional<double>& { return s.laws[i].failure_length_m; },
-                 "Length of bonded interface over which the mean traction decides whether it fails or slips; by default "
-                 "fracture.increment_m, without a fracture numerics.cell_m.")),
+      of_law(
+          "weak or friction",
+          number(
+              "interface.NAME.failure_length_m", "m", positive,
+              +[](Scene& s, std::size_t i) -> std::optional<double>& { return s.laws[i].failure_length_m; },
+              "Length of bonded interface over which the mean traction decides whether it fails or slips; by default "
+              "fracture.increment_m, without a fracture numerics.cell_m.")),
       of_law("soft", number(
                          "interface.NAME.normal_stiffness_Pa_m", "Pa/m", not_negative,
                          +[](Scene& s, std::size_t i) -> double& { return s.laws[i].normal_stiffness_Pa_m; },
@@ -257,7 +258,8 @@ std::vector<Key> fracture_keys() {
       word(
           "fracture.crossing", {as("J", Fracture::Crossing::J), as("energy", Fracture::Crossing::energy)},
           [](Scene& s, std::size_t) -> Fracture::Crossing& { return s.fracture->crossing; },
-          "The criterion where an interface is near the tip: J, or the energy released over crossing_increment_m and, past "
+          "The criterion where an interface is near the tip: J, or the energy released over crossing_increment_m and, "
+          "past "
           "an interface whose faces are apart, K."),
       number(
           "fracture.crossing_increment_m", "m", positive,

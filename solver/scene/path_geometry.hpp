@@ -20,8 +20,8 @@ double segment_distance(const Point& a0, const Point& a1, const Point& b0, const
 /// path_m: points in m, no two neighbours the same; tolerance_m: distance below which segments touch. Throws nothing.
 std::optional<std::pair<std::size_t, std::size_t>> self_contact(const std::vector<Point>& path_m, double tolerance_m);
 
-/// The ends (m) of the legs of a straight line from one place to another (m) that interfaces with a law cut it into, the
-/// last of them `to`: no piece of a fracture lies on both sides of one. Throws nothing but std::bad_alloc.
+/// The ends (m) of the legs of a straight line from one place to another (m) that interfaces with a law cut it into,
+/// the last of them `to`: no piece of a fracture lies on both sides of one. Throws nothing but std::bad_alloc.
 std::vector<Point> legs_between_interfaces(const Scene& scene, const Point& from, const Point& to);
 
 }  // namespace strata

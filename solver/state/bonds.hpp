@@ -27,10 +27,10 @@ struct BondSample {
   };
   std::size_t surface = 0;
   std::vector<Share> particles, faces;
-  std::vector<Share> loose;    // points of the interface that have let go already
-  std::vector<Mass> inertia;   // of runs with inertia
-  double length = 0.0;         // int Phi ds (m)
-  double sign = 1.0;           // of the outward normal against the surface's: 1 for the rock on the - side
+  std::vector<Share> loose;   // points of the interface that have let go already
+  std::vector<Mass> inertia;  // of runs with inertia
+  double length = 0.0;        // int Phi ds (m)
+  double sign = 1.0;          // of the outward normal against the surface's: 1 for the rock on the - side
 };
 
 // A bonded place: from which samples its traction is taken (mean of them), and what came of it.
@@ -48,8 +48,8 @@ struct BondedPlace {
 struct Bonds {
   std::vector<BondSample> samples;
   std::vector<BondedPlace> places;
-  double worst = 0.0;         // the largest index when they were last judged
-  std::vector<Vec2> forces;    // of the samples' rock (N/m)
+  double worst = 0.0;        // the largest index when they were last judged
+  std::vector<Vec2> forces;  // of the samples' rock (N/m)
 };
 
 /// The length (m) of bonded interface over which the mean traction decides: failure_length_m or, where it is left out,

@@ -33,10 +33,10 @@ struct Monitors {
   double largest_imbalance = 0.0;  // of |volume_balance| so far
   double delivered_m2 = 0.0;       // what the pressure's slope at the inlet has let in (law = "paper", m^2)
 
-  std::int64_t growths = 0;        // of tips away from interfaces, where J is to be trusted
-  std::int64_t growths_apart = 0;  // of tips so near to one that J is not
+  std::int64_t growths = 0;           // of tips away from interfaces, where J is to be trusted
+  std::int64_t growths_apart = 0;     // of tips so near to one that J is not
   std::int64_t growth_unweighed = 0;  // times that energy should have decided, and the rock at rest had no equilibrium
-  double J_spread_sum = 0.0;       // of (max - min)/mean of J over its rings, at the former
+  double J_spread_sum = 0.0;          // of (max - min)/mean of J over its rings, at the former
   double largest_J_spread = 0.0;
 
   double contact_left = 0.0;        // largest change of a reaction in a step's last sweep, over its largest reaction

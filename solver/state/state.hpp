@@ -56,9 +56,9 @@ struct Tip {
   double runs_until_s = -1.0;      // and until then J still answers to the last one
   double J_at_growth = 0.0;
   double J_spread_at_growth = 0.0;
-  double G_trial = 0.0;         // what growth by energy would release now, by the increment's length (N/m)
-  double G = 0.0;               // what its last increment released, by its length (N/m)
-  double G_by_J = 0.0;          // the same from J along it (N/m); 0 where that does not tell
+  double G_trial = 0.0;                // what growth by energy would release now, by the increment's length (N/m)
+  double G = 0.0;                      // what its last increment released, by its length (N/m)
+  double G_by_J = 0.0;                 // the same from J along it (N/m); 0 where that does not tell
   Criterion criterion = Criterion::J;  // what decides its growth where it stands
   std::string grew_by;                 // and what decided its last growth: "J", "K" or "energy"
   bool has_grown = false;
@@ -91,9 +91,9 @@ struct Ledger {
   double friction = 0.0;     // dissipated by sliding and the implicit step of springs
   double failure = 0.0;      // released by bonded places that let go
   double fracture = 0.0;     // what new surface takes: J_c times its length
-  double excess = 0.0;       // released by growth beyond that (also from springs of tips, see TipTie), which nothing takes
-                             // up; < 0: what growth lacked. With inertia surface costs the motion nothing: all is lacking
-  double largest = 0.0;      // largest fluid, in-situ or body work or kinetic energy so far, the scale for closure()
+  double excess = 0.0;   // released by growth beyond that (also from springs of tips, see TipTie), which nothing takes
+                         // up; < 0: what growth lacked. With inertia surface costs the motion nothing: all is lacking
+  double largest = 0.0;  // largest fluid, in-situ or body work or kinetic energy so far, the scale for closure()
 
   double supplied() const { return fluid_work + in_situ_work + edge_work + body_work + initial_kinetic; }
   double stored() const { return kinetic + strain + interface_strain; }

@@ -16,7 +16,7 @@ constexpr double size = 24.0;  // of the square block (m)
 struct Crack {
   std::array<double, 2> from{}, to{};
   bool along_y = true;
-  double at = 0.0;         // of the interface (m)
+  double at = 0.0;          // of the interface (m)
   bool soft_first = false;  // the rock of the first layer
 };
 
@@ -53,8 +53,8 @@ Crack swapped(Crack c) {
 }
 
 struct Found {
-  double energy = 0.0;                   // J/m
-  std::array<double, 2> K{}, G{};        // Pa sqrt(m), N/m: of the tip at `from` and of that at `to`
+  double energy = 0.0;             // J/m
+  std::array<double, 2> K{}, G{};  // Pa sqrt(m), N/m: of the tip at `from` and of that at `to`
   std::array<Criterion, 2> criterion{};
 };
 
@@ -139,10 +139,15 @@ TEST_CASE("what decides about a tip near an interface") {
   };
   using C = Criterion;
   const auto energy = Fracture::Crossing::energy;
-  for (const auto& [past, apart, bonded] :
-       {std::tuple{-2.0, C::J, C::J}, {-1.0, C::energy, C::energy}, {0.0, C::energy, C::energy},
-        {0.5, C::slope, C::energy}, {1.0, C::slope, C::energy}, {1.5, C::slope, C::J}, {2.0, C::K, C::J},
-        {3.5, C::K, C::J}, {4.0, C::J, C::J}}) {
+  for (const auto& [past, apart, bonded] : {std::tuple{-2.0, C::J, C::J},
+                                            {-1.0, C::energy, C::energy},
+                                            {0.0, C::energy, C::energy},
+                                            {0.5, C::slope, C::energy},
+                                            {1.0, C::slope, C::energy},
+                                            {1.5, C::slope, C::J},
+                                            {2.0, C::K, C::J},
+                                            {3.5, C::K, C::J},
+                                            {4.0, C::J, C::J}}) {
     CAPTURE(past);
     CHECK(criterion(soft_law(1e6, 1e6), past, energy) == apart);
     CHECK(criterion(weak_law(1e9, 1e9), past, energy) == bonded);

@@ -38,7 +38,8 @@ TEST_CASE("history.csv starts with the columns of the contract, in its order") {
   REQUIRE(content_of(folder.path / "history.csv") ==
           "time_s,inlet_Pa,tip_x_m,tip_y_m,height_m,J_N_m,K_I_Pa_sqrt_m,K_II_Pa_sqrt_m,mouth_opening_m,"
           "fracture_volume_m2,kinetic_J,strain_J,interface_strain_J,fluid_work_J,in_situ_work_J,edge_work_J,damping_J,"
-          "transfer_J,integration_J,friction_J,failure_J,fracture_J,excess_J,energy_closure,J_spread,kink_deg,at_interface,ring_m,"
+          "transfer_J,integration_J,friction_J,failure_J,fracture_J,excess_J,energy_closure,J_spread,kink_deg,at_"
+          "interface,ring_m,"
           "G_N_m,G_by_J_N_m,fluid_volume_balance,body_work_J,initial_kinetic_J,near\n");
 }
 
