@@ -80,14 +80,13 @@ struct InterfaceLaw {
   enum class Compression { contact, spring };
   std::string name = "perfect";
   Kind kind = Kind::perfect;
-  double coefficient = 0.6;            // friction
-  double shear_strength_Pa = 0.5e6;    // weak
-  double tensile_strength_Pa = 0.5e6;  // weak
-  double residual_friction = 0.0;      // weak, after failure
-  std::optional<double>
-      failure_length_m;                  // weak, friction; absent: the increment of growth (see mechanics/failure.hpp)
-  double normal_stiffness_Pa_m = 0.5e6;  // soft
-  double shear_stiffness_Pa_m = 0.5e6;   // soft
+  double coefficient = 0.6;                  // friction
+  double shear_strength_Pa = 0.5e6;          // weak
+  double tensile_strength_Pa = 0.5e6;        // weak
+  double residual_friction = 0.0;            // weak, after failure
+  std::optional<double> failure_length_m{};  // weak, friction; absent: the increment of growth
+  double normal_stiffness_Pa_m = 0.5e6;      // soft
+  double shear_stiffness_Pa_m = 0.5e6;       // soft
   Compression compression = Compression::contact;
 
   // Whether its faces are apart from the start: nothing bonds springs, nor faces without friction.
