@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from scipy.optimize import brentq
 
 from verification.harness.load import Array, LoadError, Run, frames
 from verification.harness.paths import ANALYTIC
@@ -20,6 +21,7 @@ from verification.ladder.cases.interfaces import rock
 SCENE = ANALYTIC / "crossing.toml"
 LINE_M = 10.0  # the interface, where it is on a line of every grid
 FINE = (1.0, 0.5, 0.25)
+MOVING = FINE[:2]  # with inertia
 E_ABOVE_GPA = (5.0, 10.0, 30.0)  # of the rock beyond; 10 is that below
 
 SETTLING = "half a millionth, of which what has not come to rest yet has either sign"
@@ -126,7 +128,7 @@ def ahead(run: Run, slipped_m: float) -> float:
     """Net pressure (Pa) at which the mean shear over the failure length beyond what has slipped (m) is the strength."""
     law = interface(run)
     given = {"ahead_m": float(law["failure_length_m"]), "shear_strength_Pa": float(law["shear_strength_Pa"])}
-    return value("interface_ahead", "net_pressure_Pa", slipped_m=slipped_m, **given, **block(run))
+    return value("interface_ahead", "net_pressure_Pa", slipped_m=float(slipped_m), **given, **block(run))
 
 
 def first_failure(run: Run) -> Sample:
@@ -141,11 +143,8 @@ def first_failure(run: Run) -> Sample:
 
 def extent_m(run: Run) -> float:
     """How far the interface has let go under the run's net pressure, m: the pressure that this takes rises from 6 m on."""
-    low, high = 6.0, 0.45 * float(run.scene["domain"]["width_m"])
-    while high - low > 1e-3:
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if ahead(run, middle) < net_Pa(run) else (low, middle)
-    return 0.5 * (low + high)
+    widest = 0.45 * float(run.scene["domain"]["width_m"])
+    return float(brentq(lambda slipped_m: ahead(run, slipped_m) - net_Pa(run), 6.0, widest, xtol=1e-3))
 
 
 def extent(run: Run) -> Sample:
@@ -271,10 +270,10 @@ def loaded(ratio: float) -> Case:
 CASES = (
     case("on", "tip on the soft interface: 38302 J/m, 7.6626 mm at 1 MPa", levels("rest", FINE), at_rest(), smoke=2),
     case("on_mid_cell", "the same, the interface at mid-cell", levels("rest", FINE, of=mid_cell), at_rest(), smoke=2),
-    case("on_settling", "the same brought to rest by damping", levels("settling", (1.0, 0.5)), at_rest(SETTLING), "explicit"),
+    case("on_settling", "the same brought to rest by damping", levels("settling", MOVING), at_rest(SETTLING), "explicit"),
     *(one for tip_m in (1.0, 2.0) for E_GPa in E_ABOVE_GPA for one in beyond(tip_m, E_GPa)),
     case("beyond_2_settling", "tip 2 m beyond the soft interface, brought to rest by damping",
-         levels("settling", (1.0, 0.5), fracture_setting(12.0)), past(2.0, (1.0, 0.5)) + OF_TIP, "explicit"),
+         levels("settling", MOVING, fracture_setting(12.0)), past(2.0, MOVING) + OF_TIP, "explicit"),
     crossing(0.5, (0.5, 0.25, 0.125)), crossing(1.0, FINE), crossing(2.0, FINE),
     crossing(1.0, FINE, 5.0), crossing(1.0, FINE, 30.0),
     case("lets_go", "tip on a weak interface: first failure at 0.3314 MPa, and how far by 0.36 MPa (23.67 m)",
@@ -284,4 +283,12 @@ CASES = (
     case("slides", "tip 5 m beyond an interface with friction 0.1, pressure to 1 MPa: 134.8 J/m of friction",
          levels("slides", FINE, far=1.0), SLIDES, smoke=2),
     *(loaded(ratio) for ratio in (2.0, 5.0, 10.0)),
+    case("crosses_1_explicit", "tip on the soft interface, with inertia: when it crosses by 1 m at once",
+         levels("grows", MOVING), crosses_by(1.0, MOVING), "explicit"),
+    case("start_2_explicit", "tip 2 m beyond the soft interface, with inertia: when it starts",
+         levels("grows", FINE[:1], fracture_setting(12.0)), STARTS, "explicit"),
+    case("lets_go_explicit", "tip on a weak interface, with inertia: first failure",
+         levels("lets_go", MOVING), (first(no_order_at={"0.5 m": ONE_CELL}),), "explicit"),
+    case("slides_explicit", "tip 5 m beyond an interface with friction 0.1, with inertia: waves take some of the work of friction",
+         levels("slides", MOVING, far=1.0), SLIDES[:2], "explicit"),
 )  # fmt: skip
