@@ -282,6 +282,8 @@ CASES = (
          levels("lets_go", (*FINE, 0.125)), (first(no_order_at={"0.5 m": ONE_CELL}),), smoke=2),
     case("slides", "tip 5 m beyond an interface with friction 0.1, pressure to 1 MPa: 134.8 J/m of friction",
          levels("slides", FINE, far=1.0), SLIDES, smoke=2),
+    case("slides_more", "the same with friction 0.05, which holds far less",
+         levels("slides", FINE, "interface.rough.coefficient=0.05", far=1.0), SLIDES),
     *(loaded(ratio) for ratio in (2.0, 5.0, 10.0)),
     case("crosses_1_explicit", "tip on the soft interface, with inertia: when it crosses by 1 m at once",
          levels("grows", MOVING), crosses_by(1.0, MOVING), "explicit"),
