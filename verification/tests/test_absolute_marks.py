@@ -7,7 +7,7 @@ from __future__ import annotations
 import pytest
 
 from verification.ladder import gates
-from verification.ladder.cases import freund, paths
+from verification.ladder.cases import crossing, freund, paths
 from verification.ladder.gates import Gates
 
 LEVEL = "0.5 m"
@@ -38,6 +38,31 @@ def test_paths_of_experiments_5_and_6(case: str, level: str) -> None:
     """
     assert paths.GROWTH_M >= 20.0
     assert error(gates.read("paths"), case, CELLS_OFF, level) <= 1.0
+
+
+@pytest.mark.parametrize("case", ["on", "on_mid_cell"])
+def test_energy_of_a_tip_on_a_soft_interface(case: str) -> None:
+    """What the block cut through has stored: within 0.5 % at 1 m cells, 0.25 % at 0.5 m."""
+    known = gates.read("crossing")
+    assert error(known, case, "stored energy", "1 m") <= 0.005
+    assert error(known, case, "stored energy") <= 0.0025
+
+
+def test_crossing_by_a_finite_increment() -> None:
+    """Within 5 % with the increment in two cells, 1 % in four, whatever its length and the rock beyond."""
+    known, name = gates.read("crossing"), "net pressure of crossing"
+    for case in (case for case in crossing.CASES if case.name.startswith("crosses")):
+        for level in case.levels:
+            cells = float(case.name.split("_")[1]) / level.size
+            assert error(known, case.name, name, level.label) <= (0.01 if cells >= 4.0 else 0.05 if cells >= 2.0 else 0.15)
+
+
+def test_work_of_friction_and_what_a_loaded_interface_carries() -> None:
+    """Friction's work within 10 % at 0.5 m and 5 % at 0.25 m; the mean normal traction within 0.1 %."""
+    known = gates.read("crossing")
+    assert error(known, "slides", "work of friction") <= 0.10
+    assert error(known, "slides", "work of friction", "0.25 m") <= 0.05
+    assert all(error(known, f"loaded_{ratio}", "mean normal traction") <= 1e-3 for ratio in (2, 5, 10))
 
 
 def test_history_is_written_by_the_rock_s_own_wave() -> None:
