@@ -9,8 +9,8 @@ namespace strata {
 
 namespace {
 
-constexpr double on_it_cells = 0.1;  // nearer than this a tip stands on the interface (see ahead_cells)
-constexpr double slope_cells = 2.0;  // from here on K is right to 0.5 % between like rocks and 3 % between unlike ones
+constexpr double on_it_cells = 0.1;      // nearer than this a tip stands on the interface (see ahead_cells)
+constexpr double slope_cells = 3.0;      // from here on K is right to 0.3 %, at 2 cells to 3 % between unlike rocks
 constexpr double ring_need_cells = 4.0;  // the narrowest ring and what nodes' functions reach beyond it
 
 // Whether the faces of an interface are apart within a cell of a place.
@@ -36,6 +36,14 @@ double to_interface(const Scene& scene, const State& state, const Tip& tip, doub
 }
 
 }  // namespace
+
+bool apart_at(const Scene& scene, const State& state, std::size_t interface, const Vec2& x) {
+  const double at = scene.strata.interfaces[interface].at_m, h = state.grid.h;
+  return std::ranges::any_of(state.surfaces, [&](const Surface& surface) {
+    return surface.kind == Surface::Kind::interface &&
+           std::abs(stacking(scene, surface.vertices.front().x) - at) < 0.4 * h && apart_at(surface, x, h);
+  });
+}
 
 double past_open_interface(const Scene& scene, const State& state, const Tip& tip) {
   const Surface& fracture = state.fracture();

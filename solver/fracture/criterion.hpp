@@ -10,8 +10,8 @@ namespace strata {
 /// with a law or another rock beyond:
 ///   one whose faces are apart at the tip itself: energy, since a tip there has no length in the rock ahead;
 ///   one ahead of the tip, nearer than the crossing increment: energy;
-///   one behind it whose faces are apart, nearer than rings need: K. Within two cells of it the interaction integral is
-///   some per cent off, more where rocks differ, and the slope is taken;
+///   one behind it whose faces are apart, nearer than rings need: K. Within three cells of it the interaction integral
+///   is some per cent off where rocks differ, and the slope is taken;
 ///   any other one nearer than the crossing increment: energy; else J. Throws nothing.
 Criterion criterion_of(const Scene& scene, const State& state, const Tip& tip);
 
@@ -21,6 +21,9 @@ const char* name_of(Criterion criterion);
 /// Distance (m) of a tip from the nearest interface that it is on or past and whose faces are apart where the fracture
 /// has come through: 0 on it, infinite where there is none. Throws nothing.
 double past_open_interface(const Scene& scene, const State& state, const Tip& tip);
+
+/// Whether the faces of an interface (index into Scene::strata) are apart within a cell of a place (m). Throws nothing.
+bool apart_at(const Scene& scene, const State& state, std::size_t interface, const Vec2& x);
 
 /// What drives a tip (N/m): J, but no more than twice (K_I^2 + K_II^2)/E', 0 for a closed tip. Where faces have just
 /// touched, or stand under a dry fluid, J may be several J_c while K is next to nothing: such a J is no energy release

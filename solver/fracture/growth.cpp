@@ -33,8 +33,10 @@ double stacking_coordinate(const Scene& scene, const Vec2& x) {
 }
 
 // Length of the next `times` increments of da from `tip` along `direction`: they end on the first interface that they
-// would cross or nearly reach.
-double increment_to_interface(const Scene& scene, const Vec2& tip, const Vec2& direction, double da, double times) {
+// would cross or nearly reach. One whose faces are apart ends any that does not begin on it: beyond it another rock is
+// to be broken.
+double increment_to_interface(const Scene& scene, const State& state, const Vec2& tip, const Vec2& direction, double da,
+                              double times) {
   double length = (times + sliver) * da;
   bool meets = false;
   for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
@@ -43,7 +45,9 @@ double increment_to_interface(const Scene& scene, const Vec2& tip, const Vec2& d
     const double distance = scene.strata.interfaces[k].at_m - stacking_coordinate(scene, tip);
     if (std::abs(rate) < 1e-6) continue;
     const double to_it = distance / rate;
-    if (to_it <= sliver * da || to_it >= length) continue;
+    if (to_it <= 0.0 || to_it >= length) continue;
+    const bool apart = apart_at(scene, state, k, tip + to_it * direction);
+    if (to_it <= (apart ? ahead_cells * state.grid.h : sliver * da)) continue;
     length = to_it;
     meets = true;
   }
@@ -277,7 +281,7 @@ double extend_tip(const Scene& scene, State& state, Tip& tip, double increment, 
   }
   const double old_length = fracture.length();
   const std::size_t old_points = fracture.points.size();
-  const double length = increment_to_interface(scene, from, direction, increment, times);
+  const double length = increment_to_interface(scene, state, from, direction, increment, times);
   const Vec2 to = from + length * direction;
   for (const Point& end : legs_between_interfaces(scene, {from.x(), from.y()}, {to.x(), to.y()}))
     extend(fracture, tip.at_back, {end[0], end[1]}, surface_spacing(state.grid));

@@ -13,10 +13,10 @@ namespace strata {
 /// the rock ahead by an increment, along its own direction or that of maximum hoop stress. A tip moves no faster than
 /// the Rayleigh speed of that rock: the next increment waits for increment/c_R. Where more than one has become due in
 /// the step after that of the last, they come at once. What would cross an interface, or end less than a quarter of an
-/// increment short of it, ends on it; what starts on it, or less than a quarter of an increment before it, goes on. A
-/// tip that has grown to within 3 cells of an edge, or whose next increment would end within 1.5 cells of one, or
-/// within 5 cells of the coarse cells of a graded grid, stops for good and says so. A closed tip (K_I = 0) does not
-/// grow. Returns true if any tip moved: the copies must then be rebuilt. Throws nothing.
+/// increment short of it, ends on it; what starts on it, or less than a quarter of an increment before a bonded one,
+/// goes on. A tip that has grown to within 3 cells of an edge, or whose next increment would end within 1.5 cells of
+/// one, or within 5 cells of the coarse cells of a graded grid, stops for good and says so. A closed tip (K_I = 0) does
+/// not grow. Returns true if any tip moved: the copies must then be rebuilt. Throws nothing.
 bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
 
 /// Whether grow() would look at any tip more closely now: its J has reached J_c and its wait is over. Throws nothing.

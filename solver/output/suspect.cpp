@@ -232,6 +232,16 @@ void watch_failure(const Scene& scene, const State& state, std::vector<Watched>&
        "an interface has failed in part whose failure_length_m is less than two cells: where it stops is the cell's"});
 }
 
+// Energy over less than half a cell beyond an open interface: the new crack is not resolved. At half a cell the net
+// pressure of a restart is 10 % low, at a quarter 50 %.
+void watch_crossing(const Scene& scene, const State& state, std::vector<Watched>& out) {
+  const bool by_energy = std::ranges::any_of(state.events, [](const Event& e) { return e.by == "energy"; });
+  if (!scene.fracture || !by_energy) return;
+  out.push_back({"crossing_increment_unresolved", state.grid.h / scene.fracture->crossing_increment(), 2.05,
+                 "energy decided about growth over less than half a cell: use smaller cells, or a larger "
+                 "fracture.crossing_increment_m"});
+}
+
 // New surface takes nothing from the motion: a tip in motion has that much too much, and runs as the cell lets it.
 void watch_speed(const Scene& scene, const State& state, std::vector<Watched>& out) {
   if (scene.numerics.mechanics != Numerics::Mechanics::explicit_dynamics || state.ledger.fracture == 0.0) return;
@@ -317,6 +327,7 @@ std::vector<Watched> watched(const Scene& scene, const State& state) {
   watch_fluid(scene, state, out);
   watch_growth(state, out);
   watch_failure(scene, state, out);
+  watch_crossing(scene, state, out);
   watch_speed(scene, state, out);
   watch_deformation(scene, state, out);
   watch_loading(scene, state, out);

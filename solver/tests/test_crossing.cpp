@@ -128,7 +128,7 @@ TEST_CASE("a fracture that ends on an interface cuts the rock behind it through"
 }
 
 // Requires what decides about a tip where it stands, with increments of 1 m: J away from interfaces; energy where one
-// is ahead within an increment, and on one that is apart; past such a one the slope of the energy to 2 cells, K to 4.
+// is ahead within an increment, and on one that is apart; past such a one the slope of the energy to 3 cells, K to 4.
 // Past a bonded one: energy. With crossing = "J": J throughout.
 TEST_CASE("what decides about a tip near an interface") {
   const auto criterion = [](const InterfaceLaw& law, double past, Fracture::Crossing crossing) {
@@ -145,7 +145,8 @@ TEST_CASE("what decides about a tip near an interface") {
                                             {0.5, C::slope, C::energy},
                                             {1.0, C::slope, C::energy},
                                             {1.5, C::slope, C::J},
-                                            {2.0, C::K, C::J},
+                                            {2.5, C::slope, C::J},
+                                            {3.0, C::K, C::J},
                                             {3.5, C::K, C::J},
                                             {4.0, C::J, C::J}}) {
     CAPTURE(past);

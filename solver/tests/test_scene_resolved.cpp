@@ -122,6 +122,8 @@ TEST_CASE("Memory needed grows with the particles, more so with a factor, and le
   Scene scene = good(layered);
   const double points = 4.0 * along * along;
   CHECK(points_of(scene) == Approx(points));
+  const double weighed = memory_need(scene);  // equilibria of the whole block decide about crossings
+  scene.fracture->crossing = Fracture::Crossing::J;
   CHECK(memory_need(scene) == Approx(process + 1250.0 * points));
   scene.numerics.mechanics = Numerics::Mechanics::quasistatic;
   const auto n_log_n = [](double unknowns) { return unknowns * std::log2(unknowns); };
@@ -131,6 +133,10 @@ TEST_CASE("Memory needed grows with the particles, more so with a factor, and le
         Approx(process + 330.0 * points + 705.0 * n_log_n(2.0 * 41.0 * 81.0) + dense(0.5 * jumps)));
   scene.fracture->path_m = {{30.0, 0.0}, {30.0, 5.0}};
   CHECK(memory_need(scene) == Approx(process + 330.0 * points + 705.0 * n + dense(jumps)));
+  scene.fracture->crossing = Fracture::Crossing::energy;
+  CHECK(memory_need(scene) == Approx(process + 700.0 * points + 705.0 * n + dense(jumps)));
+  CHECK(weighed == Approx(memory_need(scene) + 1250.0 * points));
+  scene.fracture->crossing = Fracture::Crossing::J;
   CHECK_FALSE(too_large(scene, memory_need(scene)).has_value());
   CHECK_THAT(too_large(scene, 0.5 * memory_need(scene)).value(),
              Catch::Contains("need about 0.161 GB, and 0.0807 GB are available"));
