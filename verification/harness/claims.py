@@ -21,10 +21,13 @@ from verification.harness.claim_data import (
     BY_J, CONFIRMED, CONTRADICTED, NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, Case, CaseResult, ClaimResult,
     Reading, write_claims,
 )  # fmt: skip
-from verification.harness.load import LoadError, Run, load
+from verification.harness.load import OF_SPEEDS, LoadError, Run, load
 from verification.harness.observables import OBSERVABLES, Measured, measure
 from verification.harness.paths import EXPERIMENTS, RUNS
 from verification.harness.scenes import MECHANICS, mechanics_of, read_scene, scenes_of
+
+# Where `ci/reproduce --cell 0.5` puts its runs, below the others.
+FINER = Path("set") / "0.5m"
 
 # Keys of a case that are not parameters of its observable.
 CASE_KEYS = ("observable", "variant", "against", "against_scene", "at_least", "at_most")
@@ -76,7 +79,7 @@ def finite(number: float) -> float | None:
 
 def marks(run: Run) -> list[str]:
     """A flag a mark that the run's own monitors have set on it, with the run's name."""
-    return [f"suspect run {run.name}: {mark.why}" for mark in run.summary.suspect]
+    return [f"suspect run {run.name}: {mark.why}" for mark in run.summary.suspect if mark.monitor != OF_SPEEDS]
 
 
 def evaluate_case(case: Case, experiment: str, runs: Runs) -> CaseResult:
@@ -203,10 +206,22 @@ def evaluate_each(experiments: Path, root: Path) -> list[ClaimResult]:
     """Evaluate the claims in each mechanics that has runs below root/MECHANICS/ (in the first where none has)."""
     present = [mechanics for mechanics in MECHANICS if (root / mechanics).is_dir()] or [MECHANICS[0]]
     results = {mechanics: evaluate_all(experiments, root / mechanics, mechanics) for mechanics in present}
+    for mechanics in present:
+        if (root / FINER / mechanics).is_dir():
+            finer = {result.id: result for result in evaluate_all(experiments, root / FINER / mechanics, mechanics)}
+            results[mechanics] = [beside(result, finer[result.id]) for result in results[mechanics]]
     if set(MECHANICS) <= set(results):
         by_energy = {result.id: result for result in results["quasistatic"]}
         results["explicit"] = [confirmed(result, by_energy[result.id]) for result in results["explicit"]]
     return [result for mechanics in present for result in results[mechanics]]
+
+
+def beside(result: ClaimResult, finer: ClaimResult) -> ClaimResult:
+    """A claim with a flag that says what cells of 0.5 m make of it."""
+    if finer.verdict == NOT_EVALUATED:
+        return result
+    word = "the same" if finer.verdict == result.verdict else finer.verdict
+    return replace(result, flags=(f"with cells of 0.5 m: {word}", *result.flags))
 
 
 def confirmed(result: ClaimResult, by_energy: ClaimResult) -> ClaimResult:

@@ -54,6 +54,10 @@ class Tip:
     G_N_m: float = math.nan
 
 
+# The monitor that says that speeds of growth are no result: no verdict is about speeds.
+OF_SPEEDS = "surface_energy_share"
+
+
 @dataclass(frozen=True)
 class Suspicion:
     """Why a run is suspect: the monitor, its value (NaN where it was no finite number), the threshold and a sentence.

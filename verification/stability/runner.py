@@ -9,7 +9,7 @@ from pathlib import Path
 
 from verification.harness import paths
 from verification.harness import run as harness
-from verification.harness.load import LoadError, Run, load
+from verification.harness.load import OF_SPEEDS, LoadError, Run, load
 from verification.harness.paths import ROOT
 from verification.harness.run import Job, Outcome
 from verification.ladder.catalogue import folder_name
@@ -48,9 +48,6 @@ def make(family: Family, point: Point, runs: Path = RUNS, binary: Path | None = 
             return outcome, float(json.loads((folder / CPU).read_text(encoding="utf-8")))
         (folder / CPU).write_text(json.dumps(round(cpu_s, 4)), encoding="utf-8")
     return outcome, cpu_s
-
-
-OF_SPEEDS = "surface_energy_share"  # says that speeds of growth are no result, which no family asks for
 
 
 def marks_of(run: Run, family: Family) -> str:
