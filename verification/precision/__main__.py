@@ -1,6 +1,6 @@
 """Measures error and wall time of every method and setting: the data of the work-precision chart.
 
-usage: ci/chart [--only block,weak] [--methods qs_graded,ex_total] [--quick] [--once] [--list] [--force] [--fresh] [--out DIR]
+usage: ci/chart [--only block,crossing] [--methods qs_graded,ex_total] [--quick] [--once] [--list] [--force] [--fresh] [--out DIR]
 
 One run at a time on an idle machine: where others are at work it waits a while and then refuses, unless --force is given; points
 beside which something ran are marked as disturbed. What was measured before with the same scene, settings, program and machine is not measured
