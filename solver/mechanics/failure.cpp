@@ -134,10 +134,11 @@ bool begins_stretch(const State& state, const Band& band, const Surface& surface
          parted(before.column, true);
 }
 
-// sum_p m_p Phi N_ip by records.
+// Masses of the column's own nodes, lumped as in the step: sum_p m_p N_ip by records.
 void add_inertia(SampleBuilder& b) {
   if (b.scene.numerics.mechanics == Numerics::Mechanics::quasistatic) return;
   const Particles& p = b.state.particles;
+  const Grid& grid = b.state.grid;
   std::vector<std::size_t> bin_of(p.size());
   for (std::size_t k = 0; k < b.state.bins.size(); ++k) {
     const Bin& bin = b.state.bins[k];
@@ -146,10 +147,14 @@ void add_inertia(SampleBuilder& b) {
   for (auto& [key, sample] : b.samples) {
     std::map<int, double> masses;
     for (const BondSample::Share& share : sample.particles) {
-      const Bin& bin = b.state.bins[bin_of[share.index]];
-      const Gradients g =
-          gradients_at(b.scene, b.state.grid, bin.i, bin.j, {p.x[share.index], p.y[share.index]}, p.half(share.index));
-      for (std::size_t n = 0; n < 9; ++n) masses[bin.record[n]] += p.m[share.index] * share.Phi * g.N[n];
+      const std::size_t q = share.index;
+      const Bin& bin = b.state.bins[bin_of[q]];
+      const Gradients g = gradients_at(b.scene, grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
+      for (std::size_t n = 0; n < 9; ++n) {
+        const int i = bin.i + static_cast<int>(n % 3) - 1, j = bin.j + static_cast<int>(n / 3) - 1;
+        const bool own = (b.band.along_x ? i : j) == std::get<0>(key) && b.band.holds(b.band.along_x ? j : i);
+        if (own) masses[bin.record[n]] += p.m[q] * g.N[n];
+      }
     }
     for (const auto& [record, m] : masses) sample.inertia.push_back({record, m});
   }
@@ -311,7 +316,6 @@ void find_forces(const std::vector<Elasticity>& rocks, const State& state, Bonds
     for (const BondSample::Share& share : bonds.samples[k].particles) {
       const std::size_t q = share.index;
       force += stress_of(rocks[p.rock[q]], p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]).on(share.weight);
-      if (!state.body.empty()) force -= p.m[q] * share.Phi * state.body[q];
     }
     for (const BondSample::Mass& mass : bonds.samples[k].inertia) {
       const NodeMotion node = state.motion[static_cast<std::size_t>(mass.record)];
@@ -321,6 +325,10 @@ void find_forces(const std::vector<Elasticity>& rocks, const State& state, Bonds
 }
 
 void judge_bonds(const Scene& scene, const State& state, Bonds& bonds) {
+  for (std::size_t k = 0; k < bonds.samples.size() && !state.body.empty(); ++k) {
+    for (const BondSample::Share& share : bonds.samples[k].particles)
+      bonds.forces[k] -= state.particles.m[share.index] * share.Phi * state.body[share.index];
+  }
   for (BondedPlace& place : bonds.places) {
     place.carried = state.surfaces[place.surface].points[place.point].in_situ;
     for (const std::size_t k : place.samples)

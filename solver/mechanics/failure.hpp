@@ -19,12 +19,12 @@ double failure_index(const InterfaceLaw& law, double n, double t);
 /// nothing.
 Bonds find_bonds(const Scene& scene, const State& state);
 
-/// Forces of the samples' rock, sum_p (V_p sigma_p grad Phi + m_p (a_p - b_p) Phi) (N/m), from the particles' present
-/// strain and, in runs with inertia, the accelerations that forces gave the nodes. Throws nothing.
+/// Forces of the samples' rock, sum_p V_p sigma_p grad Phi + sum_i m_i a_i (N/m), from the particles' present strain
+/// and, in runs with inertia, the accelerations that forces gave the nodes. Throws nothing.
 void find_forces(const std::vector<Elasticity>& rocks, const State& state, Bonds& bonds);
 
-/// What bonded places carry under these forces and the present tractions on the fracture, and how near each is to
-/// failure. A place is judged on the mean traction over failure_length() of bonded
+/// What bonded places carry under these forces, the body force and the present tractions on the fracture, and how near
+/// each is to failure. A place is judged on the mean traction over failure_length() of bonded
 /// interface from it on, to either side, where so much of it is bonded: stress grows without bound towards the edge of
 /// what has let go and towards a tip, so that the value at a point would be the cell's. Where less is bonded between
 /// two edges, on the mean over all of it. Throws nothing.

@@ -11,7 +11,7 @@ namespace strata {
 
 // How the traction on a bonded place follows from the rock on one side of it. A column of the grid, moved with the
 // weight Phi = sum N_i over the nodes that the interface would split, is in balance:
-//   int t Phi ds = sum_p (V_p sigma_p grad Phi + m_p (a_p - b_p) Phi) - sum_faces A Phi t_face,
+//   int t Phi ds = sum_p (V_p sigma_p grad Phi - m_p b_p Phi) + sum_i m_i a_i - sum_faces A Phi t_face,
 // the force that a split node's copy would need to stay where it is. Beside a fracture that ends on the interface the
 // rock on its two sides moves apart, and each has a column of its own: stress there rises as 1/sqrt(r) and changes sign
 // across the fracture, so that a mean over both sides, or of points above and below, sees next to nothing of it.
@@ -23,7 +23,7 @@ struct BondSample {
   };
   struct Mass {
     int record = 0;
-    double m = 0.0;  // sum_p m_p Phi N_ip (kg/m)
+    double m = 0.0;  // of one side: sum_p m_p N_ip (kg/m)
   };
   std::size_t surface = 0;
   std::vector<Share> particles, faces;
