@@ -68,8 +68,9 @@ void advance_updated(const Scene& scene, const std::vector<Elasticity>& rocks, b
   if (changed) let_go(failing_columns(scene, state, state.bonds), state.bonds, state);
   if (look) measure_tips(scene, rocks, state);  // J, K_I, K_II with the same P
   if (look) watch_flow(scene, state);
-  if (grow_now) weigh_growth(scene, rocks, state, resting);  // G where energy decides
-  const bool grown = grow_now && grow(scene, rocks, state);  // new points ahead of the tip
+  const bool may_grow_now = grow_now && !changed;                // interfaces answer first
+  if (may_grow_now) weigh_growth(scene, rocks, state, resting);  // G where energy decides
+  const bool grown = may_grow_now && grow(scene, rocks, state);  // new points ahead of the tip
   watch_tips(scene, state);
   const bool moved = state.step % steps_between_rebuilds == 0 || particles.farthest_cells > bin_reach_cells;
   if (changed || grown || moved) {

@@ -2,16 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "fracture/growth.hpp"
 
 namespace strata {
 
 namespace {
-
-bool needs_energy(const Tip& tip) {
-  return tip.criterion == Criterion::energy || tip.criterion == Criterion::slope;
-}
 
 std::ptrdiff_t split_points(const State& state) {
   std::ptrdiff_t n = 0;
@@ -33,7 +30,7 @@ Scene without_inertia(const Scene& scene) {
 // Splits particles beside what tips would grow by, in the state itself: then the trials' stiffness is its own.
 void refine_beside_growth(const Scene& scene, State& state) {
   for (std::size_t k = 0; k < state.tips.size(); ++k) {
-    if (!needs_energy(state.tips[k])) continue;
+    if (!weighs_energy(state.tips[k]) || !may_grow(scene, state, state.tips[k])) continue;
     State longer = state;
     extend_tip(scene, longer, longer.tips[k], increment_of(scene, state.tips[k]));
     const std::size_t old = state.fracture().points.size(), all = longer.fracture().points.size();
@@ -72,13 +69,13 @@ void follow(const State& state, RestingRock& resting) {
   }
   resting.state.fluid = state.fluid;
   resting.state.time = state.time;
-  for (std::size_t k = 0; k < state.tips.size(); ++k) resting.state.tips[k] = state.tips[k];
+  resting.state.tips = state.tips;
 }
 
 // Whether the pressures have come far enough since the last look.
 bool is_due(const State& state, const RestingRock& resting) {
   constexpr double least = 2e-3, of_the_rest = 1.0 / 3.0;
-  if (resting.P.empty()) return true;
+  if (resting.P.empty() || resting.scene.body.acceleration_m_s2) return true;
   double change = 0.0, net = 0.0;
   const auto& points = state.fracture().points;
   for (std::size_t q = 0; q < points.size(); ++q) {
@@ -88,10 +85,6 @@ bool is_due(const State& state, const RestingRock& resting) {
   const double missing = resting.nearest > 0.0 ? std::max(0.0, 1.0 / resting.nearest - 1.0) : 1.0;
   return change >= std::clamp(of_the_rest * missing, least, 0.1) * net && change > 0.0;
 }
-
-}  // namespace
-
-namespace {
 
 // Whether something could be done with the rock at rest: inertia holds what has no equilibrium.
 template <class Do>
@@ -113,7 +106,7 @@ void weigh(const Scene& scene, const std::vector<Elasticity>& rocks, State& stat
   resting.nearest = 0.0;
   for (std::size_t k = 0; k < state.tips.size(); ++k) {
     Tip& tip = state.tips[k];
-    if (!needs_energy(tip)) continue;
+    if (!weighs_energy(tip)) continue;
     tip.G_trial = energy_release(resting.scene, resting.state, resting.model, rest, k, resting.trials);
     const double J_c = rocks[rock_ahead(scene, state, tip)].J_c;
     if (J_c > 0.0) resting.nearest = std::max(resting.nearest, std::sqrt(std::max(0.0, tip.G_trial) / J_c));
@@ -123,11 +116,17 @@ void weigh(const Scene& scene, const std::vector<Elasticity>& rocks, State& stat
 }  // namespace
 
 void weigh_growth(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Resting& resting) {
-  for (Tip& tip : state.tips) tip.criterion = criterion_of(scene, state, tip);
-  if (std::ranges::none_of(state.tips, needs_energy)) return resting.reset();
+  for (Tip& tip : state.tips) {
+    tip.criterion = criterion_of(scene, state, tip);
+    if (weighs_energy(tip)) stop_at_edge(scene, state, tip);
+    if (!weighs_energy(tip)) tip.G_trial = 0.0;
+  }
+  const auto weighed = [&](const Tip& tip) { return weighs_energy(tip) && tip.growing; };
+  if (std::ranges::none_of(state.tips, weighed)) return resting.reset();
   const auto same = [&](const State& other) {
     return other.fracture().points.size() == state.fracture().points.size() &&
-           split_points(other) == split_points(state);
+           split_points(other) == split_points(state) &&
+           std::ranges::equal(other.tips, state.tips, {}, &Tip::criterion, &Tip::criterion);
   };
   if (!resting || !same(resting->state)) {
     resting = std::make_unique<RestingRock>();
@@ -140,7 +139,7 @@ void weigh_growth(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
     for (const SurfacePoint& s : state.fracture().points) resting->P.push_back(s.P);
   }
   for (Tip& tip : state.tips) {
-    if (resting->restless && needs_energy(tip)) tip.criterion = Criterion::K;
+    if (resting->restless && weighs_energy(tip)) tip.criterion = Criterion::K;
   }
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "advance_trials.hpp"
@@ -26,9 +25,10 @@ struct RestingRock {
 using Resting = std::unique_ptr<RestingRock>;
 
 /// Notes what decides about each tip and, where that is energy, what growth would release at the present pressures, in
-/// tip.G_trial. It is looked at again once pressures have changed by a third of what is missing, and by 0.2 % at least,
-/// of the net pressure. Where the rock at rest has no equilibrium, as where surfaces cut off parts that nothing but
-/// inertia holds, K decides, and monitors.growth_unweighed counts it. Throws nothing but std::bad_alloc.
+/// tip.G_trial. It is looked at again once pressures have changed by a third of what is missing, by 0.2 % at least and
+/// 10 % at most of the net pressure; under a body force each time. Where the rock at rest has no equilibrium, as where
+/// surfaces cut off parts that nothing but inertia holds, K decides, and monitors.growth_unweighed counts it. Throws
+/// nothing but std::bad_alloc.
 void weigh_growth(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Resting& resting);
 
 }  // namespace strata

@@ -45,28 +45,29 @@ double toughless_margin(const State& state, double E_prime, const Tip& tip) {
   return 1.0 + (K - resolved * net * std::sqrt(state.grid.h)) / large_K;
 }
 
-// How near a tip is to growth: sqrt(G/J_c) by what decides about it.
-double tip_margin(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, Quasistatic& run,
-                  std::size_t k, Tip& tip) {
+// How near a tip is to growth: sqrt(G/J_c) by what decides about it. Where the fracture that a trial makes has no
+// equilibrium, K decides.
+double tip_margin(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run,
+                  std::size_t k) {
+  Tip& tip = state.tips[k];
   const Elasticity& rock = rocks[rock_ahead(scene, state, tip)];
-  const double J_c = rock.J_c;
-  double G = 0.0;
-  if (tip.criterion == Criterion::energy || tip.criterion == Criterion::slope) {
-    G = tip.G_trial = energy_release(scene, state, run.model, run.equilibrium, k, run.trials);
-    if (tip.criterion == Criterion::slope && tip.closed) G = 0.0;
-    if (J_c == 0.0) return G > 0.0 ? 2.0 : 0.0;
-  } else {
-    if (J_c == 0.0) return toughless_margin(state, rock.E_prime, tip);
-    G = driving_J(rock, tip, tip.criterion == Criterion::K);
+  if (weighs_energy(tip)) {
+    try {
+      tip.G_trial = energy_release(scene, state, run.model, run.equilibrium, k, run.trials);
+    } catch (const NumericalFailure&) {
+      ++state.monitors.growth_unweighed;
+      tip.criterion = Criterion::K;
+    }
   }
-  return std::sqrt(std::max(0.0, G) / J_c);
+  const double G = driving(rock, tip);
+  if (rock.J_c > 0.0) return std::sqrt(std::max(0.0, G) / rock.J_c);
+  return weighs_energy(tip) ? (G > 0.0 ? 2.0 : 0.0) : toughless_margin(state, rock.E_prime, tip);
 }
 
 double margin_of(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
   double margin = 0.0;
   for (std::size_t k = 0; k < state.tips.size(); ++k) {
-    if (may_grow(scene, state, state.tips[k]))
-      margin = std::max(margin, tip_margin(scene, rocks, state, run, k, state.tips[k]));
+    if (may_grow(scene, state, state.tips[k])) margin = std::max(margin, tip_margin(scene, rocks, state, run, k));
   }
   find_forces(rocks, state, run.model.bonds);
   judge_bonds(scene, state, run.model.bonds);
@@ -173,7 +174,7 @@ std::vector<Growing> tips_that_grow(const Scene& scene, const std::vector<Elasti
   std::vector<Growing> due;
   for (std::size_t k = 0; k < state.tips.size(); ++k) {
     Tip& tip = state.tips[k];
-    if (!may_grow(scene, state, tip) || tip_margin(scene, rocks, state, run, k, tip) < 1.0) continue;
+    if (!may_grow(scene, state, tip) || tip_margin(scene, rocks, state, run, k) < 1.0) continue;
     due.push_back({k, increment_of(scene, tip), tip.J, tip.at_back ? state.fluid.P.back() : state.fluid.P.front(),
                    rocks[rock_ahead(scene, state, tip)].J_c});
   }
@@ -184,7 +185,7 @@ void lengthen(const Scene& scene, std::vector<Growing>& growing, State& state) {
   for (Growing& g : growing) {
     Tip& tip = state.tips[g.tip];
     const std::size_t points = state.fracture().points.size();
-    note_growth(state, tip, name_of(tip.criterion), tip.criterion != Criterion::J || !at_interface(tip));
+    note_growth(state, tip);
     g.increment = extend_tip(scene, state, tip, g.increment);
     const std::size_t added = state.fracture().points.size() - points;
     add_fluid_cells(scene, tip.at_back, added, state);
@@ -240,14 +241,6 @@ void let_happen(const Scene& scene, const std::vector<Elasticity>& rocks, State&
   accept(scene, before, growing.empty() ? Change::failure : Change::growth, state, run, surface);
   state.dt = first_flow_step;
   state.fluid.w_rate.clear();
-}
-
-void stop_at_edges(const Scene& scene, State& state) {
-  for (Tip& tip : state.tips) {
-    if (!tip.growing || !stopped_by_edge(scene, state, tip)) continue;
-    tip.growing = false;
-    tip.stopped_by = what_stops(scene, state, tip);
-  }
 }
 
 // From `from` to the load a time dt later: run.margin is the margin there. Under law = "reynolds" there may be no
@@ -346,7 +339,7 @@ void advance_quasistatic(const Scene& scene, const std::vector<Elasticity>& rock
                          Quasistatic& run) {
   if (run.margin >= 1.0) {
     let_happen(scene, rocks, state, run);
-    stop_at_edges(scene, state);
+    for (Tip& tip : state.tips) stop_at_edge(scene, state, tip);
     return;
   }
   const LoadPoint from = load_point(state);

@@ -94,6 +94,7 @@ void advance_total(const Scene& scene, const std::vector<Elasticity>& rocks, boo
   }
   if (look) measure_tips(scene, rocks, state);  // J, K_I, K_II with the same P
   if (look) watch_flow(scene, state);
+  grow_now = grow_now && !changed;  // interfaces answer first
   if (grow_now) weigh_growth(scene, rocks, state, resting);
   bool grown = false;
   if (grow_now && ready_to_grow(scene, rocks, state)) {

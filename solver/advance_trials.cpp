@@ -52,10 +52,6 @@ bool may_grow(const Scene& scene, const State& state, const Tip& tip) {
   return scene.fracture->growth != Fracture::Growth::none && tip.growing && !stopped_by_edge(scene, state, tip);
 }
 
-double increment_of(const Scene& scene, const Tip& tip) {
-  return tip.criterion == Criterion::energy ? scene.fracture->crossing_increment() : scene.fracture->increment_m;
-}
-
 std::vector<GrowthTrial> make_trials(const Scene& scene, const std::vector<Elasticity>& rocks, State& state,
                                      const QuasistaticModel& model, std::vector<GrowthTrial> former, bool halve) {
   std::vector<GrowthTrial> trials;

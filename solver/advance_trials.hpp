@@ -21,13 +21,10 @@ struct GrowthTrial {
 /// Whether a tip may grow at all: growth is asked for and nothing has stopped it. Throws nothing.
 bool may_grow(const Scene& scene, const State& state, const Tip& tip);
 
-/// How far a tip grows at once (m): by what decides about it.
-double increment_of(const Scene& scene, const Tip& tip);
-
 /// Notes what decides about each tip where it now stands, and makes the trials that this needs: for a finite increment
-/// one with the fracture longer by it, for the slope of the energy one a cell longer and one a cell shorter, less where
-/// an interface is nearer. `model` is the state's own; factors of `former` trials are used again; halve: as in
-/// update_equations(), and throws as it does.
+/// one with the fracture longer by it, for the slope of the energy one a cell longer and, where a whole piece can be
+/// taken away, one a cell shorter, less where an interface is nearer. `model` is the state's own; factors of `former`
+/// trials are used again; halve: as in update_equations(), and throws as it does.
 std::vector<GrowthTrial> make_trials(const Scene& scene, const std::vector<Elasticity>& rocks, State& state,
                                      const QuasistaticModel& model, std::vector<GrowthTrial> former, bool halve = true);
 

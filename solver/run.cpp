@@ -344,6 +344,7 @@ void pin_threads() {
 void set_up(const Scene& scene, const RunOptions& options) {
   if (options.threads > 0) omp_set_num_threads(options.threads);
   if (is_quasistatic(scene)) omp_set_num_threads(1);  // its loops over particles are short; threads would only wait
+  Eigen::setNbThreads(1);  // equilibria have the same digits whatever the threads of the steps
   pin_threads();
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, ask_to_stop);
   // Errors of writing are told by what is written: a file that may not grow, a terminal that is gone.

@@ -9,9 +9,10 @@ namespace strata {
 
 namespace {
 
-constexpr double on_it_cells = 0.1;      // nearer than this a tip stands on the interface (see ahead_cells)
-constexpr double slope_cells = 3.0;      // from here on K is right to 0.3 %, at 2 cells to 3 % between unlike rocks
-constexpr double ring_need_cells = 4.0;  // the narrowest ring and what nodes' functions reach beyond it
+constexpr double on_it_cells = 0.1;        // nearer than this a tip stands on the interface (see ahead_cells)
+constexpr double slope_cells = 3.0;        // from here on K is right to 0.3 %, at 2 cells to 3 % between unlike rocks
+constexpr double looked_back_cells = 8.0;  // farther back an interface is of no concern
+constexpr double ring_need_cells = 4.0;    // the narrowest ring and what nodes' functions reach beyond it
 
 // Whether the faces of an interface are apart within a cell of a place.
 bool apart_at(const Surface& surface, const Vec2& x, double h) {
@@ -56,8 +57,9 @@ double past_open_interface(const Scene& scene, const State& state, const Tip& ti
     const bool behind = std::ranges::any_of(
         fracture.points, [&](const SurfacePoint& s) { return ((s.sides ^ ahead) & surface.mask()) != 0; });
     const double off = stacking(scene, at - surface.vertices.front().x), rate = stacking(scene, way);
-    if (!behind || std::abs(rate) < 1e-6 || !apart_at(surface, at - off / rate * way, h)) continue;
-    nearest = std::min(nearest, std::abs(off) < on_it_cells * h ? 0.0 : std::abs(off));
+    const double along = std::abs(off / rate);
+    if (!behind || !(along < looked_back_cells * h) || !apart_at(surface, at - off / rate * way, h)) continue;
+    nearest = std::min(nearest, std::abs(off) < on_it_cells * h ? 0.0 : along);
   }
   return nearest;
 }
@@ -86,10 +88,12 @@ const char* name_of(Criterion criterion) {
   }
 }
 
-double driving_J(const Elasticity& rock, const Tip& tip, bool by_K) {
+double driving(const Elasticity& rock, const Tip& tip) {
+  if (tip.criterion == Criterion::energy) return tip.G_trial;
+  if (tip.criterion == Criterion::slope) return tip.closed ? 0.0 : tip.G_trial;
   const double G = (tip.K_I * tip.K_I + tip.K_II * tip.K_II) / rock.E_prime;
   if (tip.K_I <= 0.0) return 0.0;
-  if (by_K) return G;
+  if (tip.criterion == Criterion::K) return G;
   if (tip.J <= 0.0) return 0.0;
   return tip.near != Obstacle::none ? tip.J : std::min(tip.J, 2.0 * G);
 }

@@ -15,19 +15,36 @@ namespace strata {
 ///   any other one nearer than the crossing increment: energy; else J. Throws nothing.
 Criterion criterion_of(const Scene& scene, const State& state, const Tip& tip);
 
+/// Whether equilibria decide about a tip. Throws nothing.
+inline bool weighs_energy(const Tip& tip) {
+  return tip.criterion == Criterion::energy || tip.criterion == Criterion::slope;
+}
+
+/// How far a tip grows at once (m): by what decides about it. Throws nothing.
+inline double increment_of(const Scene& scene, const Tip& tip) {
+  return tip.criterion == Criterion::energy ? scene.fracture->crossing_increment() : scene.fracture->increment_m;
+}
+
+/// Whether its J decided where an interface or a border of rocks is too near for it. Throws nothing.
+inline bool doubtful(const Tip& tip) {
+  return tip.criterion == Criterion::J && at_interface(tip);
+}
+
 /// What events and summaries call it: "J", "K" or "energy".
 const char* name_of(Criterion criterion);
 
-/// Distance (m) of a tip from the nearest interface that it is on or past and whose faces are apart where the fracture
-/// has come through: 0 on it, infinite where there is none. Throws nothing.
+/// Distance (m) along a tip's direction from the nearest interface that it is on or past, less than 8 cells away, and
+/// whose faces are apart where the fracture has come through: 0 on it, infinite where there is none. Throws nothing.
 double past_open_interface(const Scene& scene, const State& state, const Tip& tip);
 
 /// Whether the faces of an interface (index into Scene::strata) are apart within a cell of a place (m). Throws nothing.
 bool apart_at(const Scene& scene, const State& state, std::size_t interface, const Vec2& x);
 
-/// What drives a tip (N/m): J, but no more than twice (K_I^2 + K_II^2)/E', 0 for a closed tip. Where faces have just
-/// touched, or stand under a dry fluid, J may be several J_c while K is next to nothing: such a J is no energy release
-/// rate. Near interfaces K itself is not to be trusted and J stands alone. by_K: (K_I^2 + K_II^2)/E'. Throws nothing.
-double driving_J(const Elasticity& rock, const Tip& tip, bool by_K);
+/// What drives a tip (N/m), by its criterion; 0 for a closed tip that does not slide. energy, slope: tip.G_trial. K:
+/// (K_I^2
+/// + K_II^2)/E'. J: J, but no more than twice that: where faces have just touched, or stand under a dry fluid, J may be
+/// several J_c while K is next to nothing, and no energy release rate; near interfaces K itself is not to be trusted
+/// and J stands alone. Throws nothing.
+double driving(const Elasticity& rock, const Tip& tip);
 
 }  // namespace strata

@@ -64,14 +64,9 @@ bool near_edge(const Scene& scene, const Vec2& x, const Vec2& direction, double 
   return left || right || bottom || top;
 }
 
-double rayleigh_wait(const Scene& scene, const Elasticity& rock) {
-  return scene.fracture->increment_m / rock.c_R;
-}
-
 bool ready(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Tip& tip) {
   const Elasticity& ahead = rocks[rock_ahead(scene, state, tip)];
-  const bool by_energy = tip.criterion == Criterion::energy || tip.criterion == Criterion::slope;
-  const double G = by_energy ? tip.G_trial : driving_J(ahead, tip, tip.criterion == Criterion::K);
+  const double G = driving(ahead, tip);
   if (!tip.growing || G <= 0.0 || G < ahead.J_c) return false;
   return state.time >= tip.due_s;
 }
@@ -81,10 +76,11 @@ bool ready(const Scene& scene, const std::vector<Elasticity>& rocks, const State
 // step; any other one begins now.
 double increments_due(const Scene& scene, const Elasticity& ahead, const State& state, Tip& tip) {
   constexpr double slack = 1e-9;  // of a step: times are sums of them
-  const double wait = rayleigh_wait(scene, ahead);
+  const double wait = increment_of(scene, tip) / ahead.c_R;
   const bool goes_on = tip.has_grown && state.time - tip.due_s < (1.0 + slack) * state.dt;
   const double since = goes_on ? tip.due_s : state.time;
-  const double times = 1.0 + std::floor((state.time - since) / wait);
+  const double due = 1.0 + std::floor((state.time - since) / wait);
+  const double times = tip.criterion == Criterion::energy ? 1.0 : due;  // the next one is weighed anew
   tip.due_s = since + times * wait;
   tip.runs_until_s = tip.due_s + tip.ring_m / ahead.c_R;
   return times;
@@ -321,6 +317,13 @@ bool stopped_by_edge(const Scene& scene, const State& state, const Tip& tip) {
   return !what_stops(scene, state, tip).empty();
 }
 
+bool stop_at_edge(const Scene& scene, const State& state, Tip& tip) {
+  if (!tip.growing || !stopped_by_edge(scene, state, tip)) return false;
+  tip.growing = false;
+  tip.stopped_by = what_stops(scene, state, tip);
+  return true;
+}
+
 double shorten_tip(State& state, Tip& tip, double length) {
   Surface& fracture = state.fracture();
   constexpr double round_off = 1e-9;
@@ -341,12 +344,13 @@ double shorten_tip(State& state, Tip& tip, double length) {
   return gone;
 }
 
-void note_growth(State& state, Tip& tip, const char* by, bool trusted) {
-  if (!tip.has_grown) record(state, "start", tip, state.time, state.fluid.inlet_Pa, !trusted, by);
-  if (tip.arrested) record(state, "restart", tip, state.time, state.fluid.inlet_Pa, !trusted, by);
+void note_growth(State& state, Tip& tip) {
+  tip.grew_by = name_of(tip.criterion);
+  const char* by = tip.grew_by.c_str();
+  if (!tip.has_grown) record(state, "start", tip, state.time, state.fluid.inlet_Pa, doubtful(tip), by);
+  if (tip.arrested) record(state, "restart", tip, state.time, state.fluid.inlet_Pa, doubtful(tip), by);
   tip.has_grown = true;
   tip.arrested = false;
-  tip.grew_by = by;
   tip.last_growth_s = state.time;
   tip.last_growth_Pa = state.fluid.inlet_Pa;
   Monitors& monitors = state.monitors;
@@ -378,18 +382,11 @@ bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state
   bool moved = false;
   for (Tip& tip : state.tips) {
     if (!ready(scene, rocks, state, tip)) continue;
-    if (stopped_by_edge(scene, state, tip)) {
-      tip.growing = false;
-      tip.stopped_by = what_stops(scene, state, tip);
-      continue;
-    }
+    if (stop_at_edge(scene, state, tip)) continue;
     const Elasticity& ahead = rocks[rock_ahead(scene, state, tip)];
-    double times = increments_due(scene, ahead, state, tip);
-    const bool finite = tip.criterion == Criterion::energy;
-    if (finite) times = 1.0;
-    note_growth(state, tip, name_of(tip.criterion), tip.criterion != Criterion::J || !at_interface(tip));
-    const double increment = finite ? scene.fracture->crossing_increment() : scene.fracture->increment_m;
-    const double surface = ahead.J_c * extend_tip(scene, state, tip, increment, times);
+    const double times = increments_due(scene, ahead, state, tip);
+    note_growth(state, tip);
+    const double surface = ahead.J_c * extend_tip(scene, state, tip, increment_of(scene, tip), times);
     state.ledger.fracture += surface, state.ledger.excess -= surface;  // the motion gives none of it
     tip.G = tip.G_trial;
     tip.G_trial = 0.0;
@@ -411,8 +408,7 @@ void watch_tips(const Scene& scene, State& state) {
     }
     if (tip.has_grown && !tip.arrested && tip.growing && state.fluid.inlet_Pa - tip.last_growth_Pa >= arrest_rise_Pa) {
       tip.arrested = true;
-      const bool doubtful = tip.criterion == Criterion::J && at_interface(tip);
-      record(state, "arrest", tip, tip.last_growth_s, tip.last_growth_Pa, doubtful, tip.grew_by.c_str());
+      record(state, "arrest", tip, tip.last_growth_s, tip.last_growth_Pa, doubtful(tip), tip.grew_by.c_str());
     }
   }
 }

@@ -11,12 +11,13 @@ namespace strata {
 
 /// Moves every tip at which what decides about it (tip.criterion; of energy tip.G_trial) has reached J_c = K_Ic^2/E' of
 /// the rock ahead by an increment, along its own direction or that of maximum hoop stress. A tip moves no faster than
-/// the Rayleigh speed of that rock: the next increment waits for increment/c_R. Where more than one has become due in
-/// the step after that of the last, they come at once. What would cross an interface, or end less than a quarter of an
-/// increment short of it, ends on it; what starts on it, or less than a quarter of an increment before a bonded one,
-/// goes on. A tip that has grown to within 3 cells of an edge, or whose next increment would end within 1.5 cells of
-/// one, or within 5 cells of the coarse cells of a graded grid, stops for good and says so. A closed tip (K_I = 0) does
-/// not grow. Returns true if any tip moved: the copies must then be rebuilt. Throws nothing.
+/// the Rayleigh speed of that rock: the next increment waits for the last one's length over c_R. Where more than one
+/// has become due in the step after that of the last, they come at once, but for those that energy decides about. What
+/// would cross an interface, or end less than a quarter of an increment short of it, ends on it; what starts on it, or
+/// less than a quarter of an increment before a bonded one, goes on. A tip that has grown to within 3 cells of an edge,
+/// or whose next increment would end within 1.5 cells of one, or within 5 cells of the coarse cells of a graded grid,
+/// stops for good and says so. A closed tip (K_I = 0) does not grow, unless energy has it slide on. Returns true if any
+/// tip moved: the copies must then be rebuilt. Throws nothing.
 bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
 
 /// Whether grow() would look at any tip more closely now: its J has reached J_c and its wait is over. Throws nothing.
@@ -37,6 +38,10 @@ std::string what_stops(const Scene& scene, const State& state, const Tip& tip);
 /// Whether something stops it so.
 bool stopped_by_edge(const Scene& scene, const State& state, const Tip& tip);
 
+/// Stops a tip for good, with the reason, where something stops it so; whether it did. Throws nothing but
+/// std::bad_alloc.
+bool stop_at_edge(const Scene& scene, const State& state, Tip& tip);
+
 /// Lengthens the fracture at a tip by `times` increments of `increment` (m), less where an interface stops it (see
 /// grow()); returns by how much (m). The copies must then be rebuilt. Throws nothing.
 double extend_tip(const Scene& scene, State& state, Tip& tip, double increment, double times = 1.0);
@@ -45,8 +50,8 @@ double extend_tip(const Scene& scene, State& state, Tip& tip, double increment, 
 /// how much (m). The copies must then be rebuilt. Throws nothing.
 double shorten_tip(State& state, Tip& tip, double length);
 
-/// Notes that a tip grows now: events start and restart, time and pressure of its last growth. by: what decided it.
-void note_growth(State& state, Tip& tip, const char* by, bool trusted);
+/// Notes that a tip grows now: events start and restart, time and pressure of its last growth, and what decided it.
+void note_growth(State& state, Tip& tip);
 
 /// Appends the events reach_interface and arrest as they become true; start and restart come with grow().
 void watch_tips(const Scene& scene, State& state);

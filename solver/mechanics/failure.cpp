@@ -88,7 +88,7 @@ void add_faces(SampleBuilder& b) {
     for (std::size_t a = 0; a < 3; ++a) {
       if (w.Phi[a] == 0.0) continue;
       for (const double face : {1.0, -1.0}) {
-        const SampleKey key = key_at(b, w.column[a], face > 0.0 ? fracture.mask() : SideWord{0}, plus);
+        const SampleKey key = key_at(b, w.column[a], face > 0.0 ? s.sides | fracture.mask() : s.sides, plus);
         if (std::get<2>(key) < 0) continue;  // both faces in one column: no force
         b.samples[key].faces.push_back({q, {face * s.A * w.Phi[a], 0.0}, 0.0});
       }
@@ -241,7 +241,7 @@ void judge(const Surface& surface, const InterfaceLaw& law, double length, std::
       Vec2 force = Vec2::Zero();
       double left = length, most = 0.0;
       std::size_t k = from;
-      for (; k < stretch.size() && left > 0.0; ++k) {
+      for (; k < stretch.size() && left > round_off * length; ++k) {
         const BondedPlace& place = stretch[at(k)];
         force += (place.length > left ? left / place.length : 1.0) * place.force;
         left -= place.length;
@@ -290,7 +290,6 @@ Bonds find_bonds(const Scene& scene, const State& state) {
       at.emplace(key, bonds.samples.size());
       bonds.samples.push_back(std::move(sample));
     }
-    bonds.forces.reserve(bonds.samples.size());
     for (std::size_t q = 0; q < surface.points.size(); ++q) {
       const SurfacePoint& s = surface.points[q];
       if (s.split) continue;
@@ -305,6 +304,7 @@ Bonds find_bonds(const Scene& scene, const State& state) {
       bonds.places.push_back(place);
     }
   }
+  bonds.forces.reserve(bonds.samples.size());
   return bonds;
 }
 
@@ -364,7 +364,8 @@ void let_go(const Columns& columns, const Bonds& bonds, State& state) {
     if (!columns.contains({place.surface, s.column})) continue;
     s.split = true;
     s.failed_s = state.time;
-    s.w = Vec2::Zero();  // what neighbours' splitting let it open while bonded is no gap, and no overlap to push back
+    s.bonded = s.w;  // what neighbours' splitting let it open while bonded is no gap, and no overlap to push back
+    s.w = Vec2::Zero();
     s.reaction = place.carried - std::min(0.0, place.carried.dot(s.n)) * s.n;
   }
 }

@@ -62,10 +62,6 @@ void note_sweeps(int sweeps, double change, double largest, Monitors& monitors);
 /// are no solution. What is left below that is noted, and marks the run. Throws NumericalFailure.
 void require_settled(int sweeps, double change, double largest, const State& state);
 
-// Bonded interfaces are looked at every so many steps; in every one once a place has come so near to failure.
-constexpr std::int64_t looks_at_bonds = 4;
-constexpr double nearly_fails = 0.9;
-
 /// Whether any bonded place of a run with inertia fails now, by judge_bonds(), which is left in state.bonds. Throws
 /// NumericalFailure where what it carries is not finite.
 bool bonds_fail(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);

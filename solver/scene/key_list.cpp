@@ -259,8 +259,7 @@ std::vector<Key> fracture_keys() {
           "fracture.crossing", {as("J", Fracture::Crossing::J), as("energy", Fracture::Crossing::energy)},
           [](Scene& s, std::size_t) -> Fracture::Crossing& { return s.fracture->crossing; },
           "The criterion where an interface is near the tip: J, or the energy released over crossing_increment_m and, "
-          "past "
-          "an interface whose faces are apart, K."),
+          "past an interface whose faces are apart, K."),
       number(
           "fracture.crossing_increment_m", "m", positive,
           +[](Scene& s, std::size_t) -> std::optional<double>& { return s.fracture->crossing_increment_m; },

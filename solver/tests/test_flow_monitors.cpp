@@ -98,13 +98,13 @@ TEST_CASE("a flow is judged by what it was at growth") {
   watch_flow(bench.run.scene, state);
   CHECK(m.flow_fall == (by_rate ? Approx(0.0) : Approx(1.0)));
   Tip tip;
-  note_growth(state, tip, "J", true);
+  note_growth(state, tip);
   CHECK(m.largest_flow_fall == (by_rate ? Approx(0.0) : Approx(1.0)));
   CHECK(bench.marks() == (law == Fluid::Law::paper ? Names{"flow_fall"} : Names{}));
   watch_flow(bench.run.scene, state);
   CHECK(m.flow_fall == 0.0);  // counted anew
   m.floor_share = 0.3;
-  note_growth(state, tip, "J", true);
+  note_growth(state, tip);
   CHECK(m.floor_share_sum == Approx(0.3));
   m.largest_flow_fall = 0.7;
   const bool judged = by_rate || law == Fluid::Law::paper;

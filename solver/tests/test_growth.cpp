@@ -92,15 +92,15 @@ TEST_CASE("what drives a tip is J as far as K confirms it") {
   Tip tip;
   tip.K_I = 1e6, tip.K_II = 0.5e6;  // (K_I^2 + K_II^2)/E' = 125 N/m
   tip.J = 130.0;
-  CHECK(driving_J(rock, tip, false) == 130.0);
+  CHECK(driving(rock, tip) == 130.0);
   tip.J = 900.0;
-  CHECK(driving_J(rock, tip, false) == Approx(250.0));
+  CHECK(driving(rock, tip) == Approx(250.0));
   tip.near = Obstacle::interface;
-  CHECK(driving_J(rock, tip, false) == 900.0);
+  CHECK(driving(rock, tip) == 900.0);
   tip.J = -900.0;
-  CHECK(driving_J(rock, tip, false) == 0.0);
+  CHECK(driving(rock, tip) == 0.0);
   tip.J = 130.0, tip.K_I = 0.0;
-  CHECK(driving_J(rock, tip, false) == 0.0);
+  CHECK(driving(rock, tip) == 0.0);
 }
 
 // Requires that a tip moves at J >= J_c = K_Ic^2/E' and not below, not with a closed tip, nor where growth is off.

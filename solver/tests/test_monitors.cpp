@@ -343,7 +343,7 @@ TEST_CASE("the spread of J is that at growth") {
   Tip& tip = state.tips.front();
   const auto grow_with = [&](double spread, bool at_interface) {
     tip.J_spread = spread, tip.near = at_interface ? Obstacle::interface : Obstacle::none;
-    note_growth(state, tip, "J", true);
+    note_growth(state, tip);
   };
   grow_with(0.05, false);
   grow_with(0.11, false);
