@@ -113,7 +113,7 @@ struct Bytes {
 };
 
 Bytes bytes_of(const Scene& scene) {
-  if (!may_turn(scene)) return {weighs_growth(scene) ? 700.0 : 330.0, 705.0};
+  if (!may_turn(scene)) return {weighs_growth(scene) ? 1000.0 : 330.0, 705.0};
   return {refines_ahead(scene) ? 800.0 : 1090.0, 475.0};
 }
 

@@ -134,7 +134,7 @@ TEST_CASE("Memory needed grows with the particles, more so with a factor, and le
   scene.fracture->path_m = {{30.0, 0.0}, {30.0, 5.0}};
   CHECK(memory_need(scene) == Approx(process + 330.0 * points + 705.0 * n + dense(jumps)));
   scene.fracture->crossing = Fracture::Crossing::energy;
-  CHECK(memory_need(scene) == Approx(process + 700.0 * points + 705.0 * n + dense(jumps)));
+  CHECK(memory_need(scene) == Approx(process + 1000.0 * points + 705.0 * n + dense(jumps)));
   CHECK(weighed == Approx(memory_need(scene) + 1250.0 * points));
   scene.fracture->crossing = Fracture::Crossing::J;
   CHECK_FALSE(too_large(scene, memory_need(scene)).has_value());

@@ -54,8 +54,8 @@ FAMILIES = (
         section="Traction edges with a frictionless cut", about=ABOUT, check_name="slip over that of Newton less 1",
     ),
     Family(
-        "loose_quasistatic", "Cut without friction, traction edges: without inertia", "Springs of any stiffness hold the push; without them the run ends and says that parts move freely.",
-        Parameter("D along the cut", "Pa/m", log=True), (*(spring(D) for D in ("1e10", "1e8", "1e6", "1e5", "1e4")), spring("0", 1.0)), check_springs, beyond=(FAILED,),
+        "loose_quasistatic", "Cut without friction, traction edges: without inertia", "Springs hold the push, however soft (below 1e5 Pa/m they slip by more than half a cell, and the run is marked); without them the run ends and says that parts move freely.",
+        Parameter("D along the cut", "Pa/m", log=True), (*(spring(D) for D in ("1e10", "1e8", "1e6", "1e5")), spring("0", 1.0)), check_springs, beyond=(FAILED,),
         section="Traction edges with a frictionless cut", check_name="slip over rho a H/D less 1",
     ),
 )  # fmt: skip
