@@ -208,7 +208,7 @@ void require_settled(int sweeps, double change, double largest, const State& sta
 
 bool bonds_fail(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
   Bonds& bonds = state.bonds;
-  if (bonds.places.empty()) return false;
+  if (bonds.places.empty() || state.step % looks_at_bonds != 0) return false;
   state.total.based ? forces_of_nodes(state, bonds.forces) : find_forces(rocks, state, bonds);
   judge_bonds(scene, state, bonds);
   if (std::isnan(bonds.worst)) throw NumericalFailure("the load of a bonded interface is not finite");

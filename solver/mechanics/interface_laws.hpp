@@ -62,6 +62,10 @@ void note_sweeps(int sweeps, double change, double largest, Monitors& monitors);
 /// are no solution. What is left below that is noted, and marks the run. Throws NumericalFailure.
 void require_settled(int sweeps, double change, double largest, const State& state);
 
+// Bonded interfaces are looked at every so many steps: at a Courant number of 0.5 a front of failure, which goes by a
+// column a look, is then as fast as a P wave.
+constexpr std::int64_t looks_at_bonds = 2;
+
 /// Whether any bonded place of a run with inertia fails now, by judge_bonds(), which is left in state.bonds. Throws
 /// NumericalFailure where what it carries is not finite.
 bool bonds_fail(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
