@@ -207,3 +207,30 @@ TEST_CASE("a loaded stack hands interfaces what is in balance") {
     }
   }
 }
+
+// Requires the mean shear over the metre ahead of what has let go of a weak interface, with the fracture's tip on it:
+// per net pressure 1.507 where all is bonded, 1.618, 1.747 and 1.378 with 1, 8 and 24 m slipped on each side
+// (strata-reference interface_ahead), to 5 % at 0.5 m cells. Mutations that fail: a place's own traction (more than
+// twice as large), the piece between the last split node and the next left with the bonded ones (8 to 20 % less).
+TEST_CASE("shear ahead of a slipping zone is that of the reference") {
+  for (const auto& [slipped, expected] : {std::pair{0.0, 1.5073}, {1.0, 1.6184}, {8.0, 1.7470}, {24.0, 1.3776}}) {
+    Scene scene = block(160, 160, 0.5);
+    hold_edges(scene);
+    scene.domain.top = Edge::traction;
+    scene.numerics.mechanics = Numerics::Mechanics::quasistatic;
+    scene.in_situ = {3e6, 2e6};
+    InterfaceLaw law = weak_law(1e6, 1e9);
+    law.failure_length_m = 1.0;
+    add_interface(scene, law, 10.0);
+    add_fracture(scene, {{40.0, 0.0}, {40.0, 10.0}}, 3e6);
+    Statics s(scene);
+    for (SurfacePoint& point : s.state().surfaces[1].points)
+      point.split = std::abs(point.x.x() - 40.0) < slipped - 0.25;  // to the last node before the end
+    s.update();
+    s.solve();
+    find_forces(s.run.rocks, s.state(), s.model.bonds);
+    judge_bonds(s.run.scene, s.state(), s.model.bonds);
+    CAPTURE(slipped);
+    CHECK(s.model.bonds.worst == Approx(expected).epsilon(0.05));
+  }
+}
