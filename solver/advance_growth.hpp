@@ -16,9 +16,9 @@ struct RestingRock {
   State state;
   QuasistaticModel model;
   std::vector<GrowthTrial> trials;
-  std::vector<double> P;  // of the fracture's points when it was last looked at (Pa)
-  double nearest = 0.0;   // sqrt(G/J_c) of the tip nearest to growth then
-  bool restless = false;  // there is no equilibrium
+  std::vector<double> P;      // of the fracture's points when it was last looked at (Pa)
+  double nearest = 0.0;       // sqrt(G/J_c) of the tip nearest to growth then
+  bool without_rest = false;  // there is no equilibrium
 };
 
 // Made where it is first needed; forget it (reset) wherever a resumed run would begin.

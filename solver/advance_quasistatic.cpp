@@ -50,6 +50,7 @@ double toughless_margin(const State& state, double E_prime, const Tip& tip) {
 double tip_margin(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run,
                   std::size_t k) {
   Tip& tip = state.tips[k];
+  tip.criterion = criterion_of(scene, state, tip);  // a trial may have had no equilibrium at another load
   const Elasticity& rock = rocks[rock_ahead(scene, state, tip)];
   if (weighs_energy(tip)) {
     try {

@@ -3,24 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fracture/tip_rings.hpp"
 #include "state/rebuild.hpp"
 
 namespace strata {
 
 namespace {
 
-constexpr double on_it_cells = 0.1;        // nearer than this a tip stands on the interface (see ahead_cells)
 constexpr double slope_cells = 3.0;        // from here on K is right to 0.3 %, at 2 cells to 3 % between unlike rocks
 constexpr double looked_back_cells = 8.0;  // farther back an interface is of no concern
-constexpr double ring_need_cells = 4.0;    // the narrowest ring and what nodes' functions reach beyond it
+constexpr double round_off_cells = 0.01;   // distances of tips that stand so many cells off
 
 // Whether the faces of an interface are apart within a cell of a place.
 bool apart_at(const Surface& surface, const Vec2& x, double h) {
   return std::ranges::any_of(surface.points, [&](const SurfacePoint& s) { return s.split && (s.x - x).norm() < h; });
-}
-
-double stacking(const Scene& scene, const Vec2& x) {
-  return scene.stacking(x.x(), x.y());
 }
 
 // Distance (m) from a tip to the nearest real interface ahead of it (sign 1) or behind (-1); one it stands on is both.
@@ -30,7 +26,7 @@ double to_interface(const Scene& scene, const State& state, const Tip& tip, doub
   double nearest = HUGE_VAL;
   for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
     const double off = scene.strata.interfaces[k].at_m - at;
-    const bool beside = std::abs(way) < 1e-6, on = std::abs(off) < on_it_cells * state.grid.h;
+    const bool beside = std::abs(way) < 1e-6, on = std::abs(off) < ahead_cells * state.grid.h;
     if (scene.changes_at(k) && (beside || on || sign * off * way > 0.0)) nearest = std::min(nearest, std::abs(off));
   }
   return nearest;
@@ -39,10 +35,11 @@ double to_interface(const Scene& scene, const State& state, const Tip& tip, doub
 }  // namespace
 
 bool apart_at(const Scene& scene, const State& state, std::size_t interface, const Vec2& x) {
+  constexpr double told_apart_cells = 0.4;  // interfaces lie half a cell from each other or more
   const double at = scene.strata.interfaces[interface].at_m, h = state.grid.h;
   return std::ranges::any_of(state.surfaces, [&](const Surface& surface) {
     return surface.kind == Surface::Kind::interface &&
-           std::abs(stacking(scene, surface.vertices.front().x) - at) < 0.4 * h && apart_at(surface, x, h);
+           std::abs(stacking(scene, surface.vertices.front().x) - at) < told_apart_cells * h && apart_at(surface, x, h);
   });
 }
 
@@ -59,7 +56,7 @@ double past_open_interface(const Scene& scene, const State& state, const Tip& ti
     const double off = stacking(scene, at - surface.vertices.front().x), rate = stacking(scene, way);
     const double along = std::abs(off / rate);
     if (!behind || !(along < looked_back_cells * h) || !apart_at(surface, at - off / rate * way, h)) continue;
-    nearest = std::min(nearest, std::abs(off) < on_it_cells * h ? 0.0 : along);
+    nearest = std::min(nearest, std::abs(off) < ahead_cells * h ? 0.0 : along);
   }
   return nearest;
 }
@@ -67,14 +64,14 @@ double past_open_interface(const Scene& scene, const State& state, const Tip& ti
 Criterion criterion_of(const Scene& scene, const State& state, const Tip& tip) {
   if (scene.fracture->growth == Fracture::Growth::energy) return Criterion::energy;
   if (scene.fracture->crossing != Fracture::Crossing::energy) return Criterion::J;
-  const double h = state.grid.h, da = scene.fracture->crossing_increment() + 0.01 * h;
+  const double h = state.grid.h, da = scene.fracture->crossing_increment() + round_off_cells * h;
   const double past = past_open_interface(scene, state, tip);
   if (past == 0.0) return Criterion::energy;
   if (to_interface(scene, state, tip, 1.0) <= da) return Criterion::energy;
-  if (past < (slope_cells - 0.01) * h) return Criterion::slope;
-  if (past < ring_need_cells * h) return Criterion::K;
+  if (past < (slope_cells - round_off_cells) * h) return Criterion::slope;
+  if (past < trusted_cells_at_interface * h) return Criterion::K;
   const double behind = to_interface(scene, state, tip, -1.0);
-  return behind <= da && behind < past - 0.01 * h ? Criterion::energy : Criterion::J;
+  return behind <= da && behind < past - round_off_cells * h ? Criterion::energy : Criterion::J;
 }
 
 const char* name_of(Criterion criterion) {

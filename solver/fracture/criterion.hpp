@@ -15,9 +15,9 @@ namespace strata {
 ///   any other one nearer than the crossing increment: energy; else J. Throws nothing.
 Criterion criterion_of(const Scene& scene, const State& state, const Tip& tip);
 
-/// Whether equilibria decide about a tip. Throws nothing.
-inline bool weighs_energy(const Tip& tip) {
-  return tip.criterion == Criterion::energy || tip.criterion == Criterion::slope;
+/// Coordinate of a place (m) along which layers are stacked. Throws nothing.
+inline double stacking(const Scene& scene, const Vec2& x) {
+  return scene.stacking(x.x(), x.y());
 }
 
 /// How far a tip grows at once (m): by what decides about it. Throws nothing.
@@ -40,11 +40,13 @@ double past_open_interface(const Scene& scene, const State& state, const Tip& ti
 /// Whether the faces of an interface (index into Scene::strata) are apart within a cell of a place (m). Throws nothing.
 bool apart_at(const Scene& scene, const State& state, std::size_t interface, const Vec2& x);
 
-/// What drives a tip (N/m), by its criterion; 0 for a closed tip that does not slide. energy, slope: tip.G_trial. K:
-/// (K_I^2
-/// + K_II^2)/E'. J: J, but no more than twice that: where faces have just touched, or stand under a dry fluid, J may be
-/// several J_c while K is next to nothing, and no energy release rate; near interfaces K itself is not to be trusted
-/// and J stands alone. Throws nothing.
+/// What drives a tip (N/m), by its criterion.
+///   energy: tip.G_trial. slope: the same, 0 for a closed tip.
+///   K: (K_I^2 + K_II^2)/E', 0 for a closed tip.
+///   J: J, but no more than twice that, 0 for a closed tip. Where faces have just touched, or stand under a dry fluid,
+///   J may be several J_c while K is next to nothing: such a J is no energy release rate. Near interfaces K itself is
+///   not to be trusted and J stands alone.
+/// Throws nothing.
 double driving(const Elasticity& rock, const Tip& tip);
 
 }  // namespace strata

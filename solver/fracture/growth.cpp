@@ -28,10 +28,6 @@ double fine_cells(const Scene& scene) {
   return scene.numerics.ring_cells + 1.0;
 }
 
-double stacking_coordinate(const Scene& scene, const Vec2& x) {
-  return scene.stacking(x.x(), x.y());
-}
-
 // Length of the next `times` increments of da from `tip` along `direction`: they end on the first interface that they
 // would cross or nearly reach. One whose faces are apart ends any that does not begin on it: beyond it another rock is
 // to be broken.
@@ -41,8 +37,8 @@ double increment_to_interface(const Scene& scene, const State& state, const Vec2
   bool meets = false;
   for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
     if (!scene.changes_at(k)) continue;
-    const double rate = stacking_coordinate(scene, direction);
-    const double distance = scene.strata.interfaces[k].at_m - stacking_coordinate(scene, tip);
+    const double rate = stacking(scene, direction);
+    const double distance = scene.strata.interfaces[k].at_m - stacking(scene, tip);
     if (std::abs(rate) < 1e-6) continue;
     const double to_it = distance / rate;
     if (to_it <= 0.0 || to_it >= length) continue;
@@ -398,8 +394,7 @@ bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state
 void watch_tips(const Scene& scene, State& state) {
   for (Tip& tip : state.tips) {
     for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
-      const double distance =
-          std::abs(stacking_coordinate(scene, tip_position(state, tip)) - scene.strata.interfaces[k].at_m);
+      const double distance = std::abs(stacking(scene, tip_position(state, tip)) - scene.strata.interfaces[k].at_m);
       const int id = static_cast<int>(k);
       if (distance > 0.5 * state.grid.h || std::find(tip.reached.begin(), tip.reached.end(), id) != tip.reached.end())
         continue;

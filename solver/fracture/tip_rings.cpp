@@ -15,14 +15,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// No ring is smaller than this, since the tip's own error would fill it: what is nearer lies within the rings. J and K
-// are trusted where a ring of that size ends a cell before it, as far as a node's functions reach, and half a cell more
-// before an interface. Between, K_I is off by up to 0.3 % near rocks, springs and edges (0.4 % where it is trusted);
-// within, by 0.3 to 0.7 % at 2 cells, 2 to 17 % at 1, and by any amount nearer.
-constexpr double narrowest_ring_cells = 2.5;
-constexpr double least_cells = 2.0;  // nearer than this K is no number, nor is J
-constexpr double trusted_cells = narrowest_ring_cells + 1.0;
-constexpr double trusted_cells_at_interface = trusted_cells + 0.5;
+constexpr double least_cells = 2.0;     // nearer than this K is no number, nor is J
 constexpr double inner_fraction = 0.6;  // q is 1 inside this fraction of a ring's radius: 0.3 costs 1 % in J
 
 // Whether all nodes around a bin lie outside the square around a ring: then q is 0 at them.
@@ -78,9 +71,8 @@ void keep_off_fracture(const State& state, const Tip& tip, const Vec2& at, Room&
 // An interface between like rocks disturbs nothing as long as it is bonded; rings keep off it all the same, since it
 // may fail at any time. One whose faces are apart is met where they are.
 void keep_off_interfaces(const Scene& scene, const State& state, const Vec2& at, Room& room) {
-  const auto across = [&](const Vec2& x) { return scene.strata.along == Strata::Along::y ? x.y() : x.x(); };
   for (const Surface& surface : state.surfaces) {
-    const double distance = std::abs(across(at - surface.vertices.front().x));
+    const double distance = std::abs(stacking(scene, at - surface.vertices.front().x));
     if (surface.kind != Surface::Kind::interface || distance > trusted_cells_at_interface * room.h) continue;
     for (const SurfacePoint& s : surface.points) {
       const double off = (s.x - at).norm() - 0.5 * s.A;
@@ -89,11 +81,11 @@ void keep_off_interfaces(const Scene& scene, const State& state, const Vec2& at,
   }
   for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
     const InterfacePlace& place = scene.strata.interfaces[k];
-    const bool like = scene.strata.layers[k].rock == scene.strata.layers[k + 1].rock;
-    if (like && scene.laws[place.law].kind == InterfaceLaw::Kind::perfect) continue;
-    const double distance = std::abs(across(at) - place.at_m);
+    if (!scene.changes_at(k)) continue;
+    const double distance = std::abs(stacking(scene, at) - place.at_m);
     room.keep_off(distance);
-    if (!like) room.note(distance, Obstacle::rock_border, trusted_cells_at_interface);
+    if (scene.strata.layers[k].rock != scene.strata.layers[k + 1].rock)
+      room.note(distance, Obstacle::rock_border, trusted_cells_at_interface);
   }
 }
 

@@ -13,6 +13,14 @@ namespace strata {
 // enough to leave the tip's own error inside.
 constexpr std::array<double, 3> ring_fractions{0.8, 0.9, 1.0};
 
+// No ring is smaller than this, since the tip's own error would fill it: what is nearer lies within the rings. J and K
+// are trusted where a ring of that size ends a cell before it, as far as a node's functions reach, and half a cell more
+// before an interface. Between, K_I is off by up to 0.3 % near rocks, springs and edges (0.4 % where it is trusted);
+// within, by 0.3 to 0.7 % at 2 cells, 2 to 17 % at 1, and by any amount nearer.
+constexpr double narrowest_ring_cells = 2.5;
+constexpr double trusted_cells = narrowest_ring_cells + 1.0;
+constexpr double trusted_cells_at_interface = trusted_cells + 0.5;
+
 struct Frame {
   Vec2 tip, e_1, e_2;
   double sign = 1.0;  // + side of the fracture above (1) or below (-1) as the tip looks ahead

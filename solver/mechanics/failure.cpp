@@ -16,9 +16,9 @@ namespace strata {
 namespace {
 
 // Places under friction give nothing up where they are split: they stick. So they are split at this share of what makes
-// them slide, and slip zones run in rock that is split already. The friction work of a slip zone 20 m long is then 128
-// to 133 J/m at cells of 1, 0.5 and 0.25 m, graded or not, where spectral elements have 134.8; columns that are split
-// as they slide make 130 to 270 J/m of it.
+// them slide, and slip zones run in rock that is split already. The friction work of slip zones over 25 m is then 128
+// to 133 J/m at cells of 1, 0.5 and 0.25 m, graded or not, where strata-reference sliding_blocks has 134.8; columns
+// that are split as they slide make 130 to 270 J/m of it.
 constexpr double lets_go_sticking = 0.3;
 
 constexpr double least_share = 0.1;  // of a cell: a column that reaches less of the interface has no mean to speak of
@@ -139,11 +139,7 @@ void add_inertia(SampleBuilder& b) {
   if (b.scene.numerics.mechanics == Numerics::Mechanics::quasistatic) return;
   const Particles& p = b.state.particles;
   const Grid& grid = b.state.grid;
-  std::vector<std::size_t> bin_of(p.size());
-  for (std::size_t k = 0; k < b.state.bins.size(); ++k) {
-    const Bin& bin = b.state.bins[k];
-    for (int q = bin.first; q < bin.last; q += bin.stride) bin_of[static_cast<std::size_t>(q)] = k;
-  }
+  const std::vector<std::size_t> bin_of = bins_of_particles(b.state);
   for (auto& [key, sample] : b.samples) {
     std::map<int, double> masses;
     for (const BondSample::Share& share : sample.particles) {

@@ -8,6 +8,7 @@
 #include "mechanics/held_reactions.hpp"
 #include "mechanics/interface_laws.hpp"
 #include "mechanics/surface_law.hpp"
+#include "state/rebuild.hpp"
 #include "state/shape_functions.hpp"
 
 namespace strata {
@@ -264,16 +265,6 @@ double step_surfaces(double keep, State& state) {
 
 namespace {
 
-// The bin of each particle.
-std::vector<int> bins_of_particles(const State& state) {
-  std::vector<int> of(state.particles.size(), -1);
-  for (std::size_t b = 0; b < state.bins.size(); ++b) {
-    for (int q = state.bins[b].first; q < state.bins[b].last; q += state.bins[b].stride)
-      of[static_cast<std::size_t>(q)] = static_cast<int>(b);
-  }
-  return of;
-}
-
 BondSensor::Entry& entry_at(BondSensor& sensor, int slot) {
   for (BondSensor::Entry& entry : sensor.entries) {
     if (entry.slot == slot) return entry;
@@ -303,11 +294,11 @@ void add_particle(const Scene& scene, const Elasticity& rock, const State& state
 std::vector<BondSensor> make_bond_sensors(const Scene& scene, const std::vector<Elasticity>& rocks,
                                           const State& state) {
   std::vector<BondSensor> sensors;
-  const std::vector<int> bin_of = bins_of_particles(state);
+  const std::vector<std::size_t> bin_of = bins_of_particles(state);
   for (const BondSample& sample : state.bonds.samples) {
     BondSensor& sensor = sensors.emplace_back();
     for (const BondSample::Share& share : sample.particles) {
-      const Bin& bin = state.bins[static_cast<std::size_t>(bin_of[share.index])];
+      const Bin& bin = state.bins[bin_of[share.index]];
       add_particle(scene, rocks[state.particles.rock[share.index]], state, share, bin, sensor);
     }
     for (const BondSample::Mass& mass : sample.inertia)

@@ -44,14 +44,13 @@ Json tips_json(const Scene& scene, const State& state) {
   for (const Tip& tip : state.tips) {
     const Vec2 x = tip_position(state, tip);
     const TipNumbers told = tip_numbers(scene, tip);
-    const bool weighs = tip.criterion == Criterion::energy || tip.criterion == Criterion::slope;
     tips.push_back({{"x_m", x.x()},
                     {"y_m", x.y()},
                     {"K_I_Pa_sqrt_m", told.K_I_Pa_sqrt_m},
                     {"K_II_Pa_sqrt_m", told.K_II_Pa_sqrt_m},
                     {"J_N_m", told.J_N_m},
                     {"J_spread", told.J_spread},
-                    {"G_N_m", weighs ? tip.G_trial : tip.G},
+                    {"G_N_m", weighs_energy(tip) ? tip.G_trial : tip.G},
                     {"kink_deg", told.kink_deg},
                     {"reason", told.reason},
                     {"near", name_of(tip.near)},

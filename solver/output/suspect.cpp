@@ -232,8 +232,8 @@ void watch_failure(const Scene& scene, const State& state, std::vector<Watched>&
        "an interface has failed in part whose failure_length_m is less than two cells: where it stops is the cell's"});
 }
 
-// Energy over less than half a cell beyond an open interface: the new crack is not resolved. At half a cell the net
-// pressure of a restart is 10 % low, at a quarter 50 %.
+// Energy over less than half a cell beyond an open interface: the new crack is not resolved. At 0.485 of a cell,
+// 1/2.06, the net pressure of a restart is 10 % low, at a quarter 50 % (atlas, cut_increments).
 void watch_crossing(const Scene& scene, const State& state, std::vector<Watched>& out) {
   const bool by_energy = std::ranges::any_of(state.events, [](const Event& e) { return e.by == "energy"; });
   if (!scene.fracture || !by_energy) return;

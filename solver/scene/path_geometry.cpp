@@ -44,7 +44,7 @@ std::optional<std::pair<std::size_t, std::size_t>> self_contact(const std::vecto
 }
 
 std::vector<Point> legs_between_interfaces(const Scene& scene, const Point& from, const Point& to) {
-  // An end that stands on an interface: one that follows the rock is a millimetre or so off it.
+  // An end that stands on an interface: one that follows the rock is a millimetre or so off it (see ahead_cells).
   const double on_it = 0.1 * scene.numerics.cell_m / std::hypot(to[0] - from[0], to[1] - from[1]);
   const std::size_t axis = scene.strata.along == Strata::Along::y ? 1 : 0;
   std::vector<double> shares;

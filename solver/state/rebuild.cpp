@@ -409,6 +409,15 @@ SideWord sides_ahead(const State& state, const Tip& tip) {
   return sides_at(state, tip_position(state, tip) + step, fracture.bit);
 }
 
+std::vector<std::size_t> bins_of_particles(const State& state) {
+  std::vector<std::size_t> of(state.particles.size());
+  for (std::size_t b = 0; b < state.bins.size(); ++b) {
+    const Bin& bin = state.bins[b];
+    for (int q = bin.first; q < bin.last; q += bin.stride) of[static_cast<std::size_t>(q)] = b;
+  }
+  return of;
+}
+
 double support_in_cells(const Scene& scene) {
   return scene.numerics.shape == Numerics::Shape::bspline2 ? 1.5 : 1.0;
 }

@@ -25,6 +25,9 @@ constexpr double bin_reach_cells = 0.5 + 1e-3;
 /// The side word of a place (m): the one rule side() applied to every surface but `except` (-1: to all).
 SideWord sides_at(const State& state, const Vec2& x, int except);
 
+/// The bin of each particle: index into state.bins. Throws nothing but std::bad_alloc.
+std::vector<std::size_t> bins_of_particles(const State& state);
+
 /// The side word of the rock that a tip is about to enter. Throws nothing.
 SideWord sides_ahead(const State& state, const Tip& tip);
 

@@ -156,6 +156,11 @@ struct State {
   Surface& fracture() { return surfaces.front(); }
 };
 
+/// Whether equilibria decide about a tip's growth. Throws nothing.
+inline bool weighs_energy(const Tip& tip) {
+  return tip.criterion == Criterion::energy || tip.criterion == Criterion::slope;
+}
+
 /// Whether an interface or a border of rocks is so near to a tip that its J is not to be trusted; throws nothing.
 inline bool at_interface(const Tip& tip) {
   return tip.near == Obstacle::interface || tip.near == Obstacle::rock_border;
