@@ -13,7 +13,7 @@ from reports.ledger import LedgerFigure, LedgerPanel, VariantFigure, VariantRow
 
 _COLOURS: dict[str, tuple[str, ...]] = {
     "stored": ("#55b890", "#00845f", "#a5dcc5"),
-    "dissipated": ("#d04a00", "#a3397f", "#b98a00", "#7a5230", "#5a5a9a"),
+    "dissipated": ("#d04a00", "#a3397f", "#b98a00", "#7a5230", "#3aa0c8", "#5a5a9a", "#1a1a1a"),
 }
 
 

@@ -344,11 +344,12 @@ void judge_bonds(const Scene& scene, const State& state, Bonds& bonds) {
 
 Columns failing_columns(const Scene& scene, const State& state, const Bonds& bonds) {
   constexpr double as_bad = 1e-6;
+  const bool inertia = scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics;
   Columns columns;
   for (const BondedPlace& place : bonds.places) {
     const Surface& surface = state.surfaces[place.surface];
     const bool friction = scene.laws[surface.law].kind == InterfaceLaw::Kind::friction;
-    if (place.index >= (friction ? 1.0 : std::max(1.0, (1.0 - as_bad) * bonds.worst)))
+    if (place.index >= (friction || inertia ? 1.0 : std::max(1.0, (1.0 - as_bad) * bonds.worst)))
       columns.emplace(place.surface, surface.points[place.point].column);
   }
   return columns;

@@ -33,8 +33,10 @@ void judge_bonds(const Scene& scene, const State& state, Bonds& bonds);
 // Columns of nodes, told by their surface, along an interface.
 using Columns = std::set<std::pair<std::size_t, int>>;
 
-/// Those that let go now: of the worst places under a weak law, and those as bad but for round-off; of all that slide
-/// under friction, which give nothing up by it. Throws nothing.
+/// Those that let go now. Without inertia: of the worst places under a weak law, and those as bad but for round-off,
+/// since each changes what the others carry; of all that slide under friction, which give nothing up by it. With
+/// inertia: of all places, since waves pass on what each gives up, and sweeps over contact leave the two sides of a
+/// symmetric block less alike than round-off. Throws nothing.
 Columns failing_columns(const Scene& scene, const State& state, const Bonds& bonds);
 
 /// Lets the bonded places in some columns go. The law takes over from what they carried: compression, and shear as what

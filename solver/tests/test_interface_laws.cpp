@@ -272,6 +272,23 @@ TEST_CASE("a failed place starts with what it carried") {
   }
 }
 
+// Requires that with inertia all places that carry too much let go at once, the worse and the less bad ones: a symmetric
+// block whose sides differ by what sweeps leave fails on both. Mutation that fails: the worst alone.
+TEST_CASE("with inertia all that carries too much lets go") {
+  Scene scene = block(16, 8);
+  add_interface(scene, weak_law(0.5e6, 1e9), 4.0);
+  Run run(scene);
+  for (std::size_t q = 0; q < run.state.particles.size(); ++q) {
+    const double x = run.state.particles.x[q], shear = x < 4.0 ? 0.6e6 : (x > 12.0 ? 0.7e6 : 0.0);
+    strain(run.state, q, gradient_of(scene.rocks[0], {0.0, 0.0, shear}));
+  }
+  REQUIRE(let_fail(run));
+  for (const SurfacePoint& s : run.state.surfaces[0].points) {
+    if (s.x.x() < 2.0 || s.x.x() > 14.0) CHECK(s.split);
+    if (s.x.x() > 6.0 && s.x.x() < 10.0) CHECK_FALSE(s.split);
+  }
+}
+
 // Requires that a failed interface stays failed once the stress is gone, that only the columns under stress fail, and
 // that each failed point knows when. Mutations that fail: the time not kept, kept for all points.
 TEST_CASE("failure is for good and local") {
