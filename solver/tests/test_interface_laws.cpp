@@ -272,8 +272,8 @@ TEST_CASE("a failed place starts with what it carried") {
   }
 }
 
-// Requires that with inertia all places that carry too much let go at once, the worse and the less bad ones: a symmetric
-// block whose sides differ by what sweeps leave fails on both. Mutation that fails: the worst alone.
+// Requires that with inertia all places that carry too much let go at once, the worse and the less bad ones: a
+// symmetric block whose sides differ by what sweeps leave fails on both. Mutation that fails: the worst alone.
 TEST_CASE("with inertia all that carries too much lets go") {
   Scene scene = block(16, 8);
   add_interface(scene, weak_law(0.5e6, 1e9), 4.0);
