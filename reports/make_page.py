@@ -37,11 +37,12 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     points = read_points(options.experiments)
     runs = add_missing(load_runs(options.runs), declared_runs(options.experiments), options.runs)
-    with ProcessPoolExecutor(max_workers=1) as beside:  # the pages that runs do not decide on, drawn at the same time
-        other_pages = beside.submit(write_precision, options.out, options.precision), beside.submit(write_stability, options.out, options.stability)
+    with ProcessPoolExecutor(max_workers=2) as beside:  # the other pages are drawn at the same time
+        atlas_page = beside.submit(write_stability, options.out, options.stability)
+        verification = beside.submit(write_verification, options.runs, options.out, with_index=True)
+        chart_page = beside.submit(write_precision, options.out, options.precision)
         figures = [make(spec, options.out / "figures") for spec in catalogue(runs, points)]
-        verified = write_verification(options.runs, options.out, with_index=True)
-        chart, atlas = (page.result() for page in other_pages)
+        verified, chart, atlas = verification.result(), chart_page.result(), atlas_page.result()
     said = verified.headline if verified else ""
     page = write_page(options.out, runs, read_claims(options.runs / "claims.json"), figures, points, said, chart, atlas)
     for defect in [*(verified.defects if verified else []), *filter(None, [chart.defect, atlas.defect])]:

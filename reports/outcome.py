@@ -234,19 +234,19 @@ def interface_states(run: Run) -> list[str]:
     """For each interface that has a law, the length over which it acts at the end and its largest slip in the run."""
     try:
         count = output_times(run).size
-        outputs = [interfaces_at(run, index) for index in range(count)]
+        last = interfaces_at(run, count - 1)
+        moved = [interfaces_at(run, index, ("slip_m", "opening_m")) for index in range(count)]
     except NotAvailable:
         return []
-    return [_state([places[k] for places in outputs]) for k in range(len(outputs[-1]) if outputs else 0)]
+    return [_state(fields, [places[k] for places in moved]) for k, fields in enumerate(last)]
 
 
-def _state(outputs: list[Arrays]) -> str:
-    """One interface from its fields at all output times."""
-    last = outputs[-1]
+def _state(last: Arrays, moved: list[Arrays]) -> str:
+    """One interface from its fields at the end and how far its faces have moved at all output times."""
     length = float(np.hypot(np.ptp(last["x_m"]), np.ptp(last["y_m"])))
     acting = float(np.mean(last["split"] > 0)) if "split" in last else 1.0
-    slip = max((float(np.abs(fields["slip_m"]).max()) for fields in outputs if "slip_m" in fields), default=0.0)
-    gap = max((float(fields["opening_m"].max()) for fields in outputs if "opening_m" in fields), default=0.0)
+    slip = max((float(np.abs(fields["slip_m"]).max()) for fields in moved if "slip_m" in fields), default=0.0)
+    gap = max((float(fields["opening_m"].max()) for fields in moved if "opening_m" in fields), default=0.0)
     if acting == 0.0:
         return "intact"
     whole = "all" if acting == 1.0 else metres(acting * length)

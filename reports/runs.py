@@ -219,13 +219,17 @@ def particles_at(run: Run, index: int) -> Arrays:
     return _group(run, "particles", index)
 
 
-def interfaces_at(run: Run, index: int) -> list[Arrays]:
-    """Every interface's points at one output time; none where the run has no interface; SI units."""
+def interfaces_at(run: Run, index: int, names: tuple[str, ...] = ()) -> list[Arrays]:
+    """Every interface's points at one output time, of its datasets `names` (all where none); none where the run has no
+    interface; SI units."""
     with _open(run) as store:
         parent = store.get(f"interfaces/{index:05d}")
         if parent is None:
             return []
-        return [_arrays(group) for _, group in sorted(parent.items()) if isinstance(group, h5py.Group)]
+        groups = [group for _, group in sorted(parent.items()) if isinstance(group, h5py.Group)]
+        if names:
+            return [{name: np.asarray(group[name]) for name in names if name in group} for group in groups]
+        return [_arrays(group) for group in groups]
 
 
 def _open(run: Run) -> h5py.File:

@@ -41,14 +41,18 @@ void refine_beside_growth(const Scene& scene, State& state) {
   }
 }
 
-// Equations and trials of resting.state, which is that of the run.
-void make_resting(const Scene& scene, const std::vector<Elasticity>& rocks, RestingRock& resting) {
+// Equations and trials of resting.state, which is that of the run. What holds of those of `before` (or none), of the
+// same particles in the same places, is taken over.
+void make_resting(const Scene& scene, const std::vector<Elasticity>& rocks, const Resting& before,
+                  RestingRock& resting) {
   resting.scene = without_inertia(scene);
   State& own = resting.state;
   own.total = {};
   own.bonds = {};
   own.dt = 1.0;  // J's inertia divides by it; there is none
   refine_beside_growth(resting.scene, own);
+  if (before && before->state.particles.x == own.particles.x && before->state.particles.y == own.particles.y)
+    resting.model = std::move(before->model);
   update_equations(resting.scene, rocks, own, resting.model, false);
   resting.trials = make_trials(resting.scene, rocks, own, resting.model, {}, false);
 }
@@ -131,9 +135,9 @@ void weigh_growth(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
            std::ranges::equal(other.tips, state.tips, {}, &Tip::criterion, &Tip::criterion);
   };
   if (!resting || !same(resting->state)) {
-    resting = std::make_unique<RestingRock>();
+    const Resting before = std::exchange(resting, std::make_unique<RestingRock>());
     resting->state = state;
-    if (!finds_rest([&] { make_resting(scene, rocks, *resting); }, *resting)) ++state.monitors.growth_unweighed;
+    if (!finds_rest([&] { make_resting(scene, rocks, before, *resting); }, *resting)) ++state.monitors.growth_unweighed;
   }
   if (!resting->without_rest && is_due(state, *resting)) {
     if (!finds_rest([&] { weigh(scene, rocks, state, *resting); }, *resting)) ++state.monitors.growth_unweighed;
