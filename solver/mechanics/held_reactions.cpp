@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "mechanics/interface_laws.hpp"
 #include "mechanics/total_surfaces.hpp"
 
 namespace strata {
@@ -103,13 +104,10 @@ std::shared_ptr<const HeldFactor> make_factor(const std::vector<Held>& held, dou
   return factor;
 }
 
-}  // namespace
-
-void solve_held_reactions(State& state, TotalSurfaces& surfaces) {
-  const std::vector<Held> held = find_held(state, surfaces);
-  if (held.empty()) return;
+// Gives what is held its reactions; false where the matrix is not positive but for round-off: sweeps do without.
+bool solve(const std::vector<Held>& held, State& state, TotalSurfaces& surfaces) {
   if (!surfaces.held || !surfaces.held->is_for(held)) surfaces.held = make_factor(held, state.dt, surfaces);
-  if (surfaces.held->solve.info() != Eigen::Success) return;  // not positive but for round-off: sweeps do without
+  if (surfaces.held->solve.info() != Eigen::Success) return false;
   Eigen::VectorXd off(static_cast<Eigen::Index>(held.size()));
   for (std::size_t a = 0; a < held.size(); ++a) {
     const Held& h = held[a];
@@ -120,6 +118,35 @@ void solve_held_reactions(State& state, TotalSurfaces& surfaces) {
   for (std::size_t a = 0; a < held.size(); ++a) {
     const TotalPlace& place = surfaces.places[held[a].place];
     add_reaction(place, change[static_cast<Eigen::Index>(a)] * held[a].along, point_of(state, place), surfaces);
+  }
+  return true;
+}
+
+// Brings back what is now beyond what a law allows: contact that pulls opens, friction beyond its bound slides. Returns
+// whether any did.
+bool let_go(const std::vector<Held>& held, State& state, TotalSurfaces& surfaces) {
+  bool any = false;
+  for (const Held& h : held) {
+    const TotalPlace& place = surfaces.places[h.place];
+    const InterfaceLaw& law = surfaces.laws[place.law];
+    SurfacePoint& s = point_of(state, place);
+    const Vec2 tangent = tangent_of(s.n);
+    const Reaction now{s.reaction.dot(s.n), s.reaction.dot(tangent)}, allowed = admissible(law, now);
+    const bool opens = law.kind == Kind::soft && now.n < 0.0 && h.compliance == 1.0 / place.k;  // on to its spring
+    if (!opens && allowed.n == now.n && allowed.t == now.t) continue;
+    any = true;
+    if (!opens) add_reaction(place, allowed.n * s.n + allowed.t * tangent - s.reaction, s, surfaces);
+  }
+  return any;
+}
+
+}  // namespace
+
+void solve_held_reactions(State& state, TotalSurfaces& surfaces) {
+  constexpr int most_rounds = 8;
+  for (int round = 0; round < most_rounds; ++round) {
+    const std::vector<Held> held = find_held(state, surfaces);
+    if (held.empty() || !solve(held, state, surfaces) || !let_go(held, state, surfaces)) return;
   }
 }
 

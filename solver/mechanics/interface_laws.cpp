@@ -31,13 +31,6 @@ Reaction react_soft(const InterfaceLaw& law, double k, const FreeJump& w) {
 // soft, to a tolerance of 1e-9, where 1.5 with today's tolerance takes 52. 1.5 was not tuned further.
 constexpr double over_relaxation = 1.5;
 
-// The reaction nearest to r that a law allows whatever the jump: contact only pushes, friction is bounded.
-Reaction admissible(const InterfaceLaw& law, Reaction r) {
-  if (law.kind == Kind::soft) return r;
-  const double n = std::max(0.0, r.n), mu = law.kind == Kind::weak ? law.residual_friction : law.coefficient;
-  return {n, std::clamp(r.t, -mu * n, mu * n)};
-}
-
 void add_entry(SplitPlace& place, const Master& master, double weight) {
   int k = 0;
   while (k < place.n && place.record[static_cast<std::size_t>(k)] != master.record) ++k;
@@ -148,6 +141,12 @@ Reaction react(const InterfaceLaw& law, double k, const FreeJump& w) {
   const double n = std::max(0.0, spring(k, w.n_rest, w.n, w.per_n));
   const double bound = n * (law.kind == Kind::weak ? law.residual_friction : law.coefficient);
   return {n, std::clamp(spring(k, w.r_t_start, w.t - w.t_start, w.per_t), -bound, bound)};
+}
+
+Reaction admissible(const InterfaceLaw& law, const Reaction& r) {
+  if (law.kind == Kind::soft) return r;
+  const double n = std::max(0.0, r.n), mu = law.kind == Kind::weak ? law.residual_friction : law.coefficient;
+  return {n, std::clamp(r.t, -mu * n, mu * n)};
 }
 
 Reaction over_relax(const InterfaceLaw& law, double k, const FreeJump& w, const Reaction& now) {

@@ -39,6 +39,9 @@ constexpr int most_sweeps = 200;
 // the largest reaction; friction coefficients of 1e3 and more leave more than this.
 constexpr double most_left = 0.1;
 
+/// The reaction nearest to r that a law allows whatever the jump: contact only pushes, friction is bounded.
+Reaction admissible(const InterfaceLaw& law, const Reaction& r);
+
 /// One visit of successive over-relaxation to a place whose reaction is `now`: past react(), but never out of what the
 /// law allows.
 Reaction over_relax(const InterfaceLaw& law, double k, const FreeJump& w, const Reaction& now);

@@ -82,15 +82,16 @@ struct Fed {
 
 }  // namespace
 
-// Requires that friction of which no sweep finds the reactions ends the run with a reason and finite numbers, in either
-// kinematics, and that an ordinary coefficient does not.
+// Requires that friction of which no sweep finds the reactions ends the run with a reason and finite numbers, and that
+// an ordinary coefficient does not; where points stay in place, rough friction is solved: places that hold are solved
+// together, without which it ended here.
 TEST_CASE("contact that is far from its laws ends the run") {
-  Run sound(crossed(0.6));
-  CHECK_NOTHROW(sound.advance(200));
-  CHECK(sound.state.monitors.contact_left < 0.01);
-  Run rough(crossed(1e6));
-  CHECK_THROWS_WITH(rough.advance(2000), Catch::Contains(not_solved));
-  CHECK(std::isfinite(rough.state.ledger.kinetic));
+  for (const double coefficient : {0.6, 1e6}) {
+    Run run(crossed(coefficient));
+    CHECK_NOTHROW(run.advance(1000));
+    CHECK(run.state.monitors.contact_left < most_left);
+    CHECK(std::isfinite(run.state.ledger.kinetic));
+  }
   int ended = 0;
   for (unsigned seed = 0; seed < 12; ++seed) {
     Run smooth = stirred(0.6, seed), coarse = stirred(1e3, seed);
@@ -99,6 +100,7 @@ TEST_CASE("contact that is far from its laws ends the run") {
     if (!ends_unsolved(coarse, 60)) continue;
     ++ended;
     CHECK(coarse.state.monitors.contact_left > most_left);
+    CHECK(std::isfinite(coarse.state.ledger.kinetic));
   }
   CHECK(ended >= 4);
 }

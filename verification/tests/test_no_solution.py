@@ -40,17 +40,17 @@ residual_friction = 1e6
 layers = [{rock = "r", thickness_m = 6}, {rock = "s"}]
 interfaces = ["rough"]
 [fracture]
-path_m = [[4, 3], [7, 9]]
+path_m = [[4, 4], [8, 8]]
 growth = "none"
 [fluid]
 law = "uniform"
 inlet = {start_Pa = 3e6, rate_Pa_s = 1e6}
 [numerics]
 mechanics = "explicit"
-kinematics = "total"
+kinematics = "updated"
 cell_m = 1
 [stop]
-time_s = 0.2
+time_s = 1.0
 [variants.usual]
 interface.rough.residual_friction = 0.6
 """
