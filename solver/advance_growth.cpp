@@ -42,9 +42,8 @@ void refine_beside_growth(const Scene& scene, State& state) {
 }
 
 // Equations and trials of resting.state, which is that of the run. What holds of those of `before` (or none), of the
-// same particles in the same places, is taken over.
-void make_resting(const Scene& scene, const std::vector<Elasticity>& rocks, const Resting& before,
-                  RestingRock& resting) {
+// same particles in the same places, is taken over, and the rest let go: two are not to be held at a time.
+void make_resting(const Scene& scene, const std::vector<Elasticity>& rocks, Resting before, RestingRock& resting) {
   resting.scene = without_inertia(scene);
   State& own = resting.state;
   own.total = {};
@@ -53,6 +52,7 @@ void make_resting(const Scene& scene, const std::vector<Elasticity>& rocks, cons
   refine_beside_growth(resting.scene, own);
   if (before && before->state.particles.x == own.particles.x && before->state.particles.y == own.particles.y)
     resting.model = std::move(before->model);
+  before.reset();
   update_equations(resting.scene, rocks, own, resting.model, false);
   resting.trials = make_trials(resting.scene, rocks, own, resting.model, {}, false);
 }
@@ -135,9 +135,10 @@ void weigh_growth(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
            std::ranges::equal(other.tips, state.tips, {}, &Tip::criterion, &Tip::criterion);
   };
   if (!resting || !same(resting->state)) {
-    const Resting before = std::exchange(resting, std::make_unique<RestingRock>());
+    Resting before = std::exchange(resting, std::make_unique<RestingRock>());
     resting->state = state;
-    if (!finds_rest([&] { make_resting(scene, rocks, before, *resting); }, *resting)) ++state.monitors.growth_unweighed;
+    const auto make = [&] { make_resting(scene, rocks, std::move(before), *resting); };
+    if (!finds_rest(make, *resting)) ++state.monitors.growth_unweighed;
   }
   if (!resting->without_rest && is_due(state, *resting)) {
     if (!finds_rest([&] { weigh(scene, rocks, state, *resting); }, *resting)) ++state.monitors.growth_unweighed;

@@ -66,17 +66,17 @@ double tip_margin(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
 }
 
 double margin_of(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
-  double margin = 0.0;
+  run.tip_margin = 0.0;
   for (std::size_t k = 0; k < state.tips.size(); ++k) {
-    if (may_grow(scene, state, state.tips[k])) margin = std::max(margin, tip_margin(scene, rocks, state, run, k));
+    if (may_grow(scene, state, state.tips[k]))
+      run.tip_margin = std::max(run.tip_margin, tip_margin(scene, rocks, state, run, k));
   }
   find_forces(rocks, state, run.model.bonds);
   judge_bonds(scene, state, run.model.bonds);
-  margin = std::max(margin, run.model.bonds.worst);
   bool sound = !std::isnan(run.model.bonds.worst);
   for (const Tip& tip : state.tips) sound = sound && std::isfinite(tip.G_trial);
   if (!sound) throw NumericalFailure("the energy released or the load of a bonded interface is not finite");
-  return margin;
+  return std::max(run.tip_margin, run.model.bonds.worst);
 }
 
 void look_at_tips(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, const Quasistatic& run) {
@@ -220,12 +220,18 @@ void measure_release(const Scene& scene, const std::vector<Elasticity>& rocks, d
   throw NumericalFailure(fmt::format("at t = {:.6g} s, {}: {}", time, when, reason));
 }
 
-// What is due at the present load: the worst bonded column fails or, where none does, tips grow.
+// Whether a failure that is due goes before growth: both margins are shares of the load that each takes.
+bool failure_goes_first(const Scene& scene, const Quasistatic& run) {
+  const bool by_margin = scene.fracture && scene.fracture->order == Fracture::Order::larger_margin;
+  return failure_due(run) && (!by_margin || run.model.bonds.worst >= run.tip_margin);
+}
+
+// What is due at the present load: the worst bonded column fails or tips grow.
 void let_happen(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
   const LoadPoint before = load_point(state);
   std::vector<Growing> growing;
   double energy_before = 0.0;
-  if (failure_due(run)) {
+  if (failure_goes_first(scene, run)) {
     fail(scene, run, state);
   } else {
     growing = tips_that_grow(scene, rocks, state, run);

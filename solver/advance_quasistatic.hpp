@@ -18,6 +18,7 @@ struct Quasistatic {
   std::vector<TipRule> rules;       // of all tips; none under a body force
   std::vector<GrowthTrial> trials;  // of the tips that energy decides about
   double margin = 0.0;              // the nearest event: it happens at 1
+  double tip_margin = 0.0;          // the nearest growth
 };
 
 /// Equilibrium of a state that was initialised or read back; builds what `run` holds. Throws NumericalFailure where
@@ -32,8 +33,8 @@ void restart_quasistatic(const Scene& scene, const std::vector<Elasticity>& rock
 /// happens, and the state is no equilibrium of its interfaces' laws yet. Throws nothing.
 bool failure_due(const Quasistatic& run);
 
-/// One step. Where something is due at the present load (the worst bonded column fails, a tip grows) it happens, and
-/// the load stays. Else time goes on, at most to `until` (s), and no further than to the load at which the next thing
+/// One step. Where something is due at the present load (the worst bonded column fails, a tip grows; in the order that
+/// fracture.order says) it happens, and the load stays. Else time goes on, at most to `until` (s), and no further than to the load at which the next thing
 /// happens: growth where J or the energy released over a finite increment reaches J_c of the rock ahead, failure where
 /// an interface's strength is reached. Throws NumericalFailure where there is no equilibrium: parts of the block move
 /// freely.

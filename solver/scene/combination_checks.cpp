@@ -20,6 +20,12 @@ void check_explicit(const Scene& scene, const Positions& positions, Faults& faul
            "but mechanics = \"explicit\".",
            "Use growth = \"J\" or \"none\".");
   }
+  if (scene.fracture && scene.fracture->order == Fracture::Order::larger_margin) {
+    refuse("fracture.order",
+           "fracture.order = \"larger_margin\" asks what goes first at one load and needs mechanics = \"quasistatic\", "
+           "but mechanics = \"explicit\", where either takes its time.",
+           "Use order = \"interfaces\".");
+  }
   if (scene.fluid.law == Fluid::Law::reynolds) {
     refuse("fluid.law",
            "fluid.law = \"reynolds\" is solved together with the rock's equilibrium and needs mechanics = "

@@ -265,6 +265,12 @@ std::vector<Key> fracture_keys() {
           +[](Scene& s, std::size_t) -> std::optional<double>& { return s.fracture->crossing_increment_m; },
           "Length over which the energy of crossing is released; by default increment_m."),
       word(
+          "fracture.order",
+          {as("interfaces", Fracture::Order::interfaces), as("larger_margin", Fracture::Order::larger_margin)},
+          [](Scene& s, std::size_t) -> Fracture::Order& { return s.fracture->order; },
+          "What goes first where an interface fails and a tip grows at one load: interfaces, until nothing more fails, "
+          "or whichever is further beyond its strength (without inertia)."),
+      word(
           "fracture.faces", {as("contact", Fracture::Faces::contact), as("free", Fracture::Faces::free)},
           [](Scene& s, std::size_t) -> Fracture::Faces& { return s.fracture->faces; },
           "Where the fracture closes its faces meet, or they pass through each other as rock does not: to see what "

@@ -107,14 +107,16 @@ bool weighs_growth(const Scene& scene) {
 }
 
 // Bytes without inertia, of a point and of n log n of n unknowns: that of bodies which are factored anew on the way is
-// smaller, since what the first one left serves the others.
+// smaller, since what the first one left serves the others; where trials of a path that turns have other points, they
+// have bodies of their own.
 struct Bytes {
   double point, factor;
 };
 
 Bytes bytes_of(const Scene& scene) {
-  if (!may_turn(scene)) return {weighs_growth(scene) ? 1000.0 : 330.0, 705.0};
-  return {refines_ahead(scene) ? 800.0 : 1090.0, 475.0};
+  const bool weighs = weighs_growth(scene);
+  if (!may_turn(scene)) return weighs ? Bytes{1000.0, 820.0} : Bytes{330.0, 705.0};
+  return {refines_ahead(scene) ? 800.0 : 1090.0, weighs ? 1200.0 : 475.0};
 }
 
 }  // namespace

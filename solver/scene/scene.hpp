@@ -128,6 +128,7 @@ struct Fracture {
   enum class Growth { none, J, energy };
   enum class Direction { straight, max_hoop };
   enum class Crossing { J, energy };
+  enum class Order { interfaces, larger_margin };
   enum class Faces { contact, free };
   std::vector<std::array<double, 2>> path_m;  // an end on the symmetry line comes first
   Growth growth = Growth::J;
@@ -136,6 +137,7 @@ struct Fracture {
   Direction direction = Direction::straight;
   Crossing crossing = Crossing::energy;
   std::optional<double> crossing_increment_m;  // absent: increment_m
+  Order order = Order::interfaces;
   Faces faces = Faces::contact;
 
   double crossing_increment() const { return crossing_increment_m.value_or(increment_m); }

@@ -134,7 +134,7 @@ TEST_CASE("Memory needed grows with the particles, more so with a factor, and le
   scene.fracture->path_m = {{30.0, 0.0}, {30.0, 5.0}};
   CHECK(memory_need(scene) == Approx(process + 330.0 * points + 705.0 * n + dense(jumps)));
   scene.fracture->crossing = Fracture::Crossing::energy;
-  CHECK(memory_need(scene) == Approx(process + 1000.0 * points + 705.0 * n + dense(jumps)));
+  CHECK(memory_need(scene) == Approx(process + 1000.0 * points + 820.0 * n + dense(jumps)));
   CHECK(weighed == Approx(memory_need(scene) + 1250.0 * points));
   scene.fracture->crossing = Fracture::Crossing::J;
   CHECK_FALSE(too_large(scene, memory_need(scene)).has_value());
@@ -148,6 +148,8 @@ TEST_CASE("Memory needed grows with the particles, more so with a factor, and le
   CHECK(memory_need(scene) == Approx(process + 1090.0 * 4.0 * points + 475.0 * n + dense(jumps)));
   scene.laws[scene.strata.interfaces[0].law].kind = InterfaceLaw::Kind::soft;
   CHECK(memory_need(scene) == Approx(process + 1090.0 * 4.0 * points + 475.0 * n + dense(6.0 * 2.0 * along)));
+  scene.fracture->crossing = Fracture::Crossing::energy;
+  CHECK(memory_need(scene) == Approx(process + 1090.0 * 4.0 * points + 1200.0 * n + dense(6.0 * 2.0 * along)));
   CHECK(available_memory() > 1e6);
 }
 

@@ -13,7 +13,7 @@ MECHANICS: tuple[str, ...] = ("explicit", "quasistatic")
 STUDY_VARIANTS: tuple[str, ...] = ("perfect", "friction", "weak", "soft", "weak_soft", "soft_weak")
 
 # Keys with values, as (table, key, value), that only quasi-static runs have.
-QUASISTATIC_ONLY = (("fluid", "law", "reynolds"), ("fracture", "crossing", "energy"))
+QUASISTATIC_ONLY = (("fluid", "law", "reynolds"), ("fracture", "growth", "energy"), ("fracture", "order", "larger_margin"))
 
 
 @lru_cache(maxsize=None)

@@ -30,7 +30,7 @@ cell_m = 1.0
 [variants.flow]
 fluid.law = "reynolds"
 [variants.energy]
-fracture.crossing = "energy"
+fracture.growth = "energy"
 [variants.graded]
 numerics.far_cell_m = 5.0
 [variants.undamped]

@@ -40,3 +40,11 @@ def test_restart_converges_to_the_reference_with_a_fixed_increment(increment_m: 
 def test_restart_with_increments_of_a_cell_does_not() -> None:
     """At 0.5 m the shorter increment asks for more pressure than the fixed one, and later arrests come with 0.25 m."""
     assert net_restart_Pa(0.5, 0.5) > 1.05 * net_restart_Pa(0.5, 1.0)
+
+
+@pytest.mark.parametrize(("variant", "arrested"), [("uniform_weak", True), ("uniform_larger_margin_weak", False)])
+def test_what_goes_first_on_arrival_decides_under_an_even_pressure(variant: str, arrested: bool) -> None:
+    """A tip that arrives by itself is further beyond J_c (1.4 at 10 m) than the interface beyond its strength (1.1): it
+    goes on unless the interface answers first."""
+    run = completed(SCENE, variant, ("numerics.mechanics=quasistatic",))
+    assert [event.kind for event in run.summary.events if event.kind in ("arrest", "restart")] == ["arrest", "restart"] * arrested
