@@ -26,6 +26,7 @@ from reports.verdicts import ClaimRow, claim_rows, counts, mechanics_of_rows
 from reports.words import listed, mechanics_name, metres, mpa, number, plain, setting, share
 from verification.harness.choices import Point
 from verification.harness.claim_data import ClaimResult
+from verification.harness.scenes import MECHANICS
 
 COPIED: tuple[str, ...] = ("scene.toml", "summary.json", "history.csv")
 
@@ -92,7 +93,7 @@ def context(runs: list[Run], claims: list[ClaimResult], figures: list[Made], poi
         "both": len(mechanics_in(runs)) > 1,
         "compared": [comparison_row(row) for row in compared],
         "inertia": inertia_words(compared),
-        "sensitivity": sensitivity(claims, points),
+        "sensitivity": sensitivity([claim for claim in claims if claim.mechanics in MECHANICS], points),
         "symbols": SYMBOLS,
         "headline": headline(runs, tally),
         "sections": sections,

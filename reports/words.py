@@ -89,8 +89,9 @@ _MECHANICS_NAMES: dict[str, str] = {"explicit": "explicit", "quasistatic": "quas
 
 
 def mechanics_name(mechanics: str) -> str:
-    """A mechanics as words."""
-    return _MECHANICS_NAMES.get(mechanics, mechanics)
+    """A mechanics as words, with the size of cells where one follows."""
+    name, space, cells = mechanics.partition(" ")
+    return _MECHANICS_NAMES.get(name, name) + space + cells
 
 
 def split_unit(key: str) -> tuple[str, float, str]:

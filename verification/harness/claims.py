@@ -3,7 +3,9 @@
 A claim is reproduced when all its cases hold, "only under a variant" when they do not but those of one of its readings do.
 Readings are written in the scene, or follow from a choice of experiments/choices/points.toml by which other variants stand for
 those that the cases name.
-usage: python3 -m verification.harness.claims [--experiments DIR] [--runs DIR] [--out FILE]
+Beside the runs of the scenes as they are stand those of cells of half the size (`ci/reproduce --cell 0.5`), or what was recorded of
+them: experiments/expected/claims_0.5m.json, written by --record.
+usage: python3 -m verification.harness.claims [--experiments DIR] [--runs DIR] [--out FILE] [--record]
 """
 from __future__ import annotations
 
@@ -19,15 +21,15 @@ from typing import Any
 from verification.harness.choices import Choice, read_points
 from verification.harness.claim_data import (
     BY_J, CONFIRMED, CONTRADICTED, NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, Case, CaseResult, ClaimResult,
-    Reading, write_claims,
+    Reading, read_claims, write_claims,
 )  # fmt: skip
 from verification.harness.load import OF_SPEEDS, LoadError, Run, load
 from verification.harness.observables import OBSERVABLES, Measured, measure
 from verification.harness.paths import EXPERIMENTS, RUNS
 from verification.harness.scenes import MECHANICS, mechanics_of, read_scene, scenes_of
 
-# Where `ci/reproduce --cell 0.5` puts its runs, below the others.
-FINER = Path("set") / "0.5m"
+# Where `ci/reproduce --cell 0.5` puts its runs, below the others; what is written of them, below the experiments.
+FINER, FINER_RECORD, CELLS = Path("set") / "0.5m", Path("expected") / "claims_0.5m.json", "0.5 m"
 
 # Keys of a case that are not parameters of its observable.
 CASE_KEYS = ("observable", "variant", "against", "against_scene", "at_least", "at_most")
@@ -206,22 +208,30 @@ def evaluate_each(experiments: Path, root: Path) -> list[ClaimResult]:
     """Evaluate the claims in each mechanics that has runs below root/MECHANICS/ (in the first where none has)."""
     present = [mechanics for mechanics in MECHANICS if (root / mechanics).is_dir()] or [MECHANICS[0]]
     results = {mechanics: evaluate_all(experiments, root / mechanics, mechanics) for mechanics in present}
-    for mechanics in present:
-        if (root / FINER / mechanics).is_dir():
-            finer = {result.id: result for result in evaluate_all(experiments, root / FINER / mechanics, mechanics)}
-            results[mechanics] = [beside(result, finer[result.id]) for result in results[mechanics]]
     if set(MECHANICS) <= set(results):
         by_energy = {result.id: result for result in results["quasistatic"]}
         results["explicit"] = [confirmed(result, by_energy[result.id]) for result in results["explicit"]]
-    return [result for mechanics in present for result in results[mechanics]]
+    finer = finer_of(experiments, root) or read_claims(experiments / FINER_RECORD)
+    return [result for mechanics in present for result in results[mechanics]] + finer
 
 
-def beside(result: ClaimResult, finer: ClaimResult) -> ClaimResult:
-    """A claim with a flag that says what cells of 0.5 m make of it."""
-    if finer.verdict == NOT_EVALUATED:
-        return result
-    word = "the same" if finer.verdict == result.verdict else finer.verdict
-    return replace(result, flags=(f"with cells of 0.5 m: {word}", *result.flags))
+def finer_of(experiments: Path, root: Path) -> list[ClaimResult]:
+    """The claims evaluated on runs with cells of 0.5 m, without readings; what was not run is left out."""
+    found = [
+        replace(result, mechanics=f"{mechanics} {CELLS}", readings=())
+        for mechanics in MECHANICS if (root / FINER / mechanics).is_dir()
+        for result in evaluate_all(experiments, root / FINER / mechanics, mechanics)
+    ]
+    return [result for result in found if result.verdict != NOT_EVALUATED]
+
+
+def record_finer(experiments: Path, root: Path) -> Path:
+    """Write what runs with cells of 0.5 m make of the claims; each says which version of the solver ran."""
+    versions = sorted({load(path.parent).summary.version for path in (root / FINER).glob("*/*/*/summary.json")})
+    words = f"recorded by strata {' and '.join(versions)}"
+    results = [replace(result, flags=(words, *result.flags)) for result in finer_of(experiments, root)]
+    write_claims(results, experiments / FINER_RECORD)
+    return experiments / FINER_RECORD
 
 
 def confirmed(result: ClaimResult, by_energy: ClaimResult) -> ClaimResult:
@@ -246,13 +256,16 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--experiments", type=Path, default=EXPERIMENTS)
     parser.add_argument("--runs", type=Path, default=RUNS)
     parser.add_argument("--out", type=Path, help="default: claims.json among the runs")
+    parser.add_argument("--record", action="store_true", help=f"write EXPERIMENTS/{FINER_RECORD} from the runs with cells of 0.5 m")
     options = parser.parse_args(arguments)
+    if options.record:
+        print(f"recorded: {record_finer(options.experiments, options.runs)}")
     results = evaluate_each(options.experiments, options.runs)
     out = options.out or options.runs / "claims.json"
     write_claims(results, out)
     for result in results:
         flags = f"  [{'; '.join(result.flags)}]" if result.flags else ""
-        print(f"{result.mechanics:11} {result.id}  {result.verdict}{flags}")
+        print(f"{result.mechanics:17} {result.id}  {result.verdict}{flags}")
     print(f"claims: {out}")
     return 0
 

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ from verification.harness.choices import Choice
 from verification.harness.claim_data import (
     BY_J, CONFIRMED, CONTRADICTED, NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, read_claims, write_claims,
 )  # fmt: skip
-from verification.harness.claims import BadClaim, Runs, case_of, claims_of, evaluate, evaluate_all, evaluate_each
+from verification.harness.claims import BadClaim, Runs, case_of, claims_of, evaluate, evaluate_all, evaluate_each, record_finer
 from verification.harness.paths import EXPERIMENTS
 from verification.tests.fake_run import climb, write_run
 
@@ -268,3 +269,21 @@ def test_J_at_an_interface_is_confirmed_or_contradicted_by_energy(tmp_path: Path
     explicit, quasistatic = evaluate_each(folder, tmp_path / "runs")
     assert (explicit.mechanics, quasistatic.mechanics) == ("explicit", "quasistatic")
     assert explicit.flags == (word,) and quasistatic.flags == ()
+
+
+def test_cells_of_half_the_size_have_verdicts_of_their_own_run_or_recorded(tmp_path: Path) -> None:
+    folder, runs = tmp_path / "scenes", tmp_path / "runs"
+    folder.mkdir()
+    case = "{variant = 'weak', interface = 1, at_least = 5e4}"
+    (folder / "exp.toml").write_text(
+        f"[variants.weak]\n[[claim]]\nid = 'x'\ntext = 't'\nwhy = 'w'\nobservable = 'plateau_Pa'\ncase = [{case}]\n"
+    )
+    write(runs / "quasistatic", "weak", 0.0, mechanics="quasistatic")
+    write(runs / "set" / "0.5m" / "quasistatic", "weak", 0.2, mechanics="quasistatic")
+    at_1_m, at_half = evaluate_each(folder, runs)
+    assert (at_1_m.verdict, at_half.verdict, at_half.mechanics) == (NOT_REPRODUCED, REPRODUCED, "quasistatic 0.5 m")
+    record_finer(folder, runs)
+    shutil.rmtree(runs / "set")
+    _, recorded = evaluate_each(folder, runs)
+    assert (recorded.verdict, recorded.cases) == (at_half.verdict, at_half.cases)
+    assert recorded.flags[0].startswith("recorded by strata")
