@@ -62,7 +62,7 @@ void rebuild_total(const Scene& scene, const std::vector<Elasticity>& rocks, boo
   RecordVelocities before{state.copies, state.total.velocity};
   rebuild(scene, rocks, state);
   if (grown) open_new_points(scene, rocks, state);
-  carry_velocities(before, state);
+  carry_velocities(scene, before, state);
   start_base(scene, rocks, state);
   recount_kinetic(state);
   state.ledger.interface_strain = spring_energy(scene, state);

@@ -1,6 +1,8 @@
 #include "mechanics/total_base.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <unordered_map>
 
 #include "mechanics/explicit_step.hpp"
 #include "mechanics/surface_tractions.hpp"
@@ -193,7 +195,45 @@ double note_body_work(const BodyPush& push, State& state) {
   return power;
 }
 
-void carry_velocities(const RecordVelocities& before, State& state) {
+namespace {
+
+// Gives copies in which several of before have come together the mean of these, by what their particles weigh there.
+void mix_velocities(const Scene& scene, const RecordVelocities& before, State& state) {
+  std::vector<Vec2>& v = state.total.velocity;
+  const auto was_cut = [&](int record) {
+    const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
+    return before.copies.cut_of_node[static_cast<std::size_t>(node)] >= 0;
+  };
+  std::vector<Bin> near;
+  std::ranges::copy_if(state.bins, std::back_inserter(near),
+                       [&](const Bin& bin) { return std::ranges::any_of(bin.record, was_cut); });
+  struct Mean {
+    Vec2 momentum = Vec2::Zero();
+    double m = 0.0;
+    bool mixed = false;
+  };
+  std::unordered_map<int, Mean> means;
+  for_each_particle(scene, state, near, [&](const Bin& bin, std::size_t q, const Gradients& g) {
+    for (std::size_t n = 0; n < 9; ++n) {
+      const int record = bin.record[n];
+      if (!was_cut(record)) continue;
+      const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
+      const int old = record_of(before.copies, node, state.particles.sides[q]);
+      const Vec2& own = old >= 0 ? before.v[static_cast<std::size_t>(old)] : v[static_cast<std::size_t>(record)];
+      const double m = state.particles.m[q] * g.N[n];
+      Mean& mean = means[record];
+      mean.momentum += m * own, mean.m += m;
+      mean.mixed = mean.mixed || own != v[static_cast<std::size_t>(record)];
+    }
+  });
+  for (const auto& [record, mean] : means) {
+    if (mean.mixed && mean.m > 0.0) v[static_cast<std::size_t>(record)] = mean.momentum / mean.m;
+  }
+}
+
+}  // namespace
+
+void carry_velocities(const Scene& scene, const RecordVelocities& before, State& state) {
   std::vector<Vec2>& v = state.total.velocity;
   v.assign(state.masters.size(), Vec2::Zero());
   for (std::size_t node = 0; node < state.copies.cut_of_node.size(); ++node) {
@@ -209,6 +249,7 @@ void carry_velocities(const RecordVelocities& before, State& state) {
     const CutNode& cut = state.copies.cut[static_cast<std::size_t>(c)];
     for (std::size_t k = 0; k < cut.keys.size(); ++k) v[static_cast<std::size_t>(cut.records[k])] = old(cut.keys[k]);
   }
+  mix_velocities(scene, before, state);
 }
 
 void recount_kinetic(State& state) {

@@ -42,10 +42,10 @@ struct RecordVelocities {
   std::vector<Vec2> v;  // m/s
 };
 
-/// Gives the records of new copies their velocities: those of the same node and key before or, where a copy has split,
-/// of the copy it was part of. Where the copies of a node share out its mass anew, momentum is thereby kept exactly
-/// if the new ones split off the old ones' mass.
-void carry_velocities(const RecordVelocities& before, State& state);
+/// Gives the records of new copies their velocities: those of the same node and key before; where a copy has split, of
+/// the copy it was part of; where several have come together, their mean by the mass of the particles that each brings.
+/// Momentum is thereby kept to round-off.
+void carry_velocities(const Scene& scene, const RecordVelocities& before, State& state);
 
 /// Ledger and nodal kinetic energy after an event: what the nodes lost (or gained) by it counts as lost in transfer.
 void recount_kinetic(State& state);
