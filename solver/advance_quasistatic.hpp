@@ -34,10 +34,10 @@ void restart_quasistatic(const Scene& scene, const std::vector<Elasticity>& rock
 bool failure_due(const Quasistatic& run);
 
 /// One step. Where something is due at the present load (the worst bonded column fails, a tip grows; in the order that
-/// fracture.order says) it happens, and the load stays. Else time goes on, at most to `until` (s), and no further than to the load at which the next thing
-/// happens: growth where J or the energy released over a finite increment reaches J_c of the rock ahead, failure where
-/// an interface's strength is reached. Throws NumericalFailure where there is no equilibrium: parts of the block move
-/// freely.
+/// fracture.order says) it happens, and the load stays. Else time goes on, at most to `until` (s), and no further than
+/// to the load at which the next thing happens: growth where J or the energy released over a finite increment reaches
+/// J_c of the rock ahead, failure where an interface's strength is reached. Throws NumericalFailure where there is no
+/// equilibrium: parts of the block move freely.
 void advance_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, double until, State& state,
                          Quasistatic& run);
 
