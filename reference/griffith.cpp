@@ -78,7 +78,7 @@ std::vector<PressureSegment> PressureKnots::segments(double a) const {
   return all;
 }
 
-PressurisedCrack::PressurisedCrack(double half_length, double E_prime, Function p, std::vector<double> kinks)
+PressurisedCrack::PressurisedCrack(double half_length, double E_prime, Function p, const std::vector<double>& kinks)
     : a_(half_length), E_prime_(E_prime), p_(std::move(p)) {
   check_crack(half_length, E_prime);
   for (double kink : kinks)

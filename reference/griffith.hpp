@@ -47,7 +47,7 @@ class PressurisedCrack {
  public:
   // half_length a (m) > 0; E_prime (Pa) > 0; p(x) in Pa on [-a, a]; kinks: places (m) where p is not smooth.
   // Throws std::invalid_argument for a half-length or modulus that is not positive.
-  PressurisedCrack(double half_length, double E_prime, Function p, std::vector<double> kinks = {});
+  PressurisedCrack(double half_length, double E_prime, Function p, const std::vector<double>& kinks = {});
 
   // K(+-a) = (pi a)^(-1/2) int p(s) sqrt((a +- s)/(a -+ s)) ds, Pa sqrt(m) (Tada et al.).
   TipIntensities K_I() const;

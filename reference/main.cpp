@@ -50,7 +50,7 @@ Json solution(const Entry& entry, const Inputs& inputs) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   CLI::App app{"Analytic and semi-analytic reference values as JSON. Without a NAME: the list of them.",
                "strata-reference"};
   std::string name;
@@ -83,4 +83,7 @@ int main(int argc, char** argv) {
     std::cerr << "numerics failed: " << problem.what() << '\n';
     return 3;
   }
+} catch (const std::exception& problem) {
+  std::cerr << "a bug: " << problem.what() << '\n';
+  return 1;
 }

@@ -114,7 +114,7 @@ TEST_CASE("a kink or jump of the pressure costs no accuracy") {
     CHECK(crack.field(1, -2).s_yy == near(sampled.field(1, -2).s_yy, tolerance));
     // Reciprocity with uniform pressure: int p w_1 = p_1 V.
     const BondedCrack even(geometry, stiff, soft, uniform);
-    const auto work = [&](double s) { return knots(s) * even.line().jump(s)(0); };
+    const auto work = [&, &knots = knots](double s) { return knots(s) * even.line().jump(s)(0); };
     CHECK(crack.line().volume() == near(integrate(work, -5, 5, knots.x, 1e-8).value / p0, 1e-7));
   }
 }

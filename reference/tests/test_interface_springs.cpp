@@ -134,7 +134,7 @@ TEST_CASE("displacement discontinuities over crack and interface give the same K
   // what is left of their error on crack and interface is extrapolated from one halving of each.
   const std::pair<double, double> stiffnesses[] = {{0.1, 0.1}, {1.0, 1.0}, {0.05, 0.8}, {2.0, 0.1}};
   for (const auto& [normal, shear] : stiffnesses) {
-    const auto K = [&](int crack, int interface) {
+    const auto K = [normal = normal, shear = shear](int crack, int interface) {
       return tip_opening(normal / 5, shear / 5, crack, interface) / tip_opening(0, 0, crack, 0);
     };
     const double coarse = K(60, 50);

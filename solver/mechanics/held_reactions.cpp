@@ -131,11 +131,13 @@ bool let_go(const std::vector<Held>& held, State& state, TotalSurfaces& surfaces
     const InterfaceLaw& law = surfaces.laws[place.law];
     SurfacePoint& s = point_of(state, place);
     const Vec2 tangent = tangent_of(s.n);
-    const Reaction now{s.reaction.dot(s.n), s.reaction.dot(tangent)}, allowed = admissible(law, now);
-    const bool opens = law.kind == Kind::soft && now.n < 0.0 && h.compliance == 1.0 / place.k;  // on to its spring
-    if (!opens && allowed.n == now.n && allowed.t == now.t) continue;
-    any = true;
-    if (!opens) add_reaction(place, allowed.n * s.n + allowed.t * tangent - s.reaction, s, surfaces);
+    const Reaction now{s.reaction.dot(s.n), s.reaction.dot(tangent)};
+    Reaction allowed = admissible(law, now);
+    const bool parts = law.kind == Kind::soft && now.n < 0.0 && h.compliance == 1.0 / place.k;
+    if (parts && law.normal_stiffness_Pa_m == 0.0) allowed.n = 0.0;  // else on to its spring
+    const bool beyond = allowed.n != now.n || allowed.t != now.t;
+    any = any || parts || beyond;
+    if (beyond) add_reaction(place, allowed.n * s.n + allowed.t * tangent - s.reaction, s, surfaces);
   }
   return any;
 }
