@@ -76,7 +76,6 @@ Answer motion_answer(const Inputs& inputs, bool finite, const std::function<Moti
   Answer answer;
   const auto add = [&](const Field& field) {
     std::vector<double> values;
-    values.reserve(found.size());
     for (const MotionAt& point : found) values.push_back(field.pick(point));
     answer.values.push_back({field.name, one ? InputValue(values.front()) : InputValue(values), field.unit});
   };

@@ -153,8 +153,8 @@ void BlockCrack::solve(int terms) {
       target(row + 1) = point.weight * residual[1];
     };
     for (int k = 0; k < terms; ++k) {
-      const Jet even = q[2 * static_cast<std::size_t>(k)] * root;
-      const Jet odd = q[2 * static_cast<std::size_t>(k) + 1];
+      const Jet even = q[static_cast<std::size_t>(2 * k)] * root;
+      const Jet odd = q[static_cast<std::size_t>(2 * k + 1)];
       put(field_of(even, {}, point.Z, kappa_), A.col(k));
       put(field_of({}, odd, point.Z, kappa_), A.col(terms + k));
     }

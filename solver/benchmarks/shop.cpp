@@ -51,7 +51,7 @@ void time_work(benchmark::State& bench, Shop& shop, const About& about, const st
   omp_set_num_threads(about.threads);
   const Rates before = shop.rates(about.threads);
   work();
-  for (auto _ : bench) work();
+  for ([[maybe_unused]] auto _ : bench) work();
   tell(bench, about, before, shop.rates(about.threads));
 }
 
@@ -59,7 +59,7 @@ void time_part(benchmark::State& bench, Shop& shop, const About& about, const st
   omp_set_num_threads(about.threads);
   const Rates before = shop.rates(about.threads);
   work();
-  for (auto _ : bench) bench.SetIterationTime(work());
+  for ([[maybe_unused]] auto _ : bench) bench.SetIterationTime(work());
   tell(bench, about, before, shop.rates(about.threads));
 }
 

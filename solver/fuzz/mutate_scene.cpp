@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <random>
 #include <string>
 #include <string_view>
@@ -79,7 +78,7 @@ std::size_t written(const std::vector<std::string>& lines, std::uint8_t* out, st
   std::string text;
   for (const std::string& line : lines) text += line + '\n';
   const std::size_t size = std::min(text.size(), most);
-  std::memcpy(out, text.data(), size);
+  std::copy_n(text.begin(), size, out);
   return size;
 }
 

@@ -297,7 +297,7 @@ std::string text_attribute(Id parent, const std::string& name, const std::string
   const Handle type = text_type();
   char* text = nullptr;
   checked(H5Aread(from.id(), type.id(), &text), name, "be read");
-  const std::string value = text;
+  std::string value = text;
   H5free_memory(text);
   return value;
 }

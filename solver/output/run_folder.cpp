@@ -89,7 +89,7 @@ FolderLock make_run_folder(const std::filesystem::path& path) {
 }
 
 RunFolder clear_run_folder(const std::filesystem::path& path, bool replace) {
-  const RunFolder folder{path};
+  RunFolder folder{path};
   for (const auto& file : files_of(folder)) {
     std::error_code error;
     if (!replace && std::filesystem::exists(file, error)) {
