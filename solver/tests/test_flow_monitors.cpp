@@ -40,7 +40,6 @@ struct Bench {
   }
 };
 using Names = std::vector<std::string>;
-const Names none;
 
 }  // namespace
 
@@ -94,7 +93,7 @@ TEST_CASE("a flow is judged by what it was at growth") {
   bench.points[0].P = 3e6, bench.points[1].P = 1e6;
   watch_flow(bench.run.scene, state);
   CHECK(m.flow_fall == Approx(1.0));
-  CHECK(bench.marks() == none);  // nothing has grown
+  CHECK(bench.marks() == Names{});  // nothing has grown
   bench.points[0].P = bench.points[1].P = 5e6;
   watch_flow(bench.run.scene, state);
   CHECK(m.flow_fall == (by_rate ? Approx(0.0) : Approx(1.0)));

@@ -26,7 +26,6 @@ std::vector<std::string> marks(const Run& run) {
   return names;
 }
 using Names = std::vector<std::string>;
-const Names none;
 
 // Of a load that is fast on purpose.
 Names marks_but_loading(const Run& run) {
@@ -115,7 +114,7 @@ TEST_CASE("a time step beyond its limit is marked") {
     look(sound);
   }
   CAPTURE(sound.state.monitors.largest_made_J, sound.state.ledger.largest);
-  CHECK(marks_but_loading(sound) == none);
+  CHECK(marks_but_loading(sound) == Names{});
   scene.numerics.courant = 1.75;
   Run beyond(scene);
   look(beyond);
@@ -123,7 +122,7 @@ TEST_CASE("a time step beyond its limit is marked") {
   scene.numerics.courant = beyond_free_edges(kinematics);
   Run wild(scene);
   look(wild);
-  CHECK(marks_but_loading(wild) == none);
+  CHECK(marks_but_loading(wild) == Names{});
   for (int k = 0; k < 40 && marks_but_loading(wild).empty(); ++k) {
     wild.advance(1);
     look(wild);
@@ -158,7 +157,7 @@ TEST_CASE("a block that swings freely makes no energy") {
           sound.state.ledger.integration);
   CHECK(most - least > 0.01 * sound.state.ledger.largest);
   CHECK(made < (kinematics == Numerics::Kinematics::total ? 1e-12 : 1e-4));
-  CHECK(marks(sound) == none);
+  CHECK(marks(sound) == Names{});
   scene.numerics.courant = beyond_free_edges(kinematics);
   Run wild(scene);
   look(wild);
