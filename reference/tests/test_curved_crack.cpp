@@ -52,7 +52,7 @@ std::vector<Point> arc(double half_angle, int pieces) {
 class KinkedByQuadrature {
  public:
   KinkedByQuadrature(Point from, Point kink, Point to, int n)
-      : from_(from), kink_(kink), to_(to), n_(n), middle_((static_cast<double>(n / 2) + 0.25) * pi / n) {
+      : from_(from), kink_(kink), to_(to), n_(n), middle_((0.5 * (n - n % 2) + 0.25) * pi / n) {
     Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 * n, 2 * n);
     Eigen::VectorXd b = Eigen::VectorXd::Zero(2 * n);
     for (int k = 1; k < n; ++k) {

@@ -174,7 +174,7 @@ TEST_CASE("a row that the disc refuses is not half there; a history that is gone
   HistoryWriter writer(file);
   writer.append(HistoryRow{});
   const std::string before = content_of(file);
-  for (const std::uint64_t more : {0, 1, 20, 40}) {
+  for (const std::uint64_t more : std::initializer_list<std::uint64_t>{0, 1, 20, 40}) {
     const Limit limit(before.size() + more);
     CHECK_THROWS_WITH(writer.append(HistoryRow{}), Catch::Contains("history.csv: cannot be written"));
     CHECK(content_of(file) == before);

@@ -286,7 +286,7 @@ TEST_CASE("sudden growth leaves empty cells that fill") {
 TEST_CASE("a step of any length after growth") {
   int steps = 0, iterations = 0, most = 0;
   for (const double mu : {1e-5, 1e-4, 1e-3, 1e-2, 0.1, 10.0}) {
-    for (const std::size_t n : {3, 4, 5, 8, 20}) {
+    for (const std::size_t n : std::initializer_list<std::size_t>{3, 4, 5, 8, 20}) {
       for (const double floor : {0.0, 1e-5, 1e-4}) {
         Fluid fluid = study_fluid(floor);
         fluid.viscosity_Pa_s = mu;
