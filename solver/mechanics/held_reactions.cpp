@@ -145,7 +145,7 @@ bool let_go(const std::vector<Held>& held, State& state, TotalSurfaces& surfaces
 }  // namespace
 
 void solve_held_reactions(State& state, TotalSurfaces& surfaces) {
-  constexpr int most_rounds = 8;
+  constexpr int most_rounds = 8;  // bounds the work of a step: sweeps go on from what is then held
   for (int round = 0; round < most_rounds; ++round) {
     const std::vector<Held> held = find_held(state, surfaces);
     if (held.empty() || !solve(held, state, surfaces) || !let_go(held, state, surfaces)) return;

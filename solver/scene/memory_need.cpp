@@ -136,7 +136,7 @@ double memory_need(const Scene& scene) {
   const double share = mirror_symmetric(scene) && !inertia ? 1.0 : 2.0;
   const double n = 2.0 * (0.5 * cells.x * share + 1.0) * (cells.y + 1.0);
   // Factors by nested dissection fill up as n log n (George 1973); jumps have some dense matrices. Fitted to the peaks
-  // of all variants of the experiments: 42 to 110 MB at 1 m cells, 187 to 1369 MB at 0.25 m.
+  // of all variants of the experiments: 30 to 173 MB at 1 m cells, 187 to 1369 MB at 0.25 m.
   const Bytes bytes = bytes_of(scene);
   const double dense = 28.0 * std::pow(jumps_of(scene, cells) * (inertia && mirror_symmetric(scene) ? 2.0 : 1.0), 2);
   return 20e6 + moving + points * bytes.point + bytes.factor * n * std::log2(n) + dense;
