@@ -13,16 +13,18 @@
 #include <optional>
 #include <vector>
 
-#include "advance.hpp"
-#include "advance_monitors.hpp"
-#include "advance_quasistatic.hpp"
-#include "advance_total.hpp"
+#include "explicit/advance.hpp"
+#include "explicit/total/advance_total.hpp"
+#include "force_balance.hpp"
 #include "initialise.hpp"
+#include "interfaces/monitors.hpp"
 #include "output/changed_scene.hpp"
 #include "output/closing_lines.hpp"
 #include "output/progress.hpp"
 #include "output/recorder.hpp"
 #include "output/summary.hpp"
+#include "quasistatic/load_steps.hpp"
+#include "quasistatic/resting_rock.hpp"
 #include "scene/memory_need.hpp"
 #include "scene/time_need.hpp"
 #include "scene/toml_reader.hpp"
@@ -101,7 +103,7 @@ struct Run {
   double particle_steps = 0.0;
   double last_output = -1.0;           // time of the last output (s)
   std::optional<Quasistatic> statics;  // of a run without inertia
-  Resting resting;                     // of one with inertia
+  WeighGrowth weigh;                   // of one with inertia
 };
 
 void add_stop_event(State& state) {
@@ -175,7 +177,7 @@ void step_and_record(Run& run, double interval) {
   if (run.statics) {
     advance_quasistatic(run.scene, run.rocks, next_stop(run, interval), run.state, *run.statics);
   } else {
-    advance(run.scene, run.rocks, run.state, run.resting, row_follows(run, interval));
+    advance(run.scene, run.rocks, run.state, run.weigh, row_follows(run, interval));
   }
   run.particle_steps += static_cast<double>(run.state.particles.size());
   const double slack = run.statics ? 1e-9 * interval : 0.5 * run.state.dt;
@@ -200,7 +202,7 @@ void keep_if_sound(Run& run) {
   run.good = run.state;
   run.good_mark = run.recorder.mark();
   if (run.statics) restart_quasistatic(run.scene, run.rocks, run.state, *run.statics);  // as a resumed run starts
-  run.resting.reset();
+  run.weigh = growth_weighing(run.scene, run.rocks);
 }
 
 // Steps from run.state to the end of the run.
@@ -365,7 +367,8 @@ int run_in(const Scene& scene, const RunOptions& options, bool replace, Clock::t
   Recorder recorder(folder);
   try {
     const State state = initialise(scene, rocks);
-    return run_from({scene, rocks, recorder, state, state, recorder.mark(), 0, 0.0, -1.0, std::nullopt, nullptr},
+    return run_from({scene, rocks, recorder, state, state, recorder.mark(), 0, 0.0, -1.0, std::nullopt,
+                     growth_weighing(scene, rocks)},
                     folder, options, start);
   } catch (const NumericalFailure& failure) {
     return fail_at_start(scene, folder, failure, start);
@@ -411,9 +414,9 @@ int resume_in(const RunFolder& folder, const RunOptions& options, Clock::time_po
     return fail_at_start(scene, folder, failure, start);
   }
   const double last_output = recorder->last_output_s();
-  return run_from(
-      {scene, rocks, *recorder, state, state, checkpoint->mark, state.step, 0.0, last_output, std::nullopt, nullptr},
-      folder, options, start);
+  return run_from({scene, rocks, *recorder, state, state, checkpoint->mark, state.step, 0.0, last_output, std::nullopt,
+                   growth_weighing(scene, rocks)},
+                  folder, options, start);
 }
 
 }  // namespace

@@ -4,11 +4,12 @@
 
 #include <vector>
 
-#include "advance.hpp"
-#include "advance_fluid.hpp"
-#include "advance_quasistatic.hpp"
 #include "benchmarks/shop.hpp"
+#include "explicit/advance.hpp"
 #include "output/recorder.hpp"
+#include "quasistatic/fluid_step.hpp"
+#include "quasistatic/load_steps.hpp"
+#include "quasistatic/resting_rock.hpp"
 
 namespace strata::bench {
 
@@ -56,7 +57,9 @@ void add_event(Shop& shop, const std::string& name, const Order& order, const st
 void add_explicit_growth(Shop& shop, const std::string& kinematics) {
   add_event(shop, "growth/explicit/" + kinematics, {"growing", {"numerics.kinematics=" + kinematics}},
             "mechanics=explicit kinematics=" + kinematics, [](const Workpiece& work, State& state) {
-              const Growth taken = grow_on(state, growths, [&] { advance(work.scene, work.rocks, state); });
+              const Growth taken = grow_on(state, growths, [&] {
+                advance(work.scene, work.rocks, state, growth_weighing(work.scene, work.rocks));
+              });
               return taken.with - taken.without;
             });
 }

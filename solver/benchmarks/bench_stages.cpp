@@ -1,15 +1,16 @@
 // The stages of an explicit step, each alone, on the block with a pressurised crack.
 #include <fmt/format.h>
 
-#include "advance.hpp"
 #include "benchmarks/shop.hpp"
+#include "explicit/advance.hpp"
+#include "explicit/interface_laws.hpp"
+#include "explicit/momentum.hpp"
+#include "explicit/transfers.hpp"
 #include "flow/paper_flow.hpp"
 #include "fracture/j_integral.hpp"
-#include "mechanics/explicit_step.hpp"
-#include "mechanics/interface_laws.hpp"
-#include "mechanics/surface_tractions.hpp"
-#include "mechanics/tip_ties.hpp"
-#include "mechanics/transfers.hpp"
+#include "interfaces/surface_tractions.hpp"
+#include "interfaces/tip_ties.hpp"
+#include "quasistatic/resting_rock.hpp"
 
 namespace strata::bench {
 
@@ -22,7 +23,7 @@ void add_stage(Shop& shop, const std::string& stage, const Order& order, int thr
                const Stage& run) {
   add(fmt::format("stage/{}/threads{}", stage, threads), iterations, [&shop, order, threads, stage, run](auto& bench) {
     Workpiece& work = shop.get(order);
-    advance(work.scene, work.rocks, work.state);
+    advance(work.scene, work.rocks, work.state, growth_weighing(work.scene, work.rocks));
     work.state.motion.clear(work.state.motion.size());
     const auto particles = static_cast<double>(work.state.particles.size());
     const About about{fmt::format("stage={} threads={}", stage, threads), threads, particles, 0.0, 0.0};
@@ -67,7 +68,8 @@ void add_contact(Shop& shop, const std::string& variant, int cells) {
     const std::size_t places = places_of(work.state);
     const About about{fmt::format("variant={} places={}", variant, places), 1, 1.0, 0.0, 0.0};
     time_part(bench, shop, about, [&] {
-      advance(work.scene, work.rocks, work.state);  // so that each solve is another step's
+      advance(work.scene, work.rocks, work.state,
+              growth_weighing(work.scene, work.rocks));  // so that each solve is another step's
       return solve_once(work);
     });
     bench.counters["places"] = static_cast<double>(places);

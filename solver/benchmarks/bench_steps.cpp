@@ -3,8 +3,9 @@
 
 #include <algorithm>
 
-#include "advance.hpp"
 #include "benchmarks/shop.hpp"
+#include "explicit/advance.hpp"
+#include "quasistatic/resting_rock.hpp"
 
 namespace strata::bench {
 
@@ -17,7 +18,7 @@ struct StepCase {
   int threads = 1;
 };
 
-// Flop that a particle asks for in a step, counted by hand on the formulas of mechanics/transfers.hpp, an addition or
+// Flop that a particle asks for in a step, counted by hand on the formulas of explicit/transfers.hpp, an addition or
 // multiplication each, divisions and comparisons none, whatever the code really does (diagnostics, padded vectors):
 //   functions of both axes      B-spline 28, uGIMP 28 (middle piece), linear 8
 //   stress and times volume     11
@@ -62,7 +63,8 @@ void add_step(Shop& shop, const std::string& group, const StepCase& c) {
     Workpiece& work = shop.get(order);
     const auto particles = static_cast<double>(work.state.particles.size());
     const About about{label, c.threads, particles, flop_a_particle(c.shape), bytes_a_particle(c.points)};
-    time_work(bench, shop, about, [&] { advance(work.scene, work.rocks, work.state, false); });
+    time_work(bench, shop, about,
+              [&] { advance(work.scene, work.rocks, work.state, growth_weighing(work.scene, work.rocks), false); });
     bench.counters["particles"] = particles;
   });
 }

@@ -1,4 +1,4 @@
-// What bonded places of interfaces carry, and how near they are to failure: see mechanics/failure.hpp.
+// What bonded places of interfaces carry, and how near they are to failure: see interfaces/failure.hpp.
 #pragma once
 
 #include <cstddef>

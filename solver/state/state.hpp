@@ -19,7 +19,7 @@
 
 namespace strata {
 
-// A spring between the two copies of a node less than a cell behind a tip (see mechanics/tip_ties.hpp).
+// A spring between the two copies of a node less than a cell behind a tip (see interfaces/tip_ties.hpp).
 struct TipTie {
   int node = 0;
   int plus = -1, minus = -1;  // records
@@ -137,7 +137,7 @@ struct State {
   // last end (see parts.hpp): a master's tied records are all in its part.
   std::vector<int> tied;
   std::vector<std::size_t> tied_of_part;
-  Bonds bonds;  // of runs with inertia, by mechanics/interface_laws.hpp
+  Bonds bonds;  // of runs with inertia, by explicit/interface_laws.hpp
   std::vector<std::vector<SurfaceStencil>> point_stencils, vertex_stencils;  // of each surface
   SpanTable x_spans, y_spans;
   NodalSums sums;

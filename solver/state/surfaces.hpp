@@ -1,5 +1,5 @@
 // Surfaces of discontinuity: the fracture and the interfaces are the same kind of polyline under different laws.
-// This is geometry and memory only; what happens on a surface is in mechanics/ and flow/.
+// This is geometry and memory only; what happens on a surface is in interfaces/ and flow/.
 #pragma once
 
 #include <vector>

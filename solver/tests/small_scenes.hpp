@@ -9,10 +9,11 @@
 #include <random>
 #include <vector>
 
-#include "advance.hpp"
+#include "explicit/advance.hpp"
+#include "explicit/total/total_base.hpp"
 #include "initialise.hpp"
-#include "mechanics/tip_ties.hpp"
-#include "mechanics/total_base.hpp"
+#include "interfaces/tip_ties.hpp"
+#include "quasistatic/resting_rock.hpp"
 #include "scene/scene.hpp"
 #include "state/elasticity.hpp"
 #include "state/state.hpp"
@@ -117,7 +118,8 @@ struct Run {
     omp_set_num_threads(threads_of_tests);
   }
   void advance(int steps) {
-    for (int k = 0; k < steps; ++k) strata::advance(scene, rocks, state);
+    const WeighGrowth weigh = [this](State& now) { growth_weighing(scene, rocks)(now); };  // keeps nothing
+    for (int k = 0; k < steps; ++k) strata::advance(scene, rocks, state, weigh);
     bring_up_to_date(scene, state);
   }
   void rebuild() { strata::rebuild(scene, rocks, state); }

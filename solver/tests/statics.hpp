@@ -2,7 +2,7 @@
 #pragma once
 
 #include "fracture/j_integral.hpp"
-#include "mechanics/quasistatic.hpp"
+#include "quasistatic/model.hpp"
 #include "small_scenes.hpp"
 
 namespace strata::test {

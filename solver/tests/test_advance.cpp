@@ -1,10 +1,10 @@
-#include "advance.hpp"
+#include "explicit/advance.hpp"
 
 #include <catch2/catch.hpp>
 
+#include "explicit/new_openings.hpp"
 #include "fracture/growth.hpp"
 #include "fracture/j_integral.hpp"
-#include "mechanics/new_openings.hpp"
 #include "output/checkpoint.hpp"
 #include "output/history.hpp"
 #include "output_state.hpp"
@@ -191,7 +191,7 @@ TEST_CASE("tips are looked at every few steps and when they run") {
       std::vector<std::int64_t> grown;
       for (int k = 0; k < 100; ++k) {
         const std::size_t points = run.state.fracture().points.size();
-        strata::advance(run.scene, run.rocks, run.state, false);
+        strata::advance(run.scene, run.rocks, run.state, growth_weighing(run.scene, run.rocks), false);
         if (run.state.fracture().points.size() > points) grown.push_back(run.state.step);
       }
       CAPTURE(static_cast<int>(kinematics), tip_steps);

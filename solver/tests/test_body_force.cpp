@@ -3,10 +3,10 @@
 
 #include <catch2/catch.hpp>
 
-#include "advance_quasistatic.hpp"
-#include "mechanics/failure.hpp"
-#include "mechanics/surface_tractions.hpp"
-#include "mechanics/transfers.hpp"
+#include "quasistatic/load_steps.hpp"
+#include "interfaces/failure.hpp"
+#include "interfaces/surface_tractions.hpp"
+#include "explicit/transfers.hpp"
 #include "output/checkpoint.hpp"
 #include "output_state.hpp"
 #include "state/rebuild.hpp"

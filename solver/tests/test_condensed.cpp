@@ -1,4 +1,4 @@
-#include "mechanics/condensed.hpp"
+#include "quasistatic/condensed.hpp"
 
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-#include "mechanics/contact_equilibrium.hpp"
+#include "quasistatic/contact_equilibrium.hpp"
 
 #include <catch2/catch.hpp>
 

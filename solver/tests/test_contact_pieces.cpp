@@ -1,4 +1,4 @@
-#include "mechanics/contact_pieces.hpp"
+#include "quasistatic/contact_pieces.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "mechanics/transfers.hpp"
+#include "explicit/transfers.hpp"
 #include "small_scenes.hpp"
 #include "state/rebuild.hpp"
 

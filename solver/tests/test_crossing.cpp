@@ -1,11 +1,11 @@
 // Tips on and near interfaces whose faces are apart.
 #include <catch2/catch.hpp>
 
-#include "advance_monitors.hpp"
-#include "advance_quasistatic.hpp"
-#include "mechanics/columns.hpp"
-#include "mechanics/failure.hpp"
-#include "mechanics/total_base.hpp"
+#include "explicit/total/total_base.hpp"
+#include "interfaces/columns.hpp"
+#include "interfaces/failure.hpp"
+#include "interfaces/monitors.hpp"
+#include "quasistatic/load_steps.hpp"
 #include "statics.hpp"
 
 using namespace strata;

@@ -1,4 +1,4 @@
-#include "mechanics/failure.hpp"
+#include "interfaces/failure.hpp"
 
 #include <catch2/catch.hpp>
 

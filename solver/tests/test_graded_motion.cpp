@@ -1,7 +1,7 @@
 // Points that move on graded grids, by every shape and transfer.
 #include <catch2/catch.hpp>
 
-#include "advance_monitors.hpp"
+#include "interfaces/monitors.hpp"
 #include "output/checkpoint.hpp"
 #include "output/suspect.hpp"
 #include "output_state.hpp"

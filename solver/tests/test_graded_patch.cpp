@@ -1,7 +1,7 @@
 // Uniform stress on graded grids: in equilibrium with loaded edges and along interfaces.
 #include <catch2/catch.hpp>
 
-#include "mechanics/surface_tractions.hpp"
+#include "interfaces/surface_tractions.hpp"
 #include "small_scenes.hpp"
 #include "state/make_grid.hpp"
 #include "state/shape_functions.hpp"

@@ -1,11 +1,11 @@
-#include "mechanics/failure.hpp"
-#include "mechanics/interface_laws.hpp"
+#include "interfaces/failure.hpp"
+#include "explicit/interface_laws.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <limits>
 
-#include "mechanics/surface_law.hpp"
+#include "interfaces/surface_law.hpp"
 #include "small_scenes.hpp"
 
 using namespace strata;

@@ -1,4 +1,5 @@
-#include "advance_monitors.hpp"
+#include "force_balance.hpp"
+#include "interfaces/monitors.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "advance_quasistatic.hpp"
+#include "explicit/interface_laws.hpp"
 #include "fracture/growth.hpp"
-#include "mechanics/interface_laws.hpp"
 #include "output/suspect.hpp"
+#include "quasistatic/load_steps.hpp"
 #include "statics.hpp"
 
 using namespace strata;

@@ -2,7 +2,7 @@
 // end with the same digits on any number of them.
 #include <catch2/catch.hpp>
 
-#include "mechanics/total_base.hpp"
+#include "explicit/total/total_base.hpp"
 #include "small_scenes.hpp"
 #include "state/parts.hpp"
 

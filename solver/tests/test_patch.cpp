@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 
-#include "mechanics/interface_laws.hpp"
-#include "mechanics/surface_tractions.hpp"
-#include "mechanics/transfers.hpp"
+#include "explicit/interface_laws.hpp"
+#include "interfaces/surface_tractions.hpp"
+#include "explicit/transfers.hpp"
 #include "small_scenes.hpp"
 
 using namespace strata;

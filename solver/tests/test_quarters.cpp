@@ -2,9 +2,9 @@
 
 #include <catch2/catch.hpp>
 
-#include "advance_monitors.hpp"
-#include "advance_quasistatic.hpp"
+#include "force_balance.hpp"
 #include "fracture/growth.hpp"
+#include "quasistatic/load_steps.hpp"
 #include "statics.hpp"
 
 using namespace strata;

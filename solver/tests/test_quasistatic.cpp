@@ -1,9 +1,9 @@
-#include "advance_quasistatic.hpp"
+#include "quasistatic/load_steps.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "advance_fluid.hpp"
+#include "quasistatic/fluid_step.hpp"
 #include "flow/paper_flow.hpp"
 #include "statics.hpp"
 

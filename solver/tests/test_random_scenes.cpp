@@ -6,9 +6,9 @@
 #include <iostream>
 #include <map>
 
-#include "advance_monitors.hpp"
-#include "advance_quasistatic.hpp"
+#include "interfaces/monitors.hpp"
 #include "output/suspect.hpp"
+#include "quasistatic/load_steps.hpp"
 #include "random_scene.hpp"
 #include "state/quarters.hpp"
 #include "statics.hpp"

@@ -1,4 +1,4 @@
-#include "mechanics/surface_law.hpp"
+#include "interfaces/surface_law.hpp"
 
 #include <catch2/catch.hpp>
 

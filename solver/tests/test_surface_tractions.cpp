@@ -1,9 +1,9 @@
-#include "mechanics/surface_tractions.hpp"
+#include "interfaces/surface_tractions.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "mechanics/explicit_step.hpp"
-#include "mechanics/transfers.hpp"
+#include "explicit/momentum.hpp"
+#include "explicit/transfers.hpp"
 #include "small_scenes.hpp"
 
 using namespace strata;

@@ -8,8 +8,8 @@
 #include <numeric>
 #include <set>
 
-#include "mechanics/sweep.hpp"
-#include "mechanics/transfers.hpp"
+#include "explicit/sweep.hpp"
+#include "explicit/transfers.hpp"
 #include "random_scene.hpp"
 #include "state/blocks.hpp"
 #include "state/spread_array.hpp"

@@ -1,4 +1,4 @@
-#include "mechanics/tangent_factor.hpp"
+#include "quasistatic/tangent_factor.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

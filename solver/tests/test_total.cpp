@@ -1,8 +1,8 @@
 // kinematics = "total": particles and surfaces stay in their reference places.
 #include <catch2/catch.hpp>
 
-#include "advance_total.hpp"
-#include "mechanics/surface_law.hpp"
+#include "explicit/total/advance_total.hpp"
+#include "interfaces/surface_law.hpp"
 #include "output/checkpoint.hpp"
 #include "output/hdf5_io.hpp"
 #include "output/result_hdf5.hpp"
@@ -111,7 +111,8 @@ TEST_CASE("a run in reference places resumes to the same digits") {
   const TemporaryFolder folder;
   Run run(growing(Kinematics::total));
   const auto advance = [](Run& one, std::int64_t steps) {
-    for (std::int64_t k = 0; k < steps; ++k) strata::advance(one.scene, one.rocks, one.state);
+    for (std::int64_t k = 0; k < steps; ++k)
+      strata::advance(one.scene, one.rocks, one.state, growth_weighing(one.scene, one.rocks));
   };
   advance(run, steps_between_bases);
   save_checkpoint(folder.path / "checkpoint.bin", run.scene, run.state, {});

@@ -2,7 +2,7 @@
 // do to the nodes.
 #include <catch2/catch.hpp>
 
-#include "mechanics/total_operator.hpp"
+#include "explicit/total/total_operator.hpp"
 #include "random_scene.hpp"
 #include "small_scenes.hpp"
 
@@ -137,7 +137,7 @@ TEST_CASE("nodes keep their momentum as a fracture grows") {
     const std::size_t points = run.state.fracture().points.size();
     // Free edges and pressure on both faces: nothing pushes the block as a whole.
     const Vec2 before = step > 0 ? nodal_momentum(run.state) : Vec2{Vec2::Zero()};
-    strata::advance(run.scene, run.rocks, run.state);
+    strata::advance(run.scene, run.rocks, run.state, growth_weighing(run.scene, run.rocks));
     const Vec2 after = nodal_momentum(run.state);
     if (step == 0) lost = run.state.ledger.transfer;
     if (step == 0) continue;
@@ -170,15 +170,15 @@ TEST_CASE("plain and fast kernels tell the same story") {
   std::vector<std::int64_t> grown_fast, grown_plain;
   const auto step = [](Run& run, std::vector<std::int64_t>& grown) {
     const std::size_t points = run.state.fracture().points.size();
-    strata::advance(run.scene, run.rocks, run.state);
+    strata::advance(run.scene, run.rocks, run.state, growth_weighing(run.scene, run.rocks));
     if (run.state.fracture().points.size() > points) grown.push_back(run.state.step);
   };
   for (int k = 0; k < 400; ++k) {
     if (k % 50 == 0) {  // one step from the same state
       State other = fast.state;
-      strata::advance(plain.scene, plain.rocks, other);
+      strata::advance(plain.scene, plain.rocks, other, growth_weighing(plain.scene, plain.rocks));
       State own = fast.state;
-      strata::advance(fast.scene, fast.rocks, own);
+      strata::advance(fast.scene, fast.rocks, own, growth_weighing(fast.scene, fast.rocks));
       const double most = largest_of(own.total.v_x);
       CHECK(largest_difference(own.total.v_x, other.total.v_x) <= 1e-10 * most);
       CHECK(largest_difference(own.total.a_y, other.total.a_y) <= 1e-10 * largest_of(own.total.a_y));

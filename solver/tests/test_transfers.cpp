@@ -1,10 +1,10 @@
-#include "mechanics/transfers.hpp"
+#include "explicit/transfers.hpp"
 
 #include <omp.h>
 
 #include <catch2/catch.hpp>
 
-#include "mechanics/explicit_step.hpp"
+#include "explicit/momentum.hpp"
 #include "small_scenes.hpp"
 
 using namespace strata;

@@ -1,4 +1,4 @@
-#include "mechanics/tree_factor.hpp"
+#include "quasistatic/tree_factor.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <span>
 
-#include "mechanics/branch_products.hpp"
+#include "quasistatic/branch_products.hpp"
 #include "state/types.hpp"
 #include "statics.hpp"
 

@@ -3,9 +3,9 @@
 
 #include <limits>
 
-#include "advance_fluid.hpp"
-#include "advance_quasistatic.hpp"
-#include "mechanics/interface_laws.hpp"
+#include "quasistatic/fluid_step.hpp"
+#include "quasistatic/load_steps.hpp"
+#include "explicit/interface_laws.hpp"
 #include "random_scene.hpp"
 #include "statics.hpp"
 

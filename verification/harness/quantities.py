@@ -24,7 +24,7 @@ ARREST_PA = 0.05e6
 # Above an interface, m, up to which a pause counts as one at it: the 4 cells of 1 m within which claims look for arrests.
 ABOVE_M = 4.0
 
-# Share of the margin in K to which a quasi-static run finds an event (event_tolerance in solver/advance_quasistatic.cpp).
+# Share of the margin in K to which a quasi-static run finds an event (event_tolerance in solver/quasistatic/load_steps.cpp).
 EVENT_SHARE = 1e-4
 
 HEIGHTS_M = (10.0, 15.0, 20.0, 40.0, 60.0)

@@ -1,0 +1,147 @@
+#include "explicit/momentum.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "state/lanes.hpp"
+#include "state/parts.hpp"
+
+namespace strata {
+
+namespace {
+
+// Calls work(lanes, r, sum) for all of n records, some lanes from record r on at a time, and returns the sum over the
+// parts.
+template <class Sum, class Work>
+Sum over_records(std::size_t n, Work work) {
+  constexpr std::size_t W = most_lanes;
+  std::array<Sum, record_parts> sums{};
+  for_each_part(n, [&](std::size_t part, const Part& range) {
+    std::size_t r = range.first;
+    for (; r + W <= range.last; r += W) work(AllLanes{}, r, sums[part]);
+    if (r < range.last) work(FirstLanes{static_cast<int>(range.last - r)}, r, sums[part]);
+  });
+  Sum total;
+  for (const Sum& sum : sums) total += sum;
+  return total;
+}
+
+struct LaneEnergies {
+  Lane first{}, second{};
+  LaneEnergies& operator+=(const LaneEnergies& other) {
+    first += other.first, second += other.second;
+    return *this;
+  }
+};
+
+}  // namespace
+
+GridEnergy advance_momentum(double damping, State& state) {
+  const double keep = 1.0 - damping * state.dt, dt = state.dt;
+  const NodalSums& sums = state.sums;
+  NodalMotion& motion = state.motion;
+  const auto energy = over_records<LaneEnergies>(sums.size(), [&](auto lanes, std::size_t r, LaneEnergies& sum) {
+    const Lane zero{}, m = lanes.load(sums.m.data() + r), per_m = m > 0.0 ? 1.0 / m : zero;
+    const Lane v_x = per_m * lanes.load(sums.mom_x.data() + r), v_y = per_m * lanes.load(sums.mom_y.data() + r);
+    const Lane dv_x = dt * per_m * lanes.load(sums.f_x.data() + r), dv_y = dt * per_m * lanes.load(sums.f_y.data() + r);
+    sum.first += m * (v_x * v_x + v_y * v_y), sum.second += m * (v_x * dv_x + v_y * dv_y);
+    lanes.store(motion.dv_x.data() + r, dv_x), lanes.store(motion.dv_y.data() + r, dv_y);
+    lanes.store(motion.v_x.data() + r, keep * v_x + dv_x), lanes.store(motion.v_y.data() + r, keep * v_y + dv_y);
+  });
+  const double mapped = 0.5 * sum_of_lanes(energy.first);
+  return {mapped, keep * keep * mapped, 0.5 * sum_of_lanes(energy.second)};
+}
+
+void take_damping(double damping, const GridEnergy& grid, State& state) {
+  if (damping == 0.0) return;
+  const NodalSums& sums = state.sums;
+  const NodalMotion& motion = state.motion;
+  const auto both = over_records<LaneEnergies>(sums.size(), [&](auto lanes, std::size_t r, LaneEnergies& sum) {
+    sum.first += lanes.load(sums.mom_x.data() + r) * lanes.load(motion.v_x.data() + r);
+    sum.second += lanes.load(sums.mom_y.data() + r) * lanes.load(motion.v_y.data() + r);
+  });
+  const double product = sum_of_lanes(both.first) + sum_of_lanes(both.second);
+  const double taken = damping * state.dt * (grid.mapped + 0.5 * product);
+  state.ledger.damping += taken;
+  state.ledger.integration += (grid.mapped - grid.damped) - taken;
+}
+
+GridEnergyAfter grid_energy(const State& state) {
+  const NodalSums& sums = state.sums;
+  const NodalMotion& motion = state.motion;
+  const auto energy = over_records<LaneEnergies>(sums.size(), [&](auto lanes, std::size_t r, LaneEnergies& sum) {
+    const Lane m = lanes.load(sums.m.data() + r);
+    const Lane v_x = lanes.load(motion.v_x.data() + r), v_y = lanes.load(motion.v_y.data() + r);
+    const Lane dv_x = lanes.load(motion.dv_x.data() + r), dv_y = lanes.load(motion.dv_y.data() + r);
+    sum.first += m * (v_x * v_x + v_y * v_y), sum.second += m * (dv_x * dv_x + dv_y * dv_y);
+  });
+  return {0.5 * sum_of_lanes(energy.first), 0.5 * sum_of_lanes(energy.second)};
+}
+
+void spread_to_tied(State& state) {
+  for_each_tied(state, [&](std::size_t record, const Master& master) {
+    const NodeMotion from = state.motion[static_cast<std::size_t>(master.record)];
+    state.motion[record] =
+        NodeMotion{master.x * from.v_x, master.y * from.v_y, master.x * from.dv_x, master.y * from.dv_y};
+  });
+}
+
+double body_work(const State& state) {
+  if (state.body.empty()) return 0.0;
+  double power = 0.0;
+  for (std::size_t r = 0; r < state.motion.size(); ++r)
+    power += state.body_sums.f_x[r] * state.motion.v_x[r] + state.body_sums.f_y[r] * state.motion.v_y[r];
+  return state.dt * power;
+}
+
+Uptake prepare_transfer(const Scene& scene, State& state) {
+  using Transfer = Numerics::Transfer;
+  const NodalMotion& motion = state.motion;
+  const double keep = 1.0 - scene.numerics.damping_1_s * state.dt;
+  if (scene.numerics.transfer == Transfer::flip) return {keep, &motion.dv_x, &motion.dv_y};
+  if (scene.numerics.transfer == Transfer::pic) return {0.0, &motion.v_x, &motion.v_y};
+  // XPIC(2): v_p = S (2 v - v**) + S dv, with v the mapped velocity and v** = S^+ S v.
+  filter_velocity(scene, state);
+  const NodalSums& filtered = state.filtered;
+  state.take_x.resize(motion.size()), state.take_y.resize(motion.size());
+  for_each_part(motion.size(), [&](std::size_t /*part*/, const Part& part) {
+    for (std::size_t r = part.first; r < part.last; ++r) {
+      const double per_m = filtered.m[r] > 0.0 ? 1.0 / filtered.m[r] : 0.0;
+      state.take_x[r] = 2.0 * motion.v_x[r] - motion.dv_x[r] - per_m * filtered.mom_x[r];
+      state.take_y[r] = 2.0 * motion.v_y[r] - motion.dv_y[r] - per_m * filtered.mom_y[r];
+    }
+  });
+  for_each_tied(state, [&](std::size_t r, const Master& master) {  // filtered velocities came back at the masters
+    const auto from = static_cast<std::size_t>(master.record);
+    state.take_x[r] = master.x * state.take_x[from], state.take_y[r] = master.y * state.take_y[from];
+  });
+  return {0.0, &state.take_x, &state.take_y};
+}
+
+void require_stable(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
+  constexpr double times_supplied = 10.0;  // 1/(1 - (omega dt/2)^2) at 0.95 of the largest stable step
+  constexpr double rounding = 1e-10;       // of the speed of sound
+  const Ledger& ledger = state.ledger;
+  const double supplied = std::abs(ledger.fluid_work) + std::abs(ledger.in_situ_work) + std::abs(ledger.edge_work) +
+                          std::abs(ledger.body_work) + std::abs(ledger.initial_kinetic);
+  const double created = -(ledger.integration + ledger.transfer);  // by the step, and not released from what was stored
+  const bool finite = std::isfinite(ledger.kinetic);
+  if (finite && (ledger.kinetic <= times_supplied * supplied || created <= 0.5 * ledger.kinetic)) return;
+  const Particles& p = state.particles;
+  double floor = 0.0;
+  for (std::size_t q = 0; q < p.size(); ++q) floor += p.m[q] * std::pow(rounding * rocks[p.rock[q]].c_P, 2);
+  if (finite && ledger.kinetic <= floor) return;
+  throw NumericalFailure(
+      fmt::format("step {}: the motion has become unstable: its kinetic energy, {:.3g} J/m, is more than {:g} times "
+                  "all that was put in, {:.3g} J/m. Lower numerics.courant (now {})",
+                  state.step, ledger.kinetic, times_supplied, supplied, scene.numerics.courant));
+}
+
+double time_step(const Scene& scene, double fastest) {
+  return scene.numerics.courant * scene.numerics.cell_m / fastest;
+}
+
+}  // namespace strata

@@ -1,0 +1,64 @@
+// The nodal part of an explicit step, between the two loops over particles.
+#pragma once
+
+#include <vector>
+
+#include "explicit/transfers.hpp"
+#include "state/elasticity.hpp"
+#include "state/state.hpp"
+
+namespace strata {
+
+// Kinetic energy of the grid (J/m) at the start of a step, as mapped from the particles, and after damping.
+struct GridEnergy {
+  double mapped = 0.0;
+  double damped = 0.0;
+  double swing = 0.0;  // sum m v . dv/2 of the forces at the step's start: see watch_made()
+};
+
+/// Momentum balance at the masters: v_i = mom_i/m_i (1 - damping dt) + dt f_i/m_i, written to state.motion with the
+/// increment dt f_i/m_i beside it. Forces are those of the step's start, t, and places move with v_i at its end: v
+/// stands for the middle of the step, t + dt/2, and places are those of the central difference u(t + dt) - 2 u(t) + u(t
+/// - dt) = dt^2 f(t)/m, of second order in dt for any load that is taken at t. Ghosts must be folded before.
+GridEnergy advance_momentum(double damping, State& state);
+
+/// Adds to the ledger what damping took in a step, its force damping m v at the step's start along the mean of the
+/// velocities there and at the end: damping dt sum m v_start . (v_start + v_end)/2 (J/m). A free oscillation of central
+/// differences, v_end = (1 - damping dt) v_start - omega^2 dt u, that starts at u = 0 and dies away gives all its
+/// energy to it, for any damping dt and omega dt that it is stable for; damping m v_start^2, for one, is off by damping
+/// dt/2. What this and the change by damping alone, of grid, differ by goes to the step itself (Ledger::integration).
+/// Reactions must be in state.motion, momenta still in state.sums. damping in 1/s. Throws nothing.
+void take_damping(double damping, const GridEnergy& grid, State& state);
+
+// Kinetic energy of the grid at the end of a step and that of the step's increments alone, sum m_i dv_i^2/2 (J/m).
+struct GridEnergyAfter {
+  double kinetic = 0.0;
+  double increment = 0.0;
+};
+
+/// Both over masters, once reactions have been added.
+GridEnergyAfter grid_energy(const State& state);
+
+/// Gives tied records the motion of their masters.
+void spread_to_tied(State& state);
+
+/// Work of the body force in the step, dt sum_i f_i . v_i (J/m), from what add_body_force() left; tied records must
+/// have their motion.
+double body_work(const State& state);
+
+/// What particles take up under the scene's transfer, and the share of their own velocity they keep: FLIP dv and
+/// 1 - damping dt; PIC v and XPIC(2) 2 v - v** + dv with the mapped v, and nothing.
+Uptake prepare_transfer(const Scene& scene, State& state);
+
+/// Throws NumericalFailure where the motion has become unstable: where its kinetic energy is not finite, or more than
+/// 10 times all that loads have put in or drawn out and the block started with, and more than rounding makes, m (1e-10
+/// c_P)^2. A stable step keeps it below what was put in but for a factor 1/(1 - (omega dt/2)^2) of its fastest mode.
+void require_stable(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state);
+
+/// Time step (s): courant h/c_P of the fastest rock. Limits by the largest eigenvalue of M^-1 K beside free edges, with
+/// 4 points a cell: 1.16 (B-spline) and 1.00 (linear) times h/c_P; 4/(2 - S) instead of 4 in (omega dt)^2 where FLIP
+/// smooths accelerations to the fraction S: 0.86 and 0.75, as points move 0.69 and 0.65; uGIMP particles that reach
+/// over a free edge lower it to 0.59 (4 points a cell), 0.53 (9) and 0.48 (16). verification/stability measures them.
+double time_step(const Scene& scene, double fastest);
+
+}  // namespace strata

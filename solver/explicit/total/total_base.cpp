@@ -1,0 +1,263 @@
+#include "explicit/total/total_base.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <unordered_map>
+
+#include "explicit/momentum.hpp"
+#include "interfaces/surface_tractions.hpp"
+#include "explicit/total/total_operator.hpp"
+#include "explicit/total/total_surfaces.hpp"
+#include "explicit/transfers.hpp"
+#include "state/shape_functions.hpp"
+
+namespace strata {
+
+namespace {
+
+// Calls visit(bin, particle, its weights) for the particles of some bins.
+template <class Visit>
+void for_each_particle(const Scene& scene, const State& state, const std::vector<Bin>& bins, Visit visit) {
+  const Particles& p = state.particles;
+  with_shape(scene.numerics.shape, [&](auto shape) {
+    for (const Bin& bin : bins) {
+      for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+           q += static_cast<std::size_t>(bin.stride))
+        visit(bin, q, gradients_of<decltype(shape)>(state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q)));
+    }
+  });
+}
+
+Vec2 interpolate(const Gradients& g, const Bin& bin, const std::vector<Vec2>& v) {
+  Vec2 sum = Vec2::Zero();
+  for (std::size_t n = 0; n < 9; ++n) sum += g.N[n] * v[static_cast<std::size_t>(bin.record[n])];
+  return sum;
+}
+
+// One pass of nodes_from_particles(), masters first, then what is tied to them.
+void correct_nodes(const Scene& scene, const State& state, const std::vector<Bin>& bins, const SpreadArray& x,
+                   const SpreadArray& y, NodalSums& sums, std::vector<Vec2>& v) {
+  sums.clear(v.size());
+  const Particles& p = state.particles;
+  for_each_particle(scene, state, bins, [&](const Bin& bin, std::size_t q, const Gradients& g) {
+    const Vec2 lacks = Vec2{x[q], y[q]} - interpolate(g, bin, v);
+    for (std::size_t n = 0; n < 9; ++n) {
+      const auto record = sums[static_cast<std::size_t>(bin.record[n])];
+      const double m = g.N[n] * p.m[q];
+      record.m += m, record.mom_x += m * lacks.x(), record.mom_y += m * lacks.y();
+    }
+  });
+  fold_to_masters(state, sums);
+  for (std::size_t r = 0; r < v.size(); ++r) {
+    if (sums[r].m > 0.0) v[r] += Vec2{sums[r].mom_x, sums[r].mom_y} / sums[r].m;
+  }
+  for (const int record : state.tied) {
+    const Master& master = state.masters[static_cast<std::size_t>(record)];
+    const Vec2 from = v[static_cast<std::size_t>(master.record)];
+    v[static_cast<std::size_t>(record)] = {master.x * from.x(), master.y * from.y()};
+  }
+}
+
+void velocities_from_particles(const Scene& scene, State& state) {
+  constexpr int passes = 3;
+  const Particles& p = state.particles;
+  state.total.velocity.assign(state.masters.size(), Vec2::Zero());
+  const auto moves = [](double v) { return v != 0.0; };
+  if (std::none_of(p.v_x.begin(), p.v_x.end(), moves) && std::none_of(p.v_y.begin(), p.v_y.end(), moves)) return;
+  state.total.velocity = nodes_from_particles(scene, state, state.bins, p.v_x, p.v_y, passes);
+}
+
+// Masses and the particles' own forces, m_i = sum_p N_ip m_p and f_i = -sum_p V_p sigma_p grad N_ip.
+void sum_particles(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+  state.sums.clear(state.sums.size());
+  const Particles& p = state.particles;
+  for_each_particle(scene, state, state.bins, [&](const Bin& bin, std::size_t q, const Gradients& g) {
+    const Stress s = p.V[q] * stress_of(rocks[p.rock[q]], p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]);
+    for (std::size_t n = 0; n < 9; ++n) {
+      const auto record = state.sums[static_cast<std::size_t>(bin.record[n])];
+      record.m += g.N[n] * p.m[q];
+      record.f_x -= s.xx * g.N_x[n] + s.xy * g.N_y[n];
+      record.f_y -= s.xy * g.N_x[n] + s.yy * g.N_y[n];
+    }
+  });
+}
+
+void fill_nodes(State& state) {
+  TotalMotion& t = state.total;
+  const auto n = static_cast<std::size_t>(t.op->slots.size);
+  for (auto* array : {&t.m, &t.base_x, &t.base_y, &t.v_x, &t.v_y, &t.u_x, &t.u_y}) array->assign(n, 0.0);
+  for (std::size_t r = 0; r < state.masters.size(); ++r) {
+    const NodeSums& sum = state.sums[r];
+    if (state.masters[r].record != static_cast<int>(r) || !(sum.m > 0.0)) continue;
+    const auto slot = static_cast<std::size_t>(t.op->slots.of_record[r]);
+    t.m[slot] = sum.m;
+    t.base_x[slot] = sum.f_x / sum.m, t.base_y[slot] = sum.f_y / sum.m;
+    t.v_x[slot] = state.masters[r].x * t.velocity[r].x(), t.v_y[slot] = state.masters[r].y * t.velocity[r].y();
+  }
+  t.a_x = t.base_x, t.a_y = t.base_y;
+}
+
+void move_surfaces(const NodalMotion& by, State& state) {
+  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
+    const auto move = [&](SurfacePoint& s, const SurfaceStencil& stencil, bool follows_jump) {
+      s.u += mean_velocity(stencil, by);
+      if (follows_jump) s.w += jump(stencil, by);
+    };
+    Surface& surface = state.surfaces[k];
+    for (std::size_t q = 0; q < surface.points.size(); ++q)
+      move(surface.points[q], state.point_stencils[k][q], !surface.points[q].split);
+    for (std::size_t q = 0; q < surface.vertices.size(); ++q)
+      move(surface.vertices[q], state.vertex_stencils[k][q], true);
+  }
+}
+
+}  // namespace
+
+std::vector<Vec2> nodes_from_particles(const Scene& scene, const State& state, const std::vector<Bin>& bins,
+                                       const SpreadArray& x, const SpreadArray& y, int passes) {
+  std::vector<Vec2> v(state.masters.size(), Vec2::Zero());
+  NodalSums sums;
+  for (int pass = 0; pass < passes; ++pass) correct_nodes(scene, state, bins, x, y, sums, v);
+  return v;
+}
+
+void start_base(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+  TotalMotion& t = state.total;
+  if (t.based) return;
+  sum_particles(scene, rocks, state);
+  update_stencil_weights(scene, state);
+  fold_to_masters(state, state.sums);
+  if (!t.op) t.op = std::make_shared<const StencilOperator>(make_operator(scene, rocks, state));
+  const bool starts = t.velocity.empty();
+  if (starts) velocities_from_particles(scene, state);
+  fill_nodes(state);
+  t.surfaces = make_total_surfaces(scene, rocks, state);
+  t.bonds = make_bond_sensors(scene, rocks, state);
+  t.based = true;
+  if (starts) recount_kinetic(state);
+}
+
+void bring_up_to_date(const Scene& scene, State& state) {
+  TotalMotion& t = state.total;
+  if (!t.based) return;
+  NodalMotion since(state.masters.size());  // displacements in the place of velocities
+  std::vector<Vec2> u(since.size());
+  t.velocity.resize(since.size());
+  for (std::size_t r = 0; r < since.size(); ++r) {
+    u[r] = total_displacement(state, static_cast<int>(r));
+    since[r].v_x = u[r].x(), since[r].v_y = u[r].y();
+    t.velocity[r] = total_velocity(state, static_cast<int>(r));
+  }
+  Particles& p = state.particles;
+  for_each_particle(scene, state, state.bins, [&](const Bin& bin, std::size_t q, const Gradients& g) {
+    const Vec2 du = interpolate(g, bin, u), v = interpolate(g, bin, t.velocity);
+    Vec2 u_1 = Vec2::Zero(), u_2 = Vec2::Zero();
+    for (std::size_t n = 0; n < 9; ++n) {
+      const Vec2& u_n = u[static_cast<std::size_t>(bin.record[n])];
+      u_1 += g.N_x[n] * u_n, u_2 += g.N_y[n] * u_n;
+    }
+    p.u_x[q] += du.x(), p.u_y[q] += du.y();
+    p.v_x[q] = v.x(), p.v_y[q] = v.y();
+    p.g_xx[q] += u_1.x(), p.g_xy[q] += u_2.x(), p.g_yx[q] += u_1.y(), p.g_yy[q] += u_2.y();
+  });
+  move_surfaces(since, state);
+  t.based = false;
+}
+
+BodyPush push_body(const Scene& scene, State& state) {
+  BodyPush push;
+  if (state.body.empty()) return push;
+  TotalMotion& t = state.total;
+  NodalSums sums(state.masters.size());
+  for_each_particle(scene, state, state.bins, [&](const Bin& bin, std::size_t q, const Gradients& g) {
+    const Vec2 f = state.particles.m[q] * state.body[q];
+    for (std::size_t n = 0; n < 9; ++n) {
+      const auto record = sums[static_cast<std::size_t>(bin.record[n])];
+      record.f_x += g.N[n] * f.x(), record.f_y += g.N[n] * f.y();
+    }
+  });
+  fold_to_masters(state, sums);
+  push.a_x.assign(t.m.size(), 0.0), push.a_y.assign(t.m.size(), 0.0);
+  for (std::size_t r = 0; r < sums.size(); ++r) {
+    const auto slot = static_cast<std::size_t>(t.op->slots.of_record[r]);
+    if (state.masters[r].record != static_cast<int>(r) || !(t.m[slot] > 0.0)) continue;
+    push.a_x[slot] = sums[r].f_x / t.m[slot], push.a_y[slot] = sums[r].f_y / t.m[slot];
+    t.a_x[slot] += push.a_x[slot], t.a_y[slot] += push.a_y[slot];
+  }
+  return push;
+}
+
+double note_body_work(const BodyPush& push, State& state) {
+  const TotalMotion& t = state.total;
+  double power = 0.0;
+  for (std::size_t s = 0; s < push.a_x.size(); ++s) power += t.m[s] * (t.v_x[s] * push.a_x[s] + t.v_y[s] * push.a_y[s]);
+  state.ledger.body_work += state.dt * power;
+  return power;
+}
+
+namespace {
+
+// Gives copies in which several of before have come together the mean of these, by what their particles weigh there.
+void mix_velocities(const Scene& scene, const RecordVelocities& before, State& state) {
+  std::vector<Vec2>& v = state.total.velocity;
+  const auto was_cut = [&](int record) {
+    const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
+    return before.copies.cut_of_node[static_cast<std::size_t>(node)] >= 0;
+  };
+  std::vector<Bin> near;
+  std::ranges::copy_if(state.bins, std::back_inserter(near),
+                       [&](const Bin& bin) { return std::ranges::any_of(bin.record, was_cut); });
+  struct Mean {
+    Vec2 momentum = Vec2::Zero();
+    double m = 0.0;
+    bool mixed = false;
+  };
+  std::unordered_map<int, Mean> means;
+  for_each_particle(scene, state, near, [&](const Bin& bin, std::size_t q, const Gradients& g) {
+    for (std::size_t n = 0; n < 9; ++n) {
+      const int record = bin.record[n];
+      if (!was_cut(record)) continue;
+      const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
+      const int old = record_of(before.copies, node, state.particles.sides[q]);
+      const Vec2& own = old >= 0 ? before.v[static_cast<std::size_t>(old)] : v[static_cast<std::size_t>(record)];
+      const double m = state.particles.m[q] * g.N[n];
+      Mean& mean = means[record];
+      mean.momentum += m * own, mean.m += m;
+      mean.mixed = mean.mixed || own != v[static_cast<std::size_t>(record)];
+    }
+  });
+  for (const auto& [record, mean] : means) {
+    if (mean.mixed && mean.m > 0.0) v[static_cast<std::size_t>(record)] = mean.momentum / mean.m;
+  }
+}
+
+}  // namespace
+
+void carry_velocities(const Scene& scene, const RecordVelocities& before, State& state) {
+  std::vector<Vec2>& v = state.total.velocity;
+  v.assign(state.masters.size(), Vec2::Zero());
+  for (std::size_t node = 0; node < state.copies.cut_of_node.size(); ++node) {
+    const int n = static_cast<int>(node), c = state.copies.cut_of_node[node];
+    const auto old = [&](SideWord sides) {
+      const int record = record_of(before.copies, n, sides);
+      return before.v[static_cast<std::size_t>(record >= 0 ? record : n)];
+    };
+    if (c < 0) {
+      v[node] = old(0);
+      continue;
+    }
+    const CutNode& cut = state.copies.cut[static_cast<std::size_t>(c)];
+    for (std::size_t k = 0; k < cut.keys.size(); ++k) v[static_cast<std::size_t>(cut.records[k])] = old(cut.keys[k]);
+  }
+  mix_velocities(scene, before, state);
+}
+
+void recount_kinetic(State& state) {
+  const TotalMotion& t = state.total;
+  double kinetic = 0.0;
+  for (std::size_t s = 0; s < t.m.size(); ++s) kinetic += 0.5 * t.m[s] * (t.v_x[s] * t.v_x[s] + t.v_y[s] * t.v_y[s]);
+  state.ledger.transfer += state.ledger.kinetic - kinetic;
+  state.ledger.kinetic = kinetic;
+}
+
+}  // namespace strata

@@ -1,0 +1,373 @@
+#include "quasistatic/condensed.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+#include "quasistatic/branch_products.hpp"
+#include "state/stiffness.hpp"
+#include "state/quarters.hpp"
+
+namespace strata {
+
+namespace {
+
+// Mixes the bits of a particle's id and area (splitmix64), so that a sum over a set tells sets apart.
+std::uint64_t fingerprint(const Particles& p, std::size_t q) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &p.V[q], sizeof bits);
+  bits += 0x9e3779b97f4a7c15U * (static_cast<std::uint64_t>(p.id[q]) + 1);
+  bits = (bits ^ (bits >> 30U)) * 0xbf58476d1ce4e5b9U;
+  bits = (bits ^ (bits >> 27U)) * 0x94d049bb133111ebU;
+  return bits ^ (bits >> 31U);
+}
+
+std::vector<std::uint64_t> fingerprints(const State& state) {
+  std::vector<std::uint64_t> prints(static_cast<std::size_t>(state.copies.records()), 0);
+  for (const std::size_t b : state.cut_bins) {
+    const Bin& bin = state.bins[b];
+    std::uint64_t sum = 0;
+    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+         q += static_cast<std::size_t>(bin.stride))
+      sum += fingerprint(state.particles, q);
+    for (const int record : bin.record) prints[static_cast<std::size_t>(record)] += sum;
+  }
+  return prints;
+}
+
+// The jump unknowns: at each split node and for each component, all independent copies but one, which carries u; where
+// an edge or the mirror holds u, all of them.
+void number_jumps(const State& state, const IntactBody& body, Condensed& out) {
+  const std::vector<std::uint64_t> prints = fingerprints(state);
+  out.jump_of_record.assign(static_cast<std::size_t>(state.copies.records()), {-1, -1});
+  for (const CutNode& cut : state.copies.cut) {
+    if (cut.records.size() < 2) continue;
+    const int node = state.copies.node_of_record[static_cast<std::size_t>(cut.records.front())];
+    const Master& intact = body.masters()[static_cast<std::size_t>(node)];
+    for (int component = 0; component < 2; ++component) {
+      bool carries_u = intact.record == node && (component == 0 ? intact.x : intact.y) != 0.0;
+      for (const int record : cut.records) {
+        const auto r = static_cast<std::size_t>(record);
+        const Master& master = out.masters[r];
+        if (master.record != record || (component == 0 ? master.x : master.y) == 0.0) continue;
+        if (state.sums[r].m == 0.0) continue;
+        if (carries_u) {
+          carries_u = false;
+          continue;
+        }
+        out.jump_of_record[r][static_cast<std::size_t>(component)] = static_cast<int>(out.columns.size());
+        auto column = std::make_shared<JumpColumn>();
+        column->node = node, column->component = component, column->particles = prints[r];
+        out.columns.push_back(std::move(column));
+      }
+    }
+  }
+}
+
+// Which unknown of `before` each of `now` is; -1: a new one.
+std::vector<Eigen::Index> origins(const Condensed& before, const Condensed& now) {
+  const auto key = [](const JumpColumn& c) { return std::make_tuple(c.node, c.component, c.particles); };
+  std::map<std::tuple<int, int, std::uint64_t>, Eigen::Index> known;
+  for (std::size_t k = 0; k < before.columns.size(); ++k)
+    known.emplace(key(*before.columns[k]), static_cast<Eigen::Index>(k));
+  std::vector<Eigen::Index> from(now.columns.size(), -1);
+  for (std::size_t k = 0; k < from.size(); ++k) {
+    const auto found = known.find(key(*now.columns[k]));
+    if (found != known.end()) from[k] = found->second;
+  }
+  return from;
+}
+
+// Takes columns and entries over from `before`, runs of unknowns that follow each other there too at once; returns the
+// place of each new unknown among these, -1 for others.
+std::vector<int> take_over(const Condensed* before, Condensed& out) {
+  const std::size_t n = out.columns.size();
+  out.S.resize(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
+  std::vector<int> fresh(n, -1);
+  if (before == nullptr) {
+    std::iota(fresh.begin(), fresh.end(), 0);
+    return fresh;
+  }
+  const std::vector<Eigen::Index> from = origins(*before, out);
+  struct Run {
+    Eigen::Index first, from, count;
+  };
+  std::vector<Run> runs;
+  int next = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    if (from[k] < 0) {
+      fresh[k] = next++;
+      continue;
+    }
+    out.columns[k] = before->columns[static_cast<std::size_t>(from[k])];
+    if (k > 0 && from[k - 1] >= 0 && from[k] == from[k - 1] + 1) {
+      ++runs.back().count;
+    } else {
+      runs.push_back({static_cast<Eigen::Index>(k), from[k], 1});
+    }
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    if (from[k] < 0) continue;
+    for (const Run& run : runs) {
+      out.S.col(static_cast<Eigen::Index>(k)).segment(run.first, run.count) =
+          before->S.col(from[k]).segment(run.from, run.count);
+    }
+  }
+  return fresh;
+}
+
+// Columns of K_jj of new unknowns, one beside the other, and their rows, transposed: equal but for round-off.
+struct NewStiffness {
+  Eigen::MatrixXd columns, rows;
+};
+
+using Entries = std::vector<std::pair<int, double>>;
+
+// Adds what one particle contributes to the new columns and their entries of K_jj.
+void add_particle(const LocalStiffness& K, const Bin& bin, const IntactBody& body, const Condensed& condensed,
+                  const State& state, const std::vector<int>& fresh, NewStiffness& K_jj, std::vector<Entries>& G) {
+  std::array<Unknown, 18> base, jump;
+  for (int k = 0; k < 18; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const int record = bin.record[at / 2];
+    base[at] = unknown_of(body.masters(), state.copies.node_of_record[static_cast<std::size_t>(record)], k % 2);
+    jump[at] = jump_unknown(condensed, record, k % 2);
+  }
+  for (int b = 0; b < 18; ++b) {
+    const Unknown& column = jump[static_cast<std::size_t>(b)];
+    if (column.index < 0) continue;
+    const int column_of = fresh[static_cast<std::size_t>(column.index)];
+    for (int a = 0; a < 18; ++a) {
+      const Unknown &row = base[static_cast<std::size_t>(a)], &other = jump[static_cast<std::size_t>(a)];
+      if (column_of >= 0 && row.index >= 0 && K(a, b) != 0.0)
+        G[static_cast<std::size_t>(column.index)].emplace_back(row.index, row.factor * column.factor * K(a, b));
+      if (other.index < 0) continue;
+      const int row_of = fresh[static_cast<std::size_t>(other.index)];
+      const double k = other.factor * column.factor * K(a, b);
+      if (column_of >= 0) K_jj.columns(other.index, column_of) += k;
+      if (row_of >= 0) K_jj.rows(column.index, row_of) += k;
+    }
+  }
+}
+
+// Assembles G and K_jj of the new unknowns. Particles come cell by cell in the order of their ids, so that sums do not
+// depend on how copies group them into bins.
+std::vector<Entries> assemble_jumps(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
+                                    const IntactBody& body, const std::vector<int>& fresh, const Condensed& out,
+                                    NewStiffness& K_jj) {
+  std::vector<Entries> G(out.columns.size());
+  const Particles& p = state.particles;
+  const auto touches_new = [&](const Bin& bin) {
+    for (const int record : bin.record) {
+      for (int component = 0; component < 2; ++component) {
+        const int index = jump_unknown(out, record, component).index;
+        if (index >= 0 && fresh[static_cast<std::size_t>(index)] >= 0) return true;
+      }
+    }
+    return false;
+  };
+  struct Member {
+    std::int32_t id;
+    std::size_t q;
+    const Bin* bin;
+  };
+  std::vector<Member> members;
+  const std::vector<std::size_t>& cut = state.cut_bins;  // all bins of a cell, which share its nodes, or none
+  for (std::size_t b = 0; b < cut.size();) {
+    members.clear();
+    bool any = false;
+    const Bin& first = state.bins[cut[b]];
+    for (; b < cut.size() && state.bins[cut[b]].i == first.i && state.bins[cut[b]].j == first.j; ++b) {
+      const Bin& bin = state.bins[cut[b]];
+      any = any || touches_new(bin);
+      for (int q = bin.first; q < bin.last; q += bin.stride)
+        members.push_back({p.id[static_cast<std::size_t>(q)], static_cast<std::size_t>(q), &bin});
+    }
+    if (!any) continue;
+    std::sort(members.begin(), members.end(), [](const Member& a, const Member& c) { return a.id < c.id; });
+    for (const Member& m : members) {
+      if (body.halved() && p.x[m.q] > 0.5 * scene.domain.width_m) continue;
+      LocalStiffness K = LocalStiffness::Zero();
+      const Gradients g = gradients_at(scene, state.grid, m.bin->i, m.bin->j, {p.x[m.q], p.y[m.q]}, p.half(m.q));
+      add_stiffness(rocks[p.rock[m.q]], g, body.halved() ? 2.0 * p.V[m.q] : p.V[m.q], K);
+      add_particle(K, *m.bin, body, out, state, fresh, K_jj, G);
+    }
+  }
+  return G;
+}
+
+SparseVector summed(Entries entries) {
+  std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  SparseVector out;
+  for (const auto& [index, value] : entries) {
+    if (out.index.empty() || out.index.back() != index) {
+      out.index.push_back(index);
+      out.value.push_back(0.0);
+    }
+    out.value.back() += value;
+  }
+  return out;
+}
+
+// S = K_jj - Y^T Y for the new unknowns.
+void condense_new(const IntactBody& body, const std::vector<int>& place, const NewStiffness& K_jj, Condensed& out) {
+  std::vector<std::size_t> fresh;
+  for (std::size_t k = 0; k < place.size(); ++k) {
+    if (place[k] >= 0) fresh.push_back(k);
+  }
+  SideBySide dense(body.factor());
+  std::vector<const BranchVector*> columns;
+  for (std::size_t from = 0; from < fresh.size(); from += SideBySide::most) {
+    const std::size_t count = std::min(SideBySide::most, fresh.size() - from);
+    columns.clear();
+    for (std::size_t c = 0; c < count; ++c) columns.push_back(&out.columns[fresh[from + c]]->Y);
+    dense.put(columns);
+    for (std::size_t b = 0; b < place.size(); ++b) {
+      if (place[b] >= 0 && b < fresh[from]) continue;  // done with b among the dense ones
+      const auto product = dense.times(out.columns[b]->Y);
+      for (std::size_t c = 0; c < count; ++c) {
+        const auto i = static_cast<Eigen::Index>(fresh[from + c]), j = static_cast<Eigen::Index>(b);
+        const auto f = static_cast<Eigen::Index>(from + c);
+        // K_jj is symmetric but for round-off, and which of two unknowns is new depends on what came before.
+        out.S(i, j) = out.S(j, i) = 0.5 * (K_jj.rows(j, f) + K_jj.columns(j, f)) - product[c];
+      }
+    }
+  }
+}
+
+// Y of the new unknowns, and the rows that all of them load.
+void factor_columns(const IntactBody& body, const std::vector<int>& place, std::vector<Entries> G, Condensed& out) {
+  std::vector<SparseVector> fresh;
+  for (std::size_t k = 0; k < place.size(); ++k) {
+    if (place[k] >= 0) fresh.push_back(summed(std::move(G[k])));
+  }
+  std::vector<BranchVector> Y = body.factor().forward(fresh);
+  std::size_t next = 0;
+  std::vector<int> loaded;
+  for (std::size_t k = 0; k < place.size(); ++k) {
+    if (place[k] >= 0) {
+      auto column = std::make_shared<JumpColumn>(*out.columns[k]);
+      column->G = std::move(fresh[next]);
+      column->Y = std::move(Y[next++]);
+      out.columns[k] = std::move(column);
+    }
+    const std::vector<int>& rows = out.columns[k]->G.index;
+    loaded.insert(loaded.end(), rows.begin(), rows.end());
+  }
+  out.loaded = body.factor().branches(loaded);
+}
+
+bool holds_rigid_motion(const Scene& scene, bool halved) {
+  return (halved || scene.domain.holds_x()) && scene.domain.holds_y();
+}
+
+// Takes out the mean displacement and rotation that no edge holds.
+void remove_rigid_motion(const Scene& scene, const State& state, bool halved, std::vector<Vec2>& u) {
+  if (holds_rigid_motion(scene, halved)) return;
+  const bool x_held = halved || scene.domain.holds_x(), y_held = scene.domain.holds_y();
+  const Quarters quarters(scene, state.grid);
+  // Mean over the block's area: with 0.5 (u_y,x - u_x,y) as rotation, from the particles' own fields.
+  const Particles& p = state.particles;
+  const Vec2 centre{0.5 * scene.domain.width_m, 0.5 * scene.domain.height_m};
+  Vec2 mean = Vec2::Zero();
+  double turn = 0.0, polar = 0.0, area = 0.0;
+  for (const Bin& bin : state.bins) {
+    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+         q += static_cast<std::size_t>(bin.stride)) {
+      quarters.for_each_point(p, q, [&](const Vec2& x, const Vec2& half, double V) {
+        const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, x, half);
+        Vec2 u_p = Vec2::Zero();
+        for (std::size_t n = 0; n < 9; ++n) u_p += g.N[n] * u[static_cast<std::size_t>(bin.record[n])];
+        mean += V * u_p;
+        turn += V * cross(x - centre, u_p);
+        polar += V * (x - centre).squaredNorm();
+        area += V;
+      });
+    }
+  }
+  mean /= area;
+  turn = !x_held && !y_held ? turn / polar : 0.0;
+  if (x_held) mean.x() = 0.0;
+  if (y_held) mean.y() = 0.0;
+  const Grid& grid = state.grid;
+  for (std::size_t r = 0; r < u.size(); ++r) {
+    const int node = state.copies.node_of_record[r];
+    const Vec2 arm = Vec2{grid.x(grid.column(node)), grid.y(grid.row(node))} - centre;
+    u[r] -= mean + turn * Vec2{-arm.y(), arm.x()};
+  }
+}
+
+}  // namespace
+
+Unknown jump_unknown(const Condensed& condensed, int record, int component) {
+  const Master& master = condensed.masters[static_cast<std::size_t>(record)];
+  const double factor = component == 0 ? master.x : master.y;
+  const int index =
+      condensed.jump_of_record[static_cast<std::size_t>(master.record)][static_cast<std::size_t>(component)];
+  return factor == 0.0 ? Unknown{} : Unknown{index, factor};
+}
+
+Condensed condense(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const IntactBody& body,
+                   const Condensed* before) {
+  Condensed out;
+  out.masters = body.halved() ? mirrored(state, state.masters) : state.masters;
+  number_jumps(state, body, out);
+  const std::vector<int> fresh = take_over(before, out);
+  const auto n = out.size(),
+             n_fresh = static_cast<Eigen::Index>(std::ranges::count_if(fresh, [](int f) { return f >= 0; }));
+  NewStiffness K_jj{Eigen::MatrixXd::Zero(n, n_fresh), Eigen::MatrixXd::Zero(n, n_fresh)};
+  factor_columns(body, fresh, assemble_jumps(scene, rocks, state, body, fresh, out, K_jj), out);
+  condense_new(body, fresh, K_jj, out);
+  return out;
+}
+
+Asked ask_for(const Scene& scene, const State& state, const IntactBody& body, std::vector<int> records) {
+  if (!holds_rigid_motion(scene, body.halved())) return ask_for_all(state, body);
+  std::vector<int> unknowns;
+  for (const int record : records) {
+    const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
+    for (int component = 0; component < 2; ++component) {
+      const Unknown from = unknown_of(body.masters(), node, component);
+      if (from.index >= 0) unknowns.push_back(from.index);
+    }
+  }
+  return {std::move(records), body.factor().branches(unknowns)};
+}
+
+Asked ask_for_all(const State& state, const IntactBody& body) {
+  Asked all;
+  all.records.resize(static_cast<std::size_t>(state.copies.records()));
+  all.blocks = body.factor().all();
+  std::iota(all.records.begin(), all.records.end(), 0);
+  return all;
+}
+
+std::vector<Vec2> displacements(const Scene& scene, const State& state, const IntactBody& body,
+                                const Condensed& condensed, const Eigen::VectorXd& j, const Asked& asked) {
+  const TreeFactor& factor = body.factor();
+  const auto& loaded = condensed.load.empty() ? condensed.loaded : factor.all();  // a body force loads them all
+  Eigen::VectorXd base = factor.zeros(loaded, asked.blocks);
+  for (int k = 0; k < condensed.load.intact.size(); ++k) base[factor.row(k)] = condensed.load.intact[k];
+  for (std::size_t k = 0; k < condensed.columns.size(); ++k) {
+    const SparseVector& G = condensed.columns[k]->G;
+    for (std::size_t e = 0; e < G.index.size(); ++e)
+      base[factor.row(G.index[e])] -= G.value[e] * j[static_cast<Eigen::Index>(k)];
+  }
+  factor.solve(loaded, asked.blocks, base);
+  std::vector<Vec2> u(asked.records.size(), Vec2::Zero());
+  for (std::size_t r = 0; r < u.size(); ++r) {
+    const int record = asked.records[r], node = state.copies.node_of_record[static_cast<std::size_t>(record)];
+    for (int component = 0; component < 2; ++component) {
+      const Unknown from = unknown_of(body.masters(), node, component),
+                    jump = jump_unknown(condensed, record, component);
+      if (from.index >= 0) u[r][component] += from.factor * base[factor.row(from.index)];
+      if (jump.index >= 0) u[r][component] += jump.factor * j[jump.index];
+    }
+  }
+  remove_rigid_motion(scene, state, body.halved(), u);
+  return u;
+}
+
+}  // namespace strata

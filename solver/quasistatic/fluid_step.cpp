@@ -1,0 +1,209 @@
+#include "quasistatic/fluid_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "flow/paper_flow.hpp"
+#include "flow/reynolds_flow.hpp"
+#include "state/elasticity.hpp"
+
+namespace strata {
+
+namespace {
+
+// Pressure of the fracture's points from that of its vertices.
+void pass_to_points(State& state) {
+  auto& points = state.fracture().points;
+  for (std::size_t k = 0; k < points.size(); ++k) points[k].P = 0.5 * (state.fluid.P[k] + state.fluid.P[k + 1]);
+}
+
+void set_point_pressures(const Eigen::VectorXd& P, State& state) {
+  auto& points = state.fracture().points;
+  for (std::size_t k = 0; k < points.size(); ++k) points[k].P = P[static_cast<Eigen::Index>(k)];
+}
+
+// Openings (m) of the fracture's points in an equilibrium that the state does not hold yet.
+std::vector<double> openings(const State& state, const QuasistaticModel& model, const Equilibrium& at) {
+  std::vector<double> w = openings_of(state.fracture());
+  for (std::size_t k = 0; k < model.places.size(); ++k) {
+    const ContactPlace& place = model.places[k];
+    if (place.tie < 0 && place.surface == 0) w[place.point] = std::max(0.0, at.w[k].dot(place.n));
+  }
+  return w;
+}
+
+// The study's law at openings w (m), in equal steps, none longer than some of what its diffusion takes across a
+// segment: the trapezoidal rule would ring otherwise.
+void diffuse_in_steps(const Scene& scene, const State& state, const std::vector<double>& w, double time, double dt,
+                      FluidLine& line) {
+  // In ds^2/kappa: the trapezoidal rule hardly rings, the explicit one is stable.
+  const double longest = scene.fluid.time_rule == Fluid::TimeRule::explicit_euler ? 0.5 : 2.0;
+  constexpr int most = 1000;  // then the rule's own stability has to do
+  const Fluid& fluid = scene.fluid;
+  const double mobility = fluid.bulk_modulus_Pa / fluid.viscosity_Pa_s;
+  const Channel channel = channel_of(scene, state, w);
+  double shortest = dt;
+  for (std::size_t k = 0; k < w.size(); ++k) {
+    const double kappa = mobility * channel.permeability[k];
+    if (kappa > 0.0) shortest = std::min(shortest, longest * channel.length[k] * channel.length[k] / kappa);
+  }
+  const int steps = std::clamp(static_cast<int>(std::ceil(std::min(dt / shortest, 1.0 * most))), 1, most);
+  const double step = dt / steps;
+  const auto inlet_Pa = [&](int k) { return fluid.start_Pa + fluid.rate_Pa_s * (time + k * step); };
+  Diffusion(channel, mobility, fluid.time_rule, step).steps(steps, inlet_Pa, line.P);
+  line.inlet_Pa = inlet_Pa(steps);
+}
+
+// The openings midway through a step dt: those of its start with half of what they change by at the rate of the step
+// before or, after an event, by the step taken at the openings of its start (Heun's rule).
+std::vector<double> openings_midway(const Scene& scene, double dt, State& state, QuasistaticModel& model) {
+  std::vector<double> w = openings_of(state.fracture());
+  if (state.fluid.w_rate.size() == w.size()) {
+    for (std::size_t k = 0; k < w.size(); ++k) w[k] = std::max(0.0, w[k] + 0.5 * dt * state.fluid.w_rate[k]);
+    return w;
+  }
+  const FluidLine before = state.fluid;
+  diffuse_in_steps(scene, state, w, state.time, dt, state.fluid);
+  pass_to_points(state);
+  const std::vector<double> end = openings(state, model, find_equilibrium(scene, state.time + dt, state, model));
+  for (std::size_t k = 0; k < w.size(); ++k) w[k] = 0.5 * (w[k] + end[k]);
+  state.fluid = before;
+  return w;
+}
+
+// Opening of a place as the flow sees it, w + roughness (1 - r_n/t_n), and its derivatives by the pressures.
+void add_place(const ContactPlace& place, const LawAnswer& r, double w, RockResponse& rock) {
+  const auto k = static_cast<Eigen::Index>(place.point);
+  rock.w[k] = w + roughness;
+  const double closing = place.in_situ.dot(place.n);
+  if (r.piece == LawAnswer::Piece::open || closing <= 0.0) return;
+  rock.w[k] -= roughness * std::min(r.n / closing, 1.0);
+  if (r.n >= closing) return;
+  rock.dw_dP.row(k) *= 1.0 - roughness * r.dn_dn / closing;  // r_n = t_n - P - k w
+  rock.dw_dP(k, k) += roughness / closing;
+}
+
+// The rock at a time (s) as the flow sees it: openings and their change with the pressures, in equilibrium with all
+// surfaces.
+RockModel rock_of(const Scene& scene, double time, State& state, QuasistaticModel& model) {
+  const auto& points = state.fracture().points;
+  Eigen::VectorXd E_prime(points.size()), closing(points.size());
+  const std::vector<Elasticity> rocks = make_elasticities(scene);
+  for (Eigen::Index k = 0; k < closing.size(); ++k) {
+    const SurfacePoint& s = points[static_cast<std::size_t>(k)];
+    E_prime[k] = rocks[rock_at(scene, s.x)].E_prime, closing[k] = s.closing_stress();
+  }
+  if (model.dw_dP_of != model.factor.pieces) model.dw_dP.resize(0, 0);
+  return [&scene, time, &state, &model, E_prime, closing](const Eigen::VectorXd& P) {
+    set_point_pressures(P, state);
+    const Equilibrium at = find_equilibrium(scene, time, state, model);
+    if (model.dw_dP_of != at.pieces || model.dw_dP.size() == 0) {  // the same as long as no place opens or closes
+      model.dw_dP = opening_per_pressure(state, model.condensed, model.places, at, model.factor);
+      model.dw_dP_of = at.pieces;
+    }
+    RockResponse rock{Eigen::VectorXd::Zero(P.size()), model.dw_dP, E_prime, closing};
+    for (std::size_t k = 0; k < model.places.size(); ++k) {
+      const ContactPlace& place = model.places[k];
+      if (place.tie < 0 && place.surface == 0) add_place(place, at.answers[k], at.w[k].dot(place.n), rock);
+    }
+    return rock;
+  };
+}
+
+Inlet inlet_at(const Scene& scene, const State& state, double time) {
+  if (!scene.fluid.rate_m2_s) return {Inlet::Drive::pressure, scene.fluid.start_Pa + scene.fluid.rate_Pa_s * time};
+  // Half of a fracture that starts on the symmetry line gets half of what the whole is fed.
+  const bool half = scene.domain.bottom == Edge::symmetry && state.fracture().vertices.front().x.y() == 0.0;
+  return {Inlet::Drive::rate, *scene.fluid.rate_m2_s * (half ? 0.5 : 1.0)};
+}
+
+FluidStep couple(const Scene& scene, double dt, State& state, QuasistaticModel& model) {
+  // Of the largest opening, a step: some hundred of them add up to less than a per cent, since what one does wrong the
+  // next ones heal.
+  const double allowed = scene.numerics.flow_error;
+  const double step = std::max(dt, shortest_coupled_step);
+  const double end = state.time + step;
+  const StepReport report = step_reynolds(scene.fluid, inlet_at(scene, state, end), step,
+                                          rock_of(scene, end, state, model), state.reynolds, state.balance);
+  if (!report.converged) return {false, 0.0, report.reason};
+  state.time += step;
+  state.fluid.P = vertex_pressures(state.reynolds);
+  state.fluid.inlet_Pa = report.inlet_Pa;
+  set_point_pressures(
+      Eigen::Map<const Eigen::VectorXd>(state.reynolds.P.data(), static_cast<Eigen::Index>(state.reynolds.P.size())),
+      state);
+  state.monitors.volume_balance = state.balance.closure();
+  return {true, report.estimated ? report.error_w / allowed : 0.0, ""};
+}
+
+}  // namespace
+
+void fill_fracture(const Scene& scene, State& state, QuasistaticModel& model) {
+  if (!state.has_fracture || scene.fluid.law != Fluid::Law::reynolds) return;
+  auto& points = state.fracture().points;
+  double P = scene.fluid.start_Pa;
+  // A thousandth below the closing stress, so that contact holds every face: at it all are between open and closed, and
+  // Newton's method may go round in circles. Rough faces hold as much less than they would at it.
+  constexpr double held = 1e-3;
+  if (scene.fluid.rate_m2_s) {
+    const double closing = points[std::min(state.fluid.inlet, points.size() - 1)].closing_stress();
+    P = closing - held * std::abs(closing);
+  }
+  const RockResponse rock =
+      rock_of(scene, state.time, state, model)(Eigen::VectorXd::Constant(static_cast<Eigen::Index>(points.size()), P));
+  std::vector<double> length;
+  for (const SurfacePoint& s : points) length.push_back(s.A);
+  state.reynolds = full_line(scene.fluid, length, state.fluid.inlet, P, rock.w, state.balance);
+  std::fill(state.fluid.P.begin(), state.fluid.P.end(), P);
+  state.fluid.inlet_Pa = P;
+}
+
+double lag_error(const Scene& scene, const FluidLine& before, std::span<const double> w_before, double time,
+                 const State& state) {
+  double net = 0.0;
+  for (const SurfacePoint& s : state.fracture().points) net = std::max(net, std::abs(s.P - s.closing_stress()));
+  if (net == 0.0) return 0.0;
+  std::vector<double> w = openings_of(state.fracture());
+  for (std::size_t k = 0; k < w.size(); ++k) w[k] = 0.5 * (w[k] + w_before[k]);
+  FluidLine again = before;
+  diffuse_in_steps(scene, state, w, time, state.time - time, again);
+  double change = 0.0;
+  for (std::size_t k = 0; k < again.P.size(); ++k) change = std::max(change, std::abs(again.P[k] - state.fluid.P[k]));
+  return 0.5 * change / net;
+}
+
+void note_rates(std::span<const double> w_before, double dt, State& state) {
+  const std::vector<double> w = openings_of(state.fracture());
+  state.fluid.w_rate.resize(w.size());
+  for (std::size_t k = 0; k < w.size(); ++k) state.fluid.w_rate[k] = (w[k] - w_before[k]) / dt;
+}
+
+void add_fluid_cells(const Scene& scene, bool at_back, std::size_t added, State& state) {
+  if (scene.fluid.law != Fluid::Law::reynolds) return;
+  const auto& points = state.fracture().points;
+  for (std::size_t k = 0; k < added; ++k) {
+    const std::size_t q = at_back ? points.size() - added + k : added - 1 - k;
+    grow(state.reynolds, scene.fluid, at_back, points[q].A);
+  }
+}
+
+FluidStep advance_fluid(const Scene& scene, double dt, State& state, QuasistaticModel& model) {
+  if (!state.has_fracture) {
+    state.time += dt;
+    return {};
+  }
+  if (scene.fluid.law == Fluid::Law::reynolds) return couple(scene, dt, state, model);
+  if (dt > 0.0) {
+    if (scene.fluid.law == Fluid::Law::paper)
+      diffuse_in_steps(scene, state, openings_midway(scene, dt, state, model), state.time, dt, state.fluid);
+    state.dt = dt;
+    if (scene.fluid.law == Fluid::Law::uniform) advance_pressure(scene, state);
+    state.time += dt;
+  } else if (scene.fluid.law == Fluid::Law::uniform) {
+    std::fill(state.fluid.P.begin(), state.fluid.P.end(), state.fluid.inlet_Pa);
+  }
+  pass_to_points(state);
+  return {};
+}
+
+}  // namespace strata

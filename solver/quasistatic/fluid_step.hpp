@@ -1,0 +1,46 @@
+// The fluid's part of a step without inertia, under each of the three laws.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "quasistatic/model.hpp"
+#include "state/state.hpp"
+
+namespace strata {
+
+/// Fills the fracture at the start: at the inlet's start pressure or, where a rate drives the flow, at its closing
+/// stress. `model` must be up to date. Throws NumericalFailure as find_equilibrium() does.
+void fill_fracture(const Scene& scene, State& state, QuasistaticModel& model);
+
+// What a step of the fluid says: whether it was found, and its error against what is allowed (1: just so).
+struct FluidStep {
+  bool found = true;
+  double error = 0.0;
+  std::string reason;  // why none was found
+};
+
+// The shortest step of flow and rock together (s). After growth the pressure drops at once, but for what flows
+// meanwhile.
+constexpr double shortest_coupled_step = 1e-6;
+
+/// Pressures at the end of a step dt (s), in state.fluid, at the fracture's points and, under law = "reynolds", in
+/// state.reynolds; state.time moves on. uniform: the inlet's. paper: the study's diffusion in steps that resolve it,
+/// with the openings midway, foreseen from the rates of the step before (state.fluid.w_rate) or by a trial step.
+/// reynolds: flow and rock in one system, over shortest_coupled_step at least. dt = 0: only what growth changed. Throws
+/// NumericalFailure as find_equilibrium() and diffuse() do.
+FluidStep advance_fluid(const Scene& scene, double dt, State& state, QuasistaticModel& model);
+
+/// What a step of the study's law from `before` and its openings (m, one a point) at a time (s) owes to openings midway
+/// that were foreseen, after the equilibrium at its end: half of what the mean of the openings of its ends would have
+/// changed of any pressure, over the largest net pressure; it goes by the third power of the step. Throws nothing.
+double lag_error(const Scene& scene, const FluidLine& before, std::span<const double> w_before, double time,
+                 const State& state);
+
+/// Notes at what rates openings have changed from w_before (m, one a point) in a step dt (s) that ends at `state`.
+void note_rates(std::span<const double> w_before, double dt, State& state);
+
+/// The new cells of a fracture that has grown by `added` points at a tip, empty (law = "reynolds").
+void add_fluid_cells(const Scene& scene, bool at_back, std::size_t added, State& state);
+
+}  // namespace strata

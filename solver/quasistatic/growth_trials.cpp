@@ -1,0 +1,112 @@
+#include "quasistatic/growth_trials.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fracture/growth.hpp"
+
+namespace strata {
+
+namespace {
+
+// How many points the trial's fracture has before those of the state's own.
+std::ptrdiff_t shift_of(const State& state, const GrowthTrial& trial) {
+  if (state.tips[trial.tip].at_back) return 0;
+  return std::ssize(trial.state.fracture().points) - std::ssize(state.fracture().points);
+}
+
+// The trial's load: the state's own and, on a new segment, the pressure of the tip (it is wetted).
+void load_trial(const State& state, GrowthTrial& trial) {
+  auto& tried = trial.state.fracture().points;
+  const auto& points = state.fracture().points;
+  const std::ptrdiff_t shift = shift_of(state, trial);
+  const double tip_P = state.tips[trial.tip].at_back ? state.fluid.P.back() : state.fluid.P.front();
+  for (std::ptrdiff_t q = 0; q < std::ssize(tried); ++q) {
+    const std::ptrdiff_t own = q - shift;
+    const bool old = own >= 0 && own < std::ssize(points);
+    tried[static_cast<std::size_t>(q)].P = old ? points[static_cast<std::size_t>(own)].P : tip_P;
+  }
+}
+
+// Friction's memory of the trial: that of the state it starts from.
+void share_memory(const State& state, const std::vector<ContactPlace>& places, GrowthTrial& trial) {
+  const std::ptrdiff_t shift = shift_of(state, trial);
+  for (ContactPlace& place : trial.model.places) {
+    if (place.tie >= 0) continue;
+    const auto same = std::find_if(places.begin(), places.end(), [&](const ContactPlace& other) {
+      const auto at = static_cast<std::ptrdiff_t>(other.point) + (other.surface == 0 ? shift : 0);
+      return other.tie < 0 && other.surface == place.surface && at == static_cast<std::ptrdiff_t>(place.point);
+    });
+    if (same == places.end()) continue;
+    place.w_t_start = same->w_t_start, place.r_t_start = same->r_t_start;
+  }
+}
+
+double energy_of(const QuasistaticModel& model, const Equilibrium& equilibrium) {
+  return equilibrium.energy + dissipated_by_friction(model, equilibrium);
+}
+
+}  // namespace
+
+bool may_grow(const Scene& scene, const State& state, const Tip& tip) {
+  return scene.fracture->growth != Fracture::Growth::none && tip.growing && !stopped_by_edge(scene, state, tip);
+}
+
+std::vector<GrowthTrial> make_trials(const Scene& scene, const std::vector<Elasticity>& rocks, State& state,
+                                     const QuasistaticModel& model, std::vector<GrowthTrial> former, bool halve) {
+  std::vector<GrowthTrial> trials;
+  for (std::size_t k = 0; k < state.tips.size(); ++k) {
+    Tip& tip = state.tips[k];
+    if (!may_grow(scene, state, tip)) continue;
+    tip.criterion = criterion_of(scene, state, tip);
+    std::vector<double> lengths;
+    if (tip.criterion == Criterion::energy) lengths = {increment_of(scene, tip)};
+    if (tip.criterion == Criterion::slope)
+      lengths = {state.grid.h, -std::min(state.grid.h, past_open_interface(scene, state, tip))};
+    for (const double length : lengths) {
+      GrowthTrial& trial = trials.emplace_back();
+      trial.tip = k;
+      trial.turn = tip.turn;
+      trial.state = state;
+      Tip& tried = trial.state.tips[k];
+      trial.length =
+          length > 0.0 ? extend_tip(scene, trial.state, tried, length) : -shorten_tip(trial.state, tried, -length);
+      if (trial.length == 0.0) {  // not a whole piece to take away
+        trials.pop_back();
+        continue;
+      }
+      trial.model.body = model.body;
+      trial.model.condensed = model.condensed;
+      for (GrowthTrial& before : former) {
+        if (before.tip == k && (before.length > 0.0) == (length > 0.0))
+          trial.model.factor = std::move(before.model.factor);
+      }
+      update_equations(scene, rocks, trial.state, trial.model, halve);
+    }
+  }
+  return trials;
+}
+
+double energy_release(const Scene& scene, const State& state, const QuasistaticModel& model,
+                      const Equilibrium& equilibrium, std::size_t tip, std::vector<GrowthTrial>& trials) {
+  const double here = energy_of(model, equilibrium);
+  double sum = 0.0, weights = 0.0;  // of two trials each counts by the other's length
+  for (GrowthTrial& trial : trials) {
+    if (trial.tip != tip) continue;
+    load_trial(state, trial);
+    share_memory(state, model.places, trial);
+    const double there = energy_of(trial.model, find_equilibrium(scene, state.time, trial.state, trial.model));
+    const double G = (here - there) / trial.length;
+    sum += G / std::abs(trial.length), weights += 1.0 / std::abs(trial.length);
+  }
+  return weights > 0.0 ? sum / weights : 0.0;
+}
+
+bool trials_hold(const Scene& scene, const State& state, const std::vector<GrowthTrial>& trials) {
+  return scene.fracture->direction != Fracture::Direction::max_hoop ||
+         std::ranges::all_of(trials, [&](const GrowthTrial& trial) {
+           return std::abs(trial.turn - state.tips[trial.tip].turn) <= 1e-12;
+         });
+}
+
+}  // namespace strata

@@ -1,0 +1,62 @@
+#include "quasistatic/load_point.hpp"
+
+#include <algorithm>
+
+namespace strata {
+
+LoadPoint load_point(const State& state) {
+  LoadPoint point{state.time, state.fluid, state.reynolds, state.balance, state.surfaces, state.tips, {}, {}};
+  if (state.body.empty()) return point;
+  const Particles& p = state.particles;
+  point.u.resize(static_cast<std::size_t>(p.next_id), Vec2::Zero());
+  point.body = point.u;
+  for (std::size_t q = 0; q < p.size(); ++q) {
+    const auto id = static_cast<std::size_t>(p.id[q]);
+    point.u[id] = {p.u_x[q], p.u_y[q]};
+    point.body[id] = state.body[q];
+  }
+  return point;
+}
+
+void return_to(const LoadPoint& from, State& state) {
+  state.time = from.time;
+  state.fluid = from.fluid;
+  state.reynolds = from.reynolds;
+  state.balance = from.balance;
+  state.surfaces = from.surfaces;
+  state.tips = from.tips;
+}
+
+double work_of_loads(const State& state, const LoadPoint& before, double& in_situ) {
+  double fluid = 0.0;
+  in_situ = 0.0;
+  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
+    const auto &now = state.surfaces[k].points, &then = before.surfaces[k].points;
+    // The fracture may have become longer at its front; its older points stay where they were.
+    const auto same =
+        std::find_if(now.begin(), now.end(), [&](const SurfacePoint& s) { return s.x == then.front().x; });
+    const auto shift = static_cast<std::size_t>(same - now.begin());
+    for (std::size_t q = 0; q < now.size(); ++q) {
+      const SurfacePoint& s = now[q];
+      if (!s.split) continue;
+      const bool is_new = q < shift || q - shift >= then.size();
+      const SurfacePoint& old = is_new ? s : then[q - shift];
+      const Vec2 dw = is_new || !old.split ? s.w : Vec2{s.w - old.w};
+      fluid += s.A * 0.5 * (s.P + old.P) * s.n.dot(dw);
+      in_situ -= s.A * (0.5 * (s.in_situ + old.in_situ)).dot(dw);
+    }
+  }
+  return fluid;
+}
+
+double work_of_body(const State& state, const LoadPoint& before) {
+  const Particles& p = state.particles;
+  double work = 0.0;
+  for (std::size_t q = 0; q < state.body.size(); ++q) {
+    const auto id = static_cast<std::size_t>(p.id[q]);
+    work += p.m[q] * 0.5 * (before.body[id] + state.body[q]).dot(Vec2{p.u_x[q], p.u_y[q]} - before.u[id]);
+  }
+  return work;
+}
+
+}  // namespace strata

@@ -1,0 +1,379 @@
+#include "quasistatic/load_steps.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "flow/flow_monitors.hpp"
+#include "flow/paper_flow.hpp"
+#include "fracture/growth.hpp"
+#include "fracture/j_integral.hpp"
+#include "interfaces/failure.hpp"
+#include "interfaces/monitors.hpp"
+#include "quasistatic/fluid_step.hpp"
+#include "quasistatic/load_point.hpp"
+
+namespace strata {
+
+namespace {
+
+constexpr double event_tolerance = 1e-4;  // of an event's margin: 0.01 % in K
+constexpr double first_flow_step = 1e-3;  // s, after each event; steps then grow as the margin's change allows
+
+// A trial step shorter than this (s) that is not found ends the run, and one that is found is taken however rough it
+// is. Of flow and rock in one system a step is of shortest_coupled_step at least, whatever is tried.
+constexpr double shortest_trial = 1e-7;
+
+// A rock without toughness lets a tip grow as soon as the fracture is open there: where K_I, and the K that each
+// opening within two cells behind the tip stands for (w = 8 K/E' sqrt(x/(2 pi))), exceed what a cell resolves of the
+// net pressure's own. Fluid that has just wetted the last cells would let the tip run ahead of the open fracture
+// otherwise.
+double toughless_margin(const State& state, double E_prime, const Tip& tip) {
+  constexpr double resolved = 0.1;  // of p sqrt(h)
+  constexpr double large_K = 1e8;   // Pa sqrt(m), of which the tolerance of an event is 1e-4
+  const Surface& fracture = state.fracture();
+  const SurfacePoint& last = tip.at_back ? fracture.points.back() : fracture.points.front();
+  double K = tip.K_I;
+  for (const SurfacePoint& s : fracture.points) {
+    const double x = tip.at_back ? fracture.length() - s.arc : s.arc;
+    if (x < 2.0 * state.grid.h) K = std::min(K, E_prime / 8.0 * std::sqrt(2.0 * std::numbers::pi / x) * s.opening());
+  }
+  const double net = state.fluid.inlet_Pa - last.closing_stress();
+  if (net <= 0.0) return 0.0;
+  return 1.0 + (K - resolved * net * std::sqrt(state.grid.h)) / large_K;
+}
+
+// How near a tip is to growth: sqrt(G/J_c) by what decides about it. Where the fracture that a trial makes has no
+// equilibrium, K decides.
+double tip_margin(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run,
+                  std::size_t k) {
+  Tip& tip = state.tips[k];
+  tip.criterion = criterion_of(scene, state, tip);  // a trial may have had no equilibrium at another load
+  const Elasticity& rock = rocks[rock_ahead(scene, state, tip)];
+  if (weighs_energy(tip)) {
+    try {
+      tip.G_trial = energy_release(scene, state, run.model, run.equilibrium, k, run.trials);
+    } catch (const NumericalFailure&) {
+      ++state.monitors.growth_unweighed;
+      tip.criterion = Criterion::K;
+    }
+  }
+  const double G = driving(rock, tip);
+  if (rock.J_c > 0.0) return std::sqrt(std::max(0.0, G) / rock.J_c);
+  return weighs_energy(tip) ? (G > 0.0 ? 2.0 : 0.0) : toughless_margin(state, rock.E_prime, tip);
+}
+
+double margin_of(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+  run.tip_margin = 0.0;
+  for (std::size_t k = 0; k < state.tips.size(); ++k) {
+    if (may_grow(scene, state, state.tips[k]))
+      run.tip_margin = std::max(run.tip_margin, tip_margin(scene, rocks, state, run, k));
+  }
+  find_forces(rocks, state, run.model.bonds);
+  judge_bonds(scene, state, run.model.bonds);
+  bool sound = !std::isnan(run.model.bonds.worst);
+  for (const Tip& tip : state.tips) sound = sound && std::isfinite(tip.G_trial);
+  if (!sound) throw NumericalFailure("the energy released or the load of a bonded interface is not finite");
+  return std::max(run.tip_margin, run.model.bonds.worst);
+}
+
+void look_at_tips(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, const Quasistatic& run) {
+  if (scene.body.acceleration_m_s2) {
+    measure_tips(scene, rocks, state);
+  } else {
+    measure_tips(scene, run.rules, state);
+  }
+}
+
+// Equilibrium at the state's pressures, its fields, and how near the next event is.
+void equilibrate(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+  run.equilibrium = find_equilibrium(scene, state.time, state, run.model);
+  set_fields(scene, state, run.model, run.equilibrium);
+  if (state.dt <= 0.0) state.dt = 1.0;  // J's inertia divides by it; there is none
+  look_at_tips(scene, rocks, state, run);
+  if (!trials_hold(scene, state, run.trials))
+    run.trials = make_trials(scene, rocks, state, run.model, std::move(run.trials));
+  run.margin = margin_of(scene, rocks, state, run);
+}
+
+// Energy bookkeeping of an accepted change of load or geometry; surface: what new surface takes (J/m).
+enum class Change { load, growth, failure };
+
+void close_ledger(const Quasistatic& run, const LoadPoint& before, Change change, double surface, State& state) {
+  Ledger& ledger = state.ledger;
+  double in_situ = 0.0;
+  const double fluid = work_of_loads(state, before, in_situ), stored = ledger.strain + ledger.interface_strain;
+  ledger.fluid_work += fluid;
+  ledger.in_situ_work += in_situ;
+  const double body = work_of_body(state, before);
+  ledger.body_work += body;
+  ledger.strain = run.equilibrium.strain;
+  ledger.interface_strain = stored_in_surfaces(run.model, run.equilibrium);
+  const double released = fluid + in_situ + body - (ledger.strain + ledger.interface_strain - stored);
+  const double friction = dissipated_by_friction(run.model, run.equilibrium);
+  ledger.friction += friction;
+  if (change == Change::failure) ledger.failure += released - friction;
+  if (change == Change::growth) ledger.excess += released - friction - surface;
+  ledger.fracture += surface;
+  ledger.note_scale();
+  require_finite(state);
+}
+
+void accept(const Scene& scene, const LoadPoint& before, Change change, State& state, Quasistatic& run,
+            double surface = 0.0) {
+  close_ledger(run, before, change, surface, state);
+  remember(state, run.model, run.equilibrium);
+  Monitors& monitors = state.monitors;
+  monitors.contact_sweeps += run.equilibrium.iterations;
+  note_largest(monitors.contact_residual, run.equilibrium.residual);
+  note_largest(monitors.largest_imbalance, std::abs(monitors.volume_balance));
+  monitors.delivered_m2 += (state.time - before.time) * inflow(scene, state);
+  if (change == Change::load) watch_flow(scene, state);
+  watch_tips(scene, state);
+  ++state.step;
+  watch_row(scene, state);
+}
+
+void rebuild_all(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+  const double excess = state.ledger.excess;
+  for (GrowthTrial& trial : run.trials) trial.model.body.reset(), trial.model.condensed = {};
+  update_model(scene, rocks, state, run.model);
+  state.monitors.mirror = run.model.body->halved();
+  run.rules = make_tip_rules(scene, rocks, state);
+  state.ledger.excess = excess;  // what springs of tips give back is in the difference of stored energy already
+  run.trials = make_trials(scene, rocks, state, run.model, std::move(run.trials));
+}
+
+// Lets what fails go; where half a block answers for the whole, with its mirror image, which is as bad but for
+// round-off.
+void fail(const Scene& scene, const Quasistatic& run, State& state) {
+  Columns columns = failing_columns(scene, state, run.model.bonds);
+  if (run.model.body->halved()) {
+    for (const auto& [surface, column] : Columns{columns}) columns.emplace(surface, state.grid.nx - column);
+  }
+  let_go(columns, run.model.bonds, state);
+  for (const BondedPlace& place : run.model.bonds.places) {
+    SurfacePoint& s = state.surfaces[place.surface].points[place.point];
+    if (s.split)
+      s.bonded = jump_at(run.model.condensed, state.point_stencils[place.surface][place.point], run.equilibrium.j);
+  }
+}
+
+// A tip that grows: J and pressure that it had.
+struct Growing {
+  std::size_t tip = 0;
+  double increment = 0.0;  // m
+  double J = 0.0;          // N/m
+  double P = 0.0;          // Pa
+  double J_c = 0.0;        // of the rock ahead (N/m)
+};
+
+std::vector<Growing> tips_that_grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state,
+                                    Quasistatic& run) {
+  std::vector<Growing> due;
+  for (std::size_t k = 0; k < state.tips.size(); ++k) {
+    Tip& tip = state.tips[k];
+    if (!may_grow(scene, state, tip) || tip_margin(scene, rocks, state, run, k) < 1.0) continue;
+    due.push_back({k, increment_of(scene, tip), tip.J, tip.at_back ? state.fluid.P.back() : state.fluid.P.front(),
+                   rocks[rock_ahead(scene, state, tip)].J_c});
+  }
+  return due;
+}
+
+void lengthen(const Scene& scene, std::vector<Growing>& growing, State& state) {
+  for (Growing& g : growing) {
+    Tip& tip = state.tips[g.tip];
+    const std::size_t points = state.fracture().points.size();
+    note_growth(state, tip);
+    g.increment = extend_tip(scene, state, tip, g.increment);
+    const std::size_t added = state.fracture().points.size() - points;
+    add_fluid_cells(scene, tip.at_back, added, state);
+    auto& all = state.fracture().points;
+    for (std::size_t q = 0; q < added; ++q)
+      all[tip.at_back ? points + q : q].P = g.P;  // wetted, to measure the release
+  }
+}
+
+// Two measures of what growth has released, independent of each other: the difference of potential energy over the
+// increment, and the mean of J over it (K linear between its ends, the new segment under the pressure that the tip
+// had). Where the tip all but closes on the way, under a pressure that falls off towards it, two values do not tell the
+// mean.
+void measure_release(const Scene& scene, const std::vector<Elasticity>& rocks, double energy_before,
+                     const std::vector<Growing>& growing, State& state, Quasistatic& run) {
+  run.equilibrium = find_equilibrium(scene, state.time, state, run.model);
+  set_fields(scene, state, run.model, run.equilibrium);
+  look_at_tips(scene, rocks, state, run);
+  const double energy = run.equilibrium.energy + dissipated_by_friction(run.model, run.equilibrium);
+  double length = 0.0;
+  for (const Growing& g : growing) length += g.increment;
+  for (const Growing& g : growing) {
+    constexpr double least_J = 0.25;  // of J before: K halved
+    Tip& tip = state.tips[g.tip];
+    tip.G = (energy_before - energy) / length;
+    tip.G_by_J = tip.K_I > 0.0 && tip.J > least_J * g.J ? (g.J + std::sqrt(g.J * tip.J) + tip.J) / 3.0 : 0.0;
+  }
+}
+
+[[noreturn]] void no_way_on(const char* when, double time, const std::string& reason) {
+  throw NumericalFailure(fmt::format("at t = {:.6g} s, {}: {}", time, when, reason));
+}
+
+// Whether a failure that is due goes before growth: both margins are shares of the load that each takes.
+bool failure_goes_first(const Scene& scene, const Quasistatic& run) {
+  const bool by_margin = scene.fracture && scene.fracture->order == Fracture::Order::larger_margin;
+  return failure_due(run) && (!by_margin || run.model.bonds.worst >= run.tip_margin);
+}
+
+// What is due at the present load: the worst bonded column fails or tips grow.
+void let_happen(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+  const LoadPoint before = load_point(state);
+  std::vector<Growing> growing;
+  double energy_before = 0.0;
+  if (failure_goes_first(scene, run)) {
+    fail(scene, run, state);
+  } else {
+    growing = tips_that_grow(scene, rocks, state, run);
+    energy_before = find_equilibrium(scene, state.time, state, run.model).energy;  // against friction's present memory
+    lengthen(scene, growing, state);
+  }
+  rebuild_all(scene, rocks, state, run);
+  if (!growing.empty()) measure_release(scene, rocks, energy_before, growing, state, run);
+  const FluidStep fluid = advance_fluid(scene, 0.0, state, run.model);
+  if (!fluid.found) no_way_on("just after growth or failure", state.time, fluid.reason);
+  equilibrate(scene, rocks, state, run);
+  double surface = 0.0;
+  for (const Growing& g : growing) surface += g.J_c * g.increment;
+  accept(scene, before, growing.empty() ? Change::failure : Change::growth, state, run, surface);
+  state.dt = first_flow_step;
+  state.fluid.w_rate.clear();
+}
+
+// From `from` to the load a time dt later: run.margin is the margin there. Under law = "reynolds" there may be no
+// solution within the iterations allowed.
+FluidStep try_step(const Scene& scene, const std::vector<Elasticity>& rocks, const LoadPoint& from, double dt,
+                   State& state, Quasistatic& run) {
+  return_to(from, state);
+  try {
+    FluidStep fluid = advance_fluid(scene, dt, state, run.model);
+    if (fluid.found) equilibrate(scene, rocks, state, run);
+    return fluid;
+  } catch (const NumericalFailure& failure) {  // perhaps only beyond the next event
+    run.model.factor = TangentFactor{};
+    for (GrowthTrial& trial : run.trials) trial.model.factor = TangentFactor{};
+    return {false, 0.0, failure.what()};
+  }
+}
+
+// An error that goes by the third power of its step as if it went by the second, as the steps' control takes it.
+double error_of_second_order(double error) {
+  return std::cbrt(error * error);
+}
+
+// The step at whose end the margin is 1 or hardly more, no longer than `high`, at which it is larger: regula falsi,
+// which turns the end that stays onto the slope of the parabola through the last three (Anderson and Bjorck, BIT 13,
+// 1973), and bisection where the margin has no size.
+void locate_event(const Scene& scene, const std::vector<Elasticity>& rocks, const LoadPoint& from, double margin_low,
+                  double high, State& state, Quasistatic& run) {
+  const double aim = 1.0 + 0.5 * event_tolerance;
+  double low = 0.0, f_low = margin_low - aim, f_high = run.margin - aim;
+  int side = 0;
+  for (int iteration = 0; iteration < 100 && high - low > 1e-12 * high; ++iteration) {
+    const double share = std::isfinite(f_high) && iteration < 50 ? -f_low / (f_high - f_low) : 0.5;
+    const double middle = low + (high - low) * std::clamp(share, 1e-3, 1.0 - 1e-3);
+    const bool found = try_step(scene, rocks, from, middle, state, run).found;
+    const double margin = found ? run.margin : HUGE_VAL;  // what has no solution lies beyond the event
+    if (margin >= 1.0 && margin <= 1.0 + event_tolerance) return;
+    const bool beyond = margin > aim;
+    double &f_same = beyond ? f_high : f_low, &f_other = beyond ? f_low : f_high;
+    if (side == (beyond ? 1 : -1)) {
+      const double less = 1.0 - (margin - aim) / f_same;
+      f_other *= less > 0.0 ? less : 0.5;
+    }
+    (beyond ? high : low) = middle;
+    f_same = margin - aim;
+    side = beyond ? 1 : -1;
+  }
+  const FluidStep last = try_step(scene, rocks, from, high, state, run);
+  if (!last.found) no_way_on("before the next event", from.time, last.reason);
+}
+
+}  // namespace
+
+bool failure_due(const Quasistatic& run) {
+  return run.model.bonds.worst >= 1.0;
+}
+
+void start_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+  run.model.factor = TangentFactor{}, run.trials.clear();  // digits go by the state alone
+  rebuild_all(scene, rocks, state, run);
+  if (state.step == 0) fill_fracture(scene, state, run.model);
+  equilibrate(scene, rocks, state, run);
+  if (state.step > 0) return;
+  remember(state, run.model, run.equilibrium);
+  state.dt = first_flow_step;
+  state.ledger = Ledger{};
+  // The in-situ state: the fluid holds the fracture's faces against the stress across it, bonds carry all the rest and
+  // give it up as they give way. The work of either is then half of its last value times the jump, and what rock and
+  // springs store is as much (Clapeyron).
+  const LoadPoint unloaded = [&] {
+    LoadPoint point = load_point(state);
+    std::fill(point.u.begin(), point.u.end(), Vec2::Zero());
+    point.body = point.u;
+    for (Surface& surface : point.surfaces) {
+      for (SurfacePoint& s : surface.points) {
+        const bool fracture = surface.kind == Surface::Kind::fracture;
+        s.w = Vec2::Zero();
+        if (fracture) s.P = s.closing_stress();
+        s.in_situ = fracture ? Vec2{s.P * s.n} : Vec2{Vec2::Zero()};
+      }
+    }
+    return point;
+  }();
+  close_ledger(run, unloaded, Change::load, 0.0, state);
+}
+
+void restart_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+  forget_solution(scene, rocks, state, run.model);
+  if (std::ranges::any_of(run.trials, [&](const GrowthTrial& t) { return t.turn != state.tips[t.tip].turn; }))
+    run.trials = make_trials(scene, rocks, state, run.model, std::move(run.trials));
+  for (GrowthTrial& trial : run.trials) forget_solution(scene, rocks, trial.state, trial.model);
+  equilibrate(scene, rocks, state, run);
+}
+
+void advance_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, double until, State& state,
+                         Quasistatic& run) {
+  if (run.margin >= 1.0) {
+    let_happen(scene, rocks, state, run);
+    for (Tip& tip : state.tips) stop_at_edge(scene, state, tip);
+    return;
+  }
+  const LoadPoint from = load_point(state);
+  const double margin = run.margin, left = until - from.time, aim = scene.numerics.flow_change;
+  const bool flows = scene.fluid.law != Fluid::Law::uniform && state.has_fracture;
+  const bool foresees = flows && scene.fluid.law == Fluid::Law::paper;
+  const std::vector<double> w = foresees ? openings_of(state.fracture()) : std::vector<double>{};
+  double dt = flows ? std::min(state.dt, left) : left;
+  double change = 0.0;
+  FluidStep fluid;
+  for (bool good = false; !good; dt *= good ? 1.0 : 0.5) {
+    fluid = try_step(scene, rocks, from, dt, state, run);
+    if (foresees && fluid.found)
+      fluid.error =
+          error_of_second_order(lag_error(scene, from.fluid, w, from.time, state) / scene.numerics.flow_error);
+    change = fluid.found ? std::abs(run.margin - margin) : 0.0;
+    if (!fluid.found && dt < shortest_trial) no_way_on("in any step", from.time, fluid.reason);
+    const bool event = run.margin >= 1.0;
+    good = fluid.found && (!flows || event || change < 2.0 * aim) && fluid.error < 4.0;
+    good = good || (fluid.found && dt < shortest_trial);
+  }
+  if (run.margin > 1.0 + event_tolerance) locate_event(scene, rocks, from, margin, dt, state, run);
+  if (foresees) note_rates(w, state.time - from.time, state);
+  accept(scene, from, Change::load, state, run);
+  const double by_margin = change > 0.0 ? aim / change : 2.0;
+  const double by_error = fluid.error > 0.0 ? 0.8 / std::sqrt(fluid.error) : 2.0;
+  state.dt = dt * std::clamp(std::min(by_margin, by_error), 0.3, 2.0);
+}
+
+}  // namespace strata

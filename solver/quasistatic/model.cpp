@@ -1,0 +1,284 @@
+#include "quasistatic/model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "quasistatic/body_load.hpp"
+#include "state/stiffness.hpp"
+#include "interfaces/surface_tractions.hpp"
+#include "interfaces/tip_ties.hpp"
+#include "scene/graded_cells.hpp"
+#include "state/quarters.hpp"
+
+namespace strata {
+
+namespace {
+
+// Fields of all particles.
+template <class Shape>
+void set_particles(const std::vector<Vec2>& u, State& state) {
+  Particles& p = state.particles;
+  for (const Bin& bin : state.bins) {
+    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+         q += static_cast<std::size_t>(bin.stride)) {
+      const Gradients g = gradients_of<Shape>(state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
+      Vec2 u_p = Vec2::Zero(), d_x = Vec2::Zero(), d_y = Vec2::Zero();
+      for (std::size_t n = 0; n < 9; ++n) {
+        const Vec2& u_i = u[static_cast<std::size_t>(bin.record[n])];
+        u_p += g.N[n] * u_i, d_x += g.N_x[n] * u_i, d_y += g.N_y[n] * u_i;
+      }
+      p.u_x[q] = u_p.x(), p.u_y[q] = u_p.y();
+      p.g_xx[q] = d_x.x(), p.g_xy[q] = d_y.x(), p.g_yx[q] = d_x.y(), p.g_yy[q] = d_y.y();
+    }
+  }
+}
+
+void set_particles(const Scene& scene, const std::vector<Vec2>& u, State& state) {
+  with_shape(scene.numerics.shape, [&](auto shape) { set_particles<decltype(shape)>(u, state); });
+}
+
+// Displacement gradients of the particles that are watched.
+void set_watched(const QuasistaticModel& model, const std::vector<Vec2>& u, State& state) {
+  Particles& p = state.particles;
+  std::size_t at = 0;
+  for (std::size_t b = 0; b < model.watched.size(); ++b) {
+    const Bin& bin = state.bins[model.watched[b]];
+    std::array<Vec2, 9> u_i;
+    for (std::size_t n = 0; n < 9; ++n) u_i[n] = u[static_cast<std::size_t>(model.reached[b][n])];
+    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+         q += static_cast<std::size_t>(bin.stride)) {
+      const std::array<double, 18>& N = model.slopes[at++];
+      Vec2 d_x = Vec2::Zero(), d_y = Vec2::Zero();
+      for (std::size_t n = 0; n < 9; ++n) d_x += N[n] * u_i[n], d_y += N[9 + n] * u_i[n];
+      p.g_xx[q] = d_x.x(), p.g_xy[q] = d_y.x(), p.g_yx[q] = d_x.y(), p.g_yy[q] = d_y.y();
+    }
+  }
+}
+
+// Whether J's widest ring around a tip weighs a bin: a node of it lies inside.
+bool weighed(const Scene& scene, const State& state, const Bin& bin) {
+  const Grid& g = state.grid;
+  const double reach = scene.numerics.ring_cells * g.h;
+  return std::ranges::any_of(state.tips, [&](const Tip& tip) {
+    const Vec2 at = tip_position(state, tip);
+    for (int n = 0; n < 9; ++n) {
+      const Vec2 off = Vec2{g.x(bin.i + n % 3 - 1), g.y(bin.j + n / 3 - 1)} - at;
+      if (off.norm() < reach) return true;
+    }
+    return false;
+  });
+}
+
+std::vector<std::size_t> watched_bins(const Scene& scene, const State& state, const Bonds& bonds) {
+  std::vector<char> particle(state.particles.size(), 0);
+  for (const BondSample& sample : bonds.samples) {
+    for (const BondSample::Share& share : sample.particles) particle[share.index] = 1;
+  }
+  std::vector<std::size_t> watched;
+  for (std::size_t b = 0; b < state.bins.size(); ++b) {
+    const Bin& bin = state.bins[b];
+    bool watch = weighed(scene, state, bin);
+    for (auto q = static_cast<std::size_t>(bin.first); !watch && q < static_cast<std::size_t>(bin.last);
+         q += static_cast<std::size_t>(bin.stride))
+      watch = particle[q] != 0;
+    if (watch) watched.push_back(b);
+  }
+  return watched;
+}
+
+// Slopes of the nodes' functions at the particles of some bins.
+std::vector<std::array<double, 18>> slopes_at(const Scene& scene, const State& state,
+                                              const std::vector<std::size_t>& bins) {
+  std::vector<std::array<double, 18>> slopes;
+  const Particles& p = state.particles;
+  for (const std::size_t b : bins) {
+    const Bin& bin = state.bins[b];
+    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+         q += static_cast<std::size_t>(bin.stride)) {
+      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
+      std::array<double, 18>& N = slopes.emplace_back();
+      std::copy(g.N_x.begin(), g.N_x.end(), N.begin());
+      std::copy(g.N_y.begin(), g.N_y.end(), N.begin() + 9);
+    }
+  }
+  return slopes;
+}
+
+// D of the vertices of all surfaces, one below the other.
+Eigen::SparseMatrix<double, Eigen::RowMajor> jumps_at_vertices(const State& state, const Condensed& condensed) {
+  std::vector<Eigen::Triplet<double>> entries;
+  int row = 0;
+  for (const std::vector<SurfaceStencil>& stencils : state.vertex_stencils) {
+    for (const SurfaceStencil& stencil : stencils) {
+      for (const SparseRow& of : jump_rows(condensed, stencil)) {
+        for (const auto& [index, value] : of) entries.emplace_back(row, index, value);
+        ++row;
+      }
+    }
+  }
+  Eigen::SparseMatrix<double, Eigen::RowMajor> D(row, condensed.size());
+  D.setFromTriplets(entries.begin(), entries.end());
+  return D;
+}
+
+// Masses of the copies of cut nodes (kg/m), which tell those that have rock; others' are not complete.
+void weigh_copies(const Scene& scene, State& state) {
+  state.sums.clear(state.sums.size());
+  const Particles& p = state.particles;
+  for (const std::size_t b : state.cut_bins) {
+    const Bin& bin = state.bins[b];
+    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
+         q += static_cast<std::size_t>(bin.stride)) {
+      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
+      for (std::size_t n = 0; n < 9; ++n) state.sums[static_cast<std::size_t>(bin.record[n])].m += g.N[n] * p.m[q];
+    }
+  }
+}
+
+// The records that some bins reach.
+std::vector<int> records_of(const State& state, const std::vector<std::size_t>& bins) {
+  std::vector<char> reached(static_cast<std::size_t>(state.copies.records()), 0);
+  for (const std::size_t b : bins) {
+    for (const int record : state.bins[b].record) reached[static_cast<std::size_t>(record)] = 1;
+  }
+  std::vector<int> records;
+  for (std::size_t r = 0; r < reached.size(); ++r) {
+    if (reached[r] != 0) records.push_back(static_cast<int>(r));
+  }
+  return records;
+}
+
+// Where the displacements of the nodes of some bins are among those asked for.
+std::vector<std::array<int, 9>> reached_by(const State& state, const std::vector<std::size_t>& bins,
+                                           const Asked& asked) {
+  std::vector<int> place(static_cast<std::size_t>(state.copies.records()), -1);
+  for (std::size_t k = 0; k < asked.records.size(); ++k)
+    place[static_cast<std::size_t>(asked.records[k])] = static_cast<int>(k);
+  std::vector<std::array<int, 9>> reached;
+  reached.reserve(bins.size());
+  for (const std::size_t b : bins) {
+    std::array<int, 9>& at = reached.emplace_back();
+    std::ranges::transform(state.bins[b].record, at.begin(), [&](int r) { return place[static_cast<std::size_t>(r)]; });
+  }
+  return reached;
+}
+
+// Plastic slip of a place since friction's memory (m): the tangential jump less what the stick spring gives way.
+double plastic_slip(const ContactPlace& place, const LawAnswer& r, const Vec2& w) {
+  if (r.dt_dn == 0.0) return 0.0;
+  return w.dot(tangent_of(place.n)) - place.w_t_start + (r.t - place.r_t_start) / place.k;
+}
+
+}  // namespace
+
+void update_model(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, QuasistaticModel& model,
+                  bool halve) {
+  update_equations(scene, rocks, state, model, halve);
+  model.bonds = find_bonds(scene, state);
+  if (scene.body.acceleration_m_s2) {  // its work needs all
+    model.asked = ask_for_all(state, *model.body);
+  } else {
+    model.watched = watched_bins(scene, state, model.bonds);
+    model.asked = ask_for(scene, state, *model.body, records_of(state, model.watched));
+    model.reached = reached_by(state, model.watched, model.asked);
+    model.slopes = slopes_at(scene, state, model.watched);
+  }
+  model.vertex_jumps = jumps_at_vertices(state, model.condensed);
+}
+
+void update_equations(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, QuasistaticModel& model,
+                      bool halve) {
+  rebuild(scene, rocks, state);
+  weigh_copies(scene, state);
+  update_stencil_weights(scene, state);
+  const bool halved = halve && mirror_symmetric(scene);
+  const bool same_body = model.body && model.body->points() == Quarters(scene, state.grid).points(state.particles);
+  if (!same_body) {
+    std::vector<int> order;
+    if (model.body && model.body->halved() == halved) order = model.body->factor().order();
+    model.body.reset();  // two are not to be held at a time
+    model.body = std::make_shared<const IntactBody>(scene, rocks, state, halved, std::move(order));
+  }
+  model.condensed = condense(scene, rocks, state, *model.body, same_body ? &model.condensed : nullptr);
+  model.places = contact_places(scene, rocks, state, model.condensed);
+  model.factor.outdate();
+  model.j.resize(0);
+  model.dw_dP.resize(0, 0);
+}
+
+void forget_solution(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
+                     QuasistaticModel& model) {
+  model.places = contact_places(scene, rocks, state, model.condensed);
+  model.factor = TangentFactor{};
+  model.j.resize(0);
+  model.dw_dP.resize(0, 0);
+}
+
+Equilibrium find_equilibrium(const Scene& scene, double time, State& state, QuasistaticModel& model) {
+  load_body(scene, time, *model.body, state, model.condensed);
+  Equilibrium found = solve_equilibrium(state, model.condensed, model.places, model.j, model.factor);
+  model.j = found.j;
+  return found;
+}
+
+std::vector<Vec2> set_all_particles(const Scene& scene, State& state, const QuasistaticModel& model) {
+  const Asked all = ask_for_all(state, *model.body);
+  std::vector<Vec2> u = displacements(scene, state, *model.body, model.condensed, model.shown, all);
+  set_particles(scene, u, state);
+  return u;
+}
+
+void set_fields(const Scene& scene, State& state, QuasistaticModel& model, const Equilibrium& equilibrium) {
+  model.shown = equilibrium.j;
+  const std::vector<Vec2> u = displacements(scene, state, *model.body, model.condensed, model.shown, model.asked);
+  if (scene.body.acceleration_m_s2) {
+    set_particles(scene, u, state);
+  } else {
+    set_watched(model, u, state);
+  }
+  for (std::size_t k = 0; k < model.places.size(); ++k) {
+    const ContactPlace& place = model.places[k];
+    const LawAnswer& r = equilibrium.answers[k];
+    SurfacePoint& s = place.tie >= 0 ? state.ties[static_cast<std::size_t>(place.tie)].s
+                                     : state.surfaces[place.surface].points[place.point];
+    s.w = equilibrium.w[k];
+    s.reaction = r.n * place.n + r.t * tangent_of(place.n);
+  }
+  const Eigen::VectorXd w = model.vertex_jumps * equilibrium.j;
+  Eigen::Index row = 0;
+  for (Surface& surface : state.surfaces) {
+    for (SurfacePoint& vertex : surface.vertices) vertex.w = w.segment<2>(row), row += 2;
+  }
+}
+
+void remember(State& state, QuasistaticModel& model, const Equilibrium& equilibrium) {
+  for (std::size_t k = 0; k < model.places.size(); ++k) {
+    ContactPlace& place = model.places[k];
+    const LawAnswer& r = equilibrium.answers[k];
+    if (place.tie < 0) {
+      SurfacePoint& s = state.surfaces[place.surface].points[place.point];
+      s.slip += std::abs(equilibrium.w[k].dot(tangent_of(place.n)) - place.w_t_start);
+    }
+    place.w_t_start = equilibrium.w[k].dot(tangent_of(place.n));
+    place.r_t_start = r.t;
+  }
+}
+
+double stored_in_surfaces(const QuasistaticModel& model, const Equilibrium& equilibrium) {
+  double energy = 0.0;
+  for (std::size_t k = 0; k < model.places.size(); ++k) energy += model.places[k].A * equilibrium.answers[k].energy;
+  return energy;
+}
+
+double dissipated_by_friction(const QuasistaticModel& model, const Equilibrium& equilibrium) {
+  double energy = 0.0;
+  for (std::size_t k = 0; k < model.places.size(); ++k) {
+    const LawAnswer& r = equilibrium.answers[k];
+    energy -= model.places[k].A * r.t * plastic_slip(model.places[k], r, equilibrium.w[k]);
+  }
+  return energy;
+}
+
+}  // namespace strata

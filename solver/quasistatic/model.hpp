@@ -1,0 +1,69 @@
+// The rock without inertia: equilibrium of the particles with the pressure in the fracture and the laws of all
+// surfaces.
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "quasistatic/contact_equilibrium.hpp"
+#include "interfaces/failure.hpp"
+
+namespace strata {
+
+// What solving a state needs beside it; all of it follows from the state.
+struct QuasistaticModel {
+  std::shared_ptr<const IntactBody> body;
+  Condensed condensed;
+  std::vector<ContactPlace> places;
+  TangentFactor factor;
+  Bonds bonds;
+  std::vector<std::size_t> watched;            // bins whose fields decide what happens next: around tips, beside bonded
+                                               // interfaces; none with a body force, under which all do
+  Asked asked;                                 // the records that these reach
+  std::vector<std::array<int, 9>> reached;     // where among these each of their bins' nodes is
+  std::vector<std::array<double, 18>> slopes;  // of the nine nodes' functions at each of their particles (1/m), those
+                                               // along x first
+  Eigen::SparseMatrix<double, Eigen::RowMajor> vertex_jumps;  // jumps at all vertices (x and y) by the jump unknowns
+  Eigen::VectorXd j;                                          // the last solution, as a first guess
+  Eigen::VectorXd shown;                                      // the solution whose fields the state was given
+  Eigen::MatrixXd dw_dP;                                      // opening_per_pressure(), none where not known,
+  Pieces dw_dP_of;                                            // and the pieces for which it holds
+};
+
+/// Rebuilds what follows from the state's particles and surfaces (copies, springs of tips, stencils) and brings the
+/// model up to date with it; what `model` holds already is reused where it still applies. halve: solve on half of a
+/// mirror-symmetric scene. Throws NumericalFailure as rebuild_copies() and IntactBody do.
+void update_model(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, QuasistaticModel& model,
+                  bool halve = true);
+
+/// The same without what set_fields() needs, for a model that equilibria are only asked for.
+void update_equations(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, QuasistaticModel& model,
+                      bool halve = true);
+
+/// Takes back what a model has of former solutions: first guess and factor; friction's memory is that of the state.
+void forget_solution(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
+                     QuasistaticModel& model);
+
+/// Equilibrium under the pressures that the state's points hold and the body force at a time (s); see
+/// solve_equilibrium() and load_body(), and what they throw. Sets state.body.
+Equilibrium find_equilibrium(const Scene& scene, double time, State& state, QuasistaticModel& model);
+
+/// Writes an equilibrium to the state: jumps (m) and reactions (Pa) to the surfaces, displacements and their gradients
+/// to the particles that decide what happens next. Friction's memory stays what it was.
+void set_fields(const Scene& scene, State& state, QuasistaticModel& model, const Equilibrium& equilibrium);
+
+/// Displacements and their gradients to all particles, for whoever looks at them; returns those of all records (m).
+std::vector<Vec2> set_all_particles(const Scene& scene, State& state, const QuasistaticModel& model);
+
+/// Makes the equilibrium that the state holds the one that friction remembers; adds up slip.
+void remember(State& state, QuasistaticModel& model, const Equilibrium& equilibrium);
+
+/// Energy stored in the laws of surfaces and the springs of tips (J/m).
+double stored_in_surfaces(const QuasistaticModel& model, const Equilibrium& equilibrium);
+
+/// What friction has dissipated since the equilibrium that it remembers (J/m).
+double dissipated_by_friction(const QuasistaticModel& model, const Equilibrium& equilibrium);
+
+}  // namespace strata

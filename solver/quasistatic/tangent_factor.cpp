@@ -1,0 +1,295 @@
+#include "quasistatic/tangent_factor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace strata {
+
+namespace {
+
+// What stands still: the tangent scaled to a unit diagonal has no eigenvalue below this where nothing moves freely.
+// Round-off leaves some 1e-15 of a free motion; a soft interface of 1e3 Pa/m, the softest offered for, some 1e-8.
+// (Pivots do not tell them apart: the last one is the eigenvalue over the square of its unknown's share in the motion.)
+constexpr double smallest_eigenvalue = 1e-12;
+
+// A tangent that has followed changes has lost digits: what is as weak as this is factorised to be sure of it.
+constexpr double smallest_to_follow = 1e-9;
+
+// Where the matrix of the changes is no worse conditioned than this (an estimate in the 1-norm), none of them has let
+// go what the first tangent held: contact that opens or slides leaves 1e-4 of its stiffness, some of them beside each
+// other 1e-6.
+constexpr double sound = 1e-7;
+
+// Rows of reactions that changed over unknowns from which on a factorisation takes no longer: those to solve for, and
+// all.
+constexpr double most_fresh = 0.2;
+constexpr double most_changed = 0.35;
+
+// The smallest eigenvalue of a scaled tangent in size, by two inverse iterations.
+template <class Solve>
+double weakest(Solve solve, Eigen::Index n) {
+  Eigen::VectorXd x(n);
+  for (Eigen::Index k = 0; k < n; ++k) x[k] = std::sin(1.0 + static_cast<double>(k));
+  double eigenvalue = 0.0;
+  for (int iteration = 0; iteration < 2; ++iteration) {
+    x /= x.norm();
+    x = solve(x);
+    eigenvalue = x.allFinite() ? 1.0 / x.norm() : 0.0;
+  }
+  return eigenvalue;
+}
+
+Eigen::VectorXd scale_of(const Eigen::MatrixXd& T) {
+  return T.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+}
+
+// What a place adds to the tangent, with the unknowns that its own stand for.
+std::vector<double> signature(const ContactPlace& place, const std::vector<int>& unknown_of) {
+  std::vector<double> out{place.A, place.n.x(), place.n.y()};
+  for (const SparseRow& D : place.D) {
+    out.push_back(static_cast<double>(D.size()));
+    for (const auto& [index, value] : D) {
+      out.push_back(static_cast<double>(unknown_of[static_cast<std::size_t>(index)]));
+      out.push_back(value);
+    }
+  }
+  return out;
+}
+
+// Index of each unknown of `of` in `among`; -1: it is not there.
+std::vector<int> indices(const Unknowns& of, const Unknowns& among) {
+  std::map<const void*, int> index;
+  for (std::size_t k = 0; k < among.size(); ++k) index.emplace(among[k].get(), static_cast<int>(k));
+  std::vector<int> out;
+  for (const auto& unknown : of) {
+    const auto found = index.find(unknown.get());
+    out.push_back(found == index.end() ? -1 : found->second);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<LawAnswer> without_coupling(std::vector<LawAnswer> answers) {
+  for (LawAnswer& r : answers) r.dt_dn = 0.0;
+  return answers;
+}
+
+Eigen::Matrix2d tangent_matrix(const ContactPlace& place, const LawAnswer& r) {
+  const Vec2 t = tangent_of(place.n);
+  return r.dn_dn * place.n * place.n.transpose() + r.dt_dn * t * place.n.transpose() + r.dt_dt * t * t.transpose();
+}
+
+Eigen::MatrixXd tangent(const Eigen::MatrixXd& S, const std::vector<ContactPlace>& places,
+                        const std::vector<LawAnswer>& answers) {
+  Eigen::MatrixXd T = S;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const ContactPlace& place = places[k];
+    const Eigen::Matrix2d R = place.A * tangent_matrix(place, answers[k]);
+    for (Eigen::Index a = 0; a < 2; ++a) {
+      for (Eigen::Index b = 0; b < 2; ++b) {
+        if (R(a, b) == 0.0) continue;
+        for (const auto& [row, w_row] : place.D[static_cast<std::size_t>(a)]) {
+          for (const auto& [column, w_column] : place.D[static_cast<std::size_t>(b)])
+            T(row, column) -= R(a, b) * w_row * w_column;
+        }
+      }
+    }
+  }
+  return T;
+}
+
+// What T_0 is of, with nothing changed since.
+void TangentFactor::start(const Unknowns& unknowns, const std::vector<ContactPlace>& places,
+                          const std::vector<LawAnswer>& first) {
+  unknowns_ = unknowns, places_ = places, first_ = first;
+  known_.assign(places.size(), {-1, -1});
+  Z_all_.resize(static_cast<Eigen::Index>(unknowns.size()), 0);
+  V_.clear();
+  outdated_ = false;
+}
+
+bool TangentFactor::stands_still() const {
+  const auto solve = [&](const Eigen::VectorXd& x) {
+    return Eigen::VectorXd(symmetric_ ? cholesky_.solve(x) : Eigen::MatrixXd(lu_.solve(x)));
+  };
+  return weakest(solve, scale_.size()) > smallest_eigenvalue;
+}
+
+bool TangentFactor::factorise(const Eigen::MatrixXd& T, const Unknowns& unknowns,
+                              const std::vector<ContactPlace>& places, const std::vector<LawAnswer>& answers,
+                              std::vector<int> order, bool stiffened) {
+  stiffened_ = stiffened;
+  symmetric_ = std::none_of(answers.begin(), answers.end(), [](const LawAnswer& r) { return r.dt_dn != 0.0; });
+  start(unknowns, places, answers);
+  scale_ = scale_of(T);
+  if (T.rows() == 0) return true;  // a fracture so short that it splits no node
+  if (symmetric_) return cholesky_.factorise(T, scale_, std::move(order)) && stands_still();
+  lu_.compute(scale_.asDiagonal() * T * scale_.asDiagonal());
+  return stands_still();
+}
+
+void TangentFactor::outdate() {
+  pieces.clear();
+  outdated_ = true;
+}
+
+TangentFactor::Shared TangentFactor::shared_with(const Unknowns& unknowns, const std::vector<ContactPlace>& places,
+                                                 const std::vector<LawAnswer>& answers) const {
+  Shared shared{indices(unknowns_, unknowns), std::vector<char>(unknowns_.size(), 0), without_coupling(answers)};
+  const std::vector<int> itself = indices(unknowns_, unknowns_), before_of = indices(unknowns, unknowns_);
+  const auto touch = [&](const ContactPlace& place, const std::vector<int>& unknown_of) {
+    for (const SparseRow& D : place.D) {
+      for (const auto& entry : D) {
+        const int unknown = unknown_of[static_cast<std::size_t>(entry.first)];
+        if (unknown >= 0) shared.touched[static_cast<std::size_t>(unknown)] = 1;
+      }
+    }
+  };
+  std::map<std::vector<double>, std::size_t> before;
+  for (std::size_t k = 0; k < places_.size(); ++k) {
+    if (!before.emplace(signature(places_[k], itself), k).second) touch(places_[k], itself);
+  }
+  std::vector<std::pair<std::size_t, std::size_t>> same;  // places there and in T_0
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const auto found = before.find(signature(places[k], before_of));
+    if (found == before.end()) {
+      touch(places[k], before_of);
+    } else {
+      same.emplace_back(k, found->second);
+      before.erase(found);
+    }
+  }
+  for (const auto& gone : before) touch(places_[gone.second], itself);
+  keep_answers(same, shared);
+  return shared;
+}
+
+// T_0 keeps the answers of the places that its leading rows know.
+void TangentFactor::keep_answers(const std::vector<std::pair<std::size_t, std::size_t>>& same, Shared& shared) const {
+  std::vector<char> leads(unknowns_.size(), 0);
+  const Eigen::Index kept = cholesky_.keeps(shared.now, shared.touched);
+  for (Eigen::Index row = 0; row < kept; ++row)
+    leads[static_cast<std::size_t>(cholesky_.order()[static_cast<std::size_t>(row)])] = 1;
+  const auto led = [&](const SparseRow& D) {
+    return std::ranges::any_of(D, [&](const auto& entry) { return leads[static_cast<std::size_t>(entry.first)] != 0; });
+  };
+  for (const auto& [there, here] : same) {
+    if (std::ranges::any_of(places_[here].D, led)) shared.first[there] = first_[here];
+  }
+}
+
+bool TangentFactor::grow(const Eigen::MatrixXd& S, const Unknowns& unknowns, const std::vector<ContactPlace>& places,
+                         const std::vector<LawAnswer>& answers) {
+  if (!symmetric_ || stiffened_ || scale_.size() == 0) return false;
+  const Shared shared = shared_with(unknowns, places, answers);
+  const Eigen::MatrixXd T = tangent(S, places, shared.first);
+  Eigen::VectorXd scale = scale_of(T);
+  for (std::size_t k = 0; k < shared.now.size(); ++k) {
+    if (shared.now[k] >= 0) scale[shared.now[k]] = scale_[static_cast<Eigen::Index>(k)];
+  }
+  const bool definite = cholesky_.change(T, scale, shared.now, shared.touched);
+  scale_ = std::move(scale);
+  start(unknowns, places, shared.first);
+  return definite && stands_still() && follow(places, answers);
+}
+
+// The rows of reactions that are others now than in T_0.
+std::vector<TangentFactor::Change> TangentFactor::changes(const std::vector<ContactPlace>& places,
+                                                          const std::vector<LawAnswer>& answers) const {
+  std::vector<Change> changes;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const LawAnswer &before = first_[k], &now = answers[k];
+    const Vec2 n = places[k].n, t = tangent_of(n);
+    const double A = places[k].A, n_n = A * (before.dn_dn - now.dn_dn), t_n = A * (before.dt_dn - now.dt_dn),
+                 t_t = A * (before.dt_dt - now.dt_dt);
+    if (n_n != 0.0) changes.push_back({k, 0, n, n_n * n});
+    if (t_n != 0.0 || t_t != 0.0) changes.push_back({k, 1, t, t_n * n + t_t * t});
+  }
+  return changes;
+}
+
+// Adds the columns of Z that are not known yet.
+void TangentFactor::solve_for(const std::vector<ContactPlace>& places, const std::vector<Change>& fresh) {
+  if (fresh.empty()) return;
+  Eigen::MatrixXd U = Eigen::MatrixXd::Zero(scale_.size(), static_cast<Eigen::Index>(fresh.size()));
+  const Eigen::Index before = Z_all_.cols();
+  for (std::size_t f = 0; f < fresh.size(); ++f) {
+    const Change& change = fresh[f];
+    const auto column = static_cast<Eigen::Index>(f);
+    known_[change.place][change.component] = static_cast<int>(before + column);
+    for (std::size_t c = 0; c < 2; ++c) {
+      for (const auto& [row, value] : places[change.place].D[c])
+        U(row, column) += change.u[static_cast<Eigen::Index>(c)] * value;
+    }
+  }
+  Z_all_.conservativeResize(Eigen::NoChange, before + U.cols());
+  Z_all_.rightCols(U.cols()) = solve_first(U);
+}
+
+// V^T y.
+Eigen::MatrixXd TangentFactor::change_of(const Eigen::MatrixXd& y) const {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(V_.size()), y.cols());
+  for (Eigen::Index column = 0; column < y.cols(); ++column) {
+    for (std::size_t f = 0; f < V_.size(); ++f) {
+      for (const auto& [row, value] : V_[f]) out(static_cast<Eigen::Index>(f), column) += value * y(row, column);
+    }
+  }
+  return out;
+}
+
+bool TangentFactor::follow(const std::vector<ContactPlace>& places, const std::vector<LawAnswer>& answers) {
+  if (stiffened_ || outdated_ || scale_.size() == 0 || first_.size() != places.size()) return false;
+  const std::vector<Change> differ = changes(places, answers);
+  std::vector<Change> fresh;
+  for (const Change& change : differ) {
+    if (known_[change.place][change.component] < 0) fresh.push_back(change);
+  }
+  const auto share = [&](const auto& of) {
+    return static_cast<double>(of.size()) / static_cast<double>(scale_.size());
+  };
+  if (share(differ) > most_changed || share(fresh) > most_fresh) return false;
+  solve_for(places, fresh);
+  V_.clear();
+  if (differ.empty()) return true;
+  const auto columns = static_cast<Eigen::Index>(differ.size());
+  Z_.resize(scale_.size(), columns);
+  for (Eigen::Index f = 0; f < columns; ++f) {
+    const Change& change = differ[static_cast<std::size_t>(f)];
+    SparseRow& row = V_.emplace_back();
+    for (std::size_t c = 0; c < 2; ++c) {
+      for (const auto& [index, value] : places[change.place].D[c])
+        row.emplace_back(index, change.v[static_cast<Eigen::Index>(c)] * value);
+    }
+    Z_.col(f) = Z_all_.col(known_[change.place][change.component]);
+  }
+  small_.compute(Eigen::MatrixXd::Identity(columns, columns) + change_of(Z_));
+  if (small_.rcond() > sound) return true;
+  const auto solve_scaled = [&](const Eigen::VectorXd& x) {
+    return Eigen::VectorXd(solve(x.cwiseQuotient(scale_)).cwiseQuotient(scale_));
+  };
+  return weakest(solve_scaled, scale_.size()) > smallest_to_follow;
+}
+
+Eigen::MatrixXd TangentFactor::solve_first(const Eigen::MatrixXd& b) const {
+  if (b.rows() == 0) return b;
+  if (b.cols() == 1) {  // Eigen solves for a vector by other kernels than for a matrix of one column, and faster
+    const Eigen::VectorXd one = scale_.cwiseProduct(b.col(0));
+    const Eigen::VectorXd x = symmetric_ ? Eigen::VectorXd(cholesky_.solve(one)) : Eigen::VectorXd(lu_.solve(one));
+    return scale_.cwiseProduct(x);
+  }
+  const Eigen::MatrixXd scaled = scale_.asDiagonal() * b;
+  if (symmetric_) return scale_.asDiagonal() * cholesky_.solve(scaled);
+  return scale_.asDiagonal() * lu_.solve(scaled);
+}
+
+Eigen::MatrixXd TangentFactor::solve(const Eigen::MatrixXd& b) const {
+  Eigen::MatrixXd y = solve_first(b);
+  if (changed()) y -= Z_ * small_.solve(change_of(y));
+  return y;
+}
+
+}  // namespace strata

@@ -1,0 +1,257 @@
+#include "quasistatic/tree_factor.hpp"
+
+#include <cholmod.h>
+#include <omp.h>
+
+#include <Eigen/CholmodSupport>
+#include <algorithm>
+#include <new>
+#include <numeric>
+
+#include "state/types.hpp"
+
+namespace strata {
+
+namespace {
+
+// Right-hand sides that go through the factor together.
+constexpr std::size_t at_a_time = 16;
+using Sixteen = Eigen::Array<double, at_a_time, 1>;
+
+// CHOLMOD brings threads of its own, which wait for each other at every supernode however many the run was given.
+class OneThread {
+ public:
+  OneThread() : levels_(omp_get_max_active_levels()) { omp_set_max_active_levels(0); }
+  ~OneThread() { omp_set_max_active_levels(levels_); }
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+
+ private:
+  int levels_;
+};
+
+}  // namespace
+
+TreeFactor::TreeFactor(const Eigen::SparseMatrix<double>& K, const char* singular, std::vector<int> order) {
+  const OneThread guard;
+  cholmod_common common{};
+  cholmod_start(&common);
+  common.print = 0;
+  common.supernodal = CHOLMOD_SUPERNODAL;
+  cholmod_sparse view = Eigen::viewAsCholmod(K.selfadjointView<Eigen::Lower>());
+  const bool ordered = order.size() == view.nrow;
+  if (ordered) common.nmethods = 1, common.method[0].ordering = CHOLMOD_GIVEN;
+  cholmod_factor* L = cholmod_analyze_p(&view, ordered ? order.data() : nullptr, nullptr, 0, &common);
+  cholmod_factorize(&view, L, &common);
+  const bool sound = common.status == CHOLMOD_OK;
+  const bool out_of_memory = common.status == CHOLMOD_OUT_OF_MEMORY || common.status == CHOLMOD_TOO_LARGE;
+  if (sound) {
+    const auto *super = static_cast<const int*>(L->super), *rows_at = static_cast<const int*>(L->pi),
+               *values_at = static_cast<const int*>(L->px), *rows = static_cast<const int*>(L->s),
+               *order = static_cast<const int*>(L->Perm);
+    unknown_.assign(order, order + L->n);
+    place_.resize(L->n);
+    for (std::size_t k = 0; k < L->n; ++k) place_[static_cast<std::size_t>(unknown_[k])] = static_cast<int>(k);
+    block_of_row_.resize(L->n);
+    reserve(*L);
+    for (std::size_t s = 0; s < L->nsuper; ++s) {
+      const auto stride = static_cast<std::size_t>(rows_at[s + 1] - rows_at[s]);
+      for (int first = super[s]; first < super[s + 1]; first += width) {
+        const auto skipped = static_cast<std::size_t>(first - super[s]);
+        add_block(first, std::min(width, super[s + 1] - first),
+                  static_cast<const double*>(L->x) + values_at[s] + skipped * stride + skipped, stride,
+                  rows + rows_at[s] + skipped, stride - skipped);
+      }
+    }
+    for (Block& block : blocks_) {
+      if (block.rows < block.last_row) block.parent = block_of_row_[static_cast<std::size_t>(row_[block.rows])];
+    }
+    all_.resize(blocks_.size());
+    std::iota(all_.begin(), all_.end(), 0);
+  }
+  cholmod_free_factor(&L, &common);
+  cholmod_finish(&common);
+  if (out_of_memory) throw std::bad_alloc();
+  if (!sound) throw NumericalFailure(singular);
+}
+
+// Room for the blocks of all supernodes.
+void TreeFactor::reserve(const cholmod_factor& L) {
+  const auto *super = static_cast<const int*>(L.super), *rows_at = static_cast<const int*>(L.pi);
+  std::size_t blocks = 0, rows = 0;
+  for (std::size_t s = 0; s < L.nsuper; ++s) {
+    const auto columns = static_cast<std::size_t>(super[s + 1]) - static_cast<std::size_t>(super[s]),
+               stride = static_cast<std::size_t>(rows_at[s + 1]) - static_cast<std::size_t>(rows_at[s]);
+    for (std::size_t first = 0; first < columns; first += width) {
+      ++blocks;
+      rows += stride - std::min(first + width, columns);
+    }
+  }
+  blocks_.reserve(blocks), row_.reserve(rows), values_.reserve(rows + width * blocks);
+}
+
+// A block from its columns of a supernode, `stride` values apart; rows: `count` of them, its own first.
+void TreeFactor::add_block(int first, int columns, const double* values, std::size_t stride, const int* rows,
+                           std::size_t count) {
+  Block block{first, columns, -1, row_.size(), 0, values_.size()};
+  for (int c = 0; c < width; ++c) {
+    Eight& row = values_.emplace_back(Eight::Zero());
+    if (c >= columns) row[c] = 1.0;
+    for (int b = 0; b <= c && c < columns; ++b)
+      row[b] = values[static_cast<std::size_t>(b) * stride + static_cast<std::size_t>(c)];
+  }
+  for (std::size_t r = static_cast<std::size_t>(columns); r < count; ++r) {
+    row_.push_back(rows[r]);
+    Eight& row = values_.emplace_back(Eight::Zero());
+    for (int b = 0; b < columns; ++b) row[b] = values[static_cast<std::size_t>(b) * stride + r];
+  }
+  block.last_row = row_.size();
+  for (int c = 0; c < columns; ++c)
+    block_of_row_[static_cast<std::size_t>(first + c)] = static_cast<int>(blocks_.size());
+  blocks_.push_back(block);
+}
+
+// Adds the blocks on the branches of some unknowns that are not `on` yet to `blocks`, in no order.
+void TreeFactor::mark(const std::vector<int>& unknowns, std::vector<char>& on, Branches& blocks) const {
+  for (const int unknown : unknowns) {
+    int b = block_of_row_[static_cast<std::size_t>(place_[static_cast<std::size_t>(unknown)])];
+    for (; b >= 0 && on[static_cast<std::size_t>(b)] == 0; b = blocks_[static_cast<std::size_t>(b)].parent) {
+      on[static_cast<std::size_t>(b)] = 1;
+      blocks.push_back(b);
+    }
+  }
+}
+
+TreeFactor::Branches TreeFactor::branches(const std::vector<int>& unknowns) const {
+  std::vector<char> on(blocks_.size(), 0);
+  Branches blocks;
+  mark(unknowns, on, blocks);
+  std::sort(blocks.begin(), blocks.end());
+  return blocks;
+}
+
+// Solves for a block's own rows of y and takes their part from the rows below.
+void TreeFactor::down(const Block& block, Eigen::VectorXd& y) const {
+  const Eight* L = &values_[block.values];
+  Eight own = Eight::Zero();
+  for (int c = 0; c < block.columns; ++c) {
+    double value = y[block.first + c];
+    for (int b = 0; b < c; ++b) value -= L[c][b] * own[b];
+    y[block.first + c] = own[c] = value / L[c][c];
+  }
+  L += width;
+  for (std::size_t r = block.rows; r < block.last_row; ++r, ++L) {
+    double& below = y[row_[r]];
+    double value = below;
+    for (int b = 0; b < width; ++b) value -= (*L)[b] * own[b];
+    below = value;
+  }
+}
+
+// Solves for a block's own rows of x from those below, in the place of y.
+void TreeFactor::up(const Block& block, Eigen::VectorXd& y) const {
+  const Eight* L = &values_[block.values + width];
+  Eight even = Eight::Zero(), odd = Eight::Zero();  // two sums: one alone waits for itself
+  std::size_t r = block.rows;
+  for (; r + 2 <= block.last_row; r += 2, L += 2) {
+    even += y[row_[r]] * L[0];
+    odd += y[row_[r + 1]] * L[1];
+  }
+  if (r < block.last_row) even += y[row_[r]] * L[0];
+  const Eight below = even + odd;
+  L = &values_[block.values];
+  for (int c = block.columns - 1; c >= 0; --c) {
+    double value = y[block.first + c] - below[c];
+    for (int b = c + 1; b < block.columns; ++b) value -= L[b][c] * y[block.first + b];
+    y[block.first + c] = value / L[c][c];
+  }
+}
+
+Eigen::VectorXd TreeFactor::zeros(const Branches& loaded, const Branches& wanted) const {
+  Eigen::VectorXd y(size());
+  for (const Branches* branches : {&loaded, &wanted}) {
+    for (const int b : *branches) {
+      const Block& block = blocks_[static_cast<std::size_t>(b)];
+      y.segment(block.first, block.columns).setZero();
+    }
+  }
+  return y;
+}
+
+void TreeFactor::solve(const Branches& loaded, const Branches& wanted, Eigen::VectorXd& f) const {
+  for (const int b : loaded) down(blocks_[static_cast<std::size_t>(b)], f);
+  for (auto b = wanted.rbegin(); b != wanted.rend(); ++b) up(blocks_[static_cast<std::size_t>(*b)], f);
+}
+
+Eigen::VectorXd TreeFactor::solve(const Eigen::VectorXd& f) const {
+  Eigen::VectorXd in_rows(size()), x(size());
+  for (int k = 0; k < size(); ++k) in_rows[row(k)] = f[k];
+  solve(all_, all_, in_rows);
+  for (int k = 0; k < size(); ++k) x[k] = in_rows[row(k)];
+  return x;
+}
+
+// The same as for one right-hand side, for many, of which y holds the rows on some branches; place: of each of them.
+template <class Lanes>
+void TreeFactor::down(const Block& block, const std::vector<int>& place, std::vector<Lanes>& y) const {
+  const auto at = [&](int row) -> Lanes& { return y[static_cast<std::size_t>(place[static_cast<std::size_t>(row)])]; };
+  const Eight* L = &values_[block.values];
+  std::array<Lanes, width> own;
+  own.fill(Lanes::Zero());
+  for (int c = 0; c < block.columns; ++c) {
+    Lanes value = at(block.first + c);
+    for (int b = 0; b < c; ++b) value -= L[c][b] * own[static_cast<std::size_t>(b)];
+    at(block.first + c) = own[static_cast<std::size_t>(c)] = value / L[c][c];
+  }
+  L += width;
+  for (std::size_t r = block.rows; r < block.last_row; ++r, ++L) {
+    Lanes value = at(row_[r]);
+    for (int b = 0; b < width; ++b) value -= (*L)[b] * own[static_cast<std::size_t>(b)];
+    at(row_[r]) = value;
+  }
+}
+
+std::vector<BranchVector> TreeFactor::forward(const std::vector<SparseVector>& g) const {
+  std::vector<BranchVector> out(g.size());
+  std::vector<int> place(g.empty() ? 0 : place_.size());  // of rows on the branches of one batch, in y
+  std::vector<Sixteen> y;
+  std::vector<char> on(g.empty() ? 0 : blocks_.size(), 0);
+  Branches together, own;
+  for (std::size_t from = 0; from < g.size(); from += at_a_time) {
+    const std::size_t count = std::min(at_a_time, g.size() - from);
+    together.clear();
+    for (std::size_t c = 0; c < count; ++c) mark(g[from + c].index, on, together);
+    std::sort(together.begin(), together.end());
+    int rows = 0;
+    for (const int b : together) {
+      const Block& block = blocks_[static_cast<std::size_t>(b)];
+      on[static_cast<std::size_t>(b)] = 0;
+      for (int k = block.first; k < block.first + block.columns; ++k) place[static_cast<std::size_t>(k)] = rows++;
+    }
+    const auto at = [&](int row) { return static_cast<std::size_t>(place[static_cast<std::size_t>(row)]); };
+    y.assign(static_cast<std::size_t>(rows), Sixteen::Zero());
+    for (std::size_t c = 0; c < count; ++c) {
+      const SparseVector& load = g[from + c];
+      for (std::size_t e = 0; e < load.index.size(); ++e)
+        y[at(row(load.index[e]))][static_cast<Eigen::Index>(c)] = load.value[e];
+    }
+    for (const int b : together) down(blocks_[static_cast<std::size_t>(b)], place, y);
+    for (std::size_t c = 0; c < count; ++c) {
+      own.clear();
+      mark(g[from + c].index, on, own);
+      std::sort(own.begin(), own.end());
+      BranchVector& Y = out[from + c];
+      for (const int b : own) {
+        on[static_cast<std::size_t>(b)] = 0;
+        const Block& block = blocks_[static_cast<std::size_t>(b)];
+        for (int k = block.first; k < block.first + block.columns; ++k)
+          Y.value.push_back(y[at(k)][static_cast<Eigen::Index>(c)]);
+        Y.block.push_back(b);
+        Y.begin.push_back(static_cast<int>(Y.value.size()));
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace strata
