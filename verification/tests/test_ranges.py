@@ -18,7 +18,7 @@ from verification.harness.paths import ROOT, solver
 def first_scene() -> str:
     """The README's first scene."""
     text = (ROOT / "README.md").read_text(encoding="utf-8")
-    lines = text.split("## A first scene of your own", 1)[1].split("[variants.stronger]", 1)[0].splitlines()
+    lines = text.split("## A first scene", 1)[1].split("[variants.stronger]", 1)[0].splitlines()
     return textwrap.dedent("\n".join(line for line in lines if line.startswith("    ")))
 
 

@@ -1,0 +1,85 @@
+"""The README's table of accuracy, from what the ladder measured: a row a kind of problem, errors from coarse to fine.
+
+usage: python3 -m verification.harness.front_table LADDER.json [--write]     (LADDER.json as ci/verify leaves it; --write puts it into README.md)
+"""
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from verification.harness.paths import ROOT
+
+README = ROOT / "README.md"
+START, END = "<!-- ladder -->\n", "<!-- end of ladder -->"
+
+
+@dataclass(frozen=True)
+class Line:
+    """A quantity of a case of the ladder, and what of it the table says."""
+
+    case: str
+    quantity: str
+    levels: tuple[str, ...]
+    says: str
+    against: str
+
+
+LINES = (
+    Line("graded", "K_I", ("1 m", "0.5 m", "0.25 m"), "K_I of a fracture of 5 m under an even pressure", "boundary elements, `block_crack`"),
+    Line("bonded_normal_stiff_1", "K_I, near tip", ("2 cells", "4 cells", "8 cells"), "K_I at a tip 1 m before a bonded border of two rocks", "integral equations, `bonded_normal`"),
+    Line("crosses_1", "net pressure of crossing", ("1 m", "0.5 m", "0.25 m"), "net pressure at which a fracture goes on behind a soft interface", "integral equations, `crossing_pressure`; increment of 1 m"),
+    Line("transition", "inlet pressure, 10 to 100 s", ("0.5 m", "0.25 m", "0.125 m"), "inlet pressure of a fracture fed at a rate, toughness and viscosity alike", "an independent solution of lubrication and elasticity, `kgd`"),
+    Line("freund", "K_I(t), c_P t = 20 to 60 m", ("2 m", "1 m", "0.5 m"), "K_I(t) of a suddenly pressurised fracture, with inertia", "closed form, `freund_step_pressure`"),
+)  # fmt: skip
+
+
+def found(rows: list[dict[str, Any]], line: Line, level: str) -> dict[str, Any]:
+    """The ladder's row of a quantity at a level; raises ValueError where it is not there or was not measured."""
+    for row in rows:
+        if (row["case"], row["quantity"], row["level"]) == (line.case, line.quantity, level) and row["error"] is not None:
+            return row
+    raise ValueError(f"the ladder has no {line.quantity} of {line.case} at {level}: run ci/verify whole")
+
+
+def table(rows: list[dict[str, Any]]) -> str:
+    """The table as Markdown; the time is that of the finest run named."""
+    lines = ["| what | against | error | seconds |", "|---|---|---|---|"]
+    for line in LINES:
+        measured = [found(rows, line, level) for level in line.levels]
+        errors = ", ".join(f"{100.0 * abs(row['error']):.2g} % ({row['level']})" for row in measured)
+        lines.append(f"| {line.says} | {line.against} | {errors} | {measured[-1]['cost']['wall_s']:.1f} |")
+    return "\n".join(lines) + "\n"
+
+
+def with_table(readme: str, new: str) -> str:
+    """The README with another table between its two marks; raises ValueError where these are not there."""
+    before, mark, rest = readme.partition(START)
+    _, end, after = rest.partition(END)
+    if not (mark and end):
+        raise ValueError(f"README.md has no table between {START.strip()} and {END}")
+    return before + mark + new + end + after
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Print the table; with --write put it into README.md."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("ladder", type=Path)
+    parser.add_argument("--write", action="store_true")
+    options = parser.parse_args(arguments)
+    try:
+        new = table(json.loads(options.ladder.read_text(encoding="utf-8"))["rows"])
+    except (OSError, ValueError, KeyError) as error:
+        print(error, file=sys.stderr)
+        return 1
+    print(new, end="")
+    if options.write:
+        README.write_text(with_table(README.read_text(encoding="utf-8"), new), encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
