@@ -6,38 +6,23 @@ Cases are in verification/ladder/cases/FAMILY.py, gates in verification/ladder/g
 a level: value and reference (of many values their rms), relative error, observed order from the level before (in brackets where
 none is to be expected), cost, gate (largest error / smallest order), verdict. --accept writes gates anew from what was measured
 (1.5 times the error, order less 0.3) and prints what changed: say in CHANGELOG.md why a gate became wider. A gate that a better
-result left too wide is noted and fails nothing.
+result left too wide is noted and fails nothing. --out: for the page (default: runs/ladder/ladder.json, of a part ladder_part.json).
 Exit status: 0 all pass, 1 a gate does not hold, is missing, belongs to nothing or lets wrong results pass, or there is nothing
 to judge, 2 wrong use, 3 a run failed.
 """
 from __future__ import annotations
 
-import argparse
 import sys
-from pathlib import Path
 
+from verification.harness.choose import beginnings
+from verification.harness.command import command
 from verification.ladder import gates as book
-from verification.ladder.catalogue import BadCase, Families, choose, families
+from verification.ladder.catalogue import Families, chosen, families
 from verification.ladder.gates import Gates
 from verification.ladder.judge import accepted, judged, tally
 from verification.ladder.measure import Row, rows_of
 from verification.ladder.runner import RUNS, make_all, rungs_of
 from verification.ladder.table import text, write_json
-
-
-def parser() -> argparse.ArgumentParser:
-    """The options."""
-    raw = argparse.RawDescriptionHelpFormatter
-    options = argparse.ArgumentParser("verification.ladder", description=__doc__, formatter_class=raw)
-    options.add_argument("--family", default="", help="families, comma-separated (default: all)")
-    options.add_argument("--case", default="", help="cases, comma-separated (default: all)")
-    options.add_argument("--smoke", action="store_true", help="only the levels that ci/test runs")
-    options.add_argument("--jobs", type=int, default=2, help="threads for runs side by side")
-    options.add_argument("--accept", action="store_true", help="write the gates of what was measured, print what changed")
-    options.add_argument("--out", type=Path, help="for the page (default: runs/ladder/ladder.json, of a part ladder_part.json)")
-    options.add_argument("--runs", type=Path, default=RUNS, help="the folder of runs")
-    options.add_argument("--list", action="store_true", help="list the cases with what they show, run nothing")
-    return options
 
 
 def accept(rows: list[Row], known: Families, before: dict[str, Gates]) -> None:
@@ -59,9 +44,9 @@ def accept(rows: list[Row], known: Families, before: dict[str, Gates]) -> None:
         print(f"no gate accepted: {line}")
 
 
-def show(chosen: Families) -> None:
+def show(asked: Families) -> None:
     """Print what cases there are."""
-    for family, members in chosen.items():
+    for family, members in asked.items():
         print(family)
         for case in members:
             print(f"  {case.name} ({case.mechanics}): {case.says}")
@@ -70,30 +55,29 @@ def show(chosen: Families) -> None:
 
 def main(arguments: list[str] | None = None) -> int:
     """Run, judge, print and write; the exit status says what came of it."""
-    command = parser()
-    options = command.parse_args(arguments)
+    parser = command("verification.ladder", __doc__, "family", "case", "smoke", "jobs", "accept", "out", "runs", "list", runs=RUNS)
+    options = parser.parse_args(arguments)
     if options.jobs < 1:
-        command.error(f"--jobs {options.jobs} is not a number of threads")
+        parser.error(f"--jobs {options.jobs} is not a number of threads")
     try:
         known = families()
-        chosen = choose(known, filter(None, options.family.split(",")), filter(None, options.case.split(",")))
-    except BadCase as error:
-        command.error(str(error))
+        asked = chosen(known, beginnings(options.family), beginnings(options.case))
+    except ValueError as error:
+        parser.error(str(error))
     if options.list:
-        show(chosen)
+        show(asked)
         return 0
-    before = {family: book.read(family) for family in chosen}
-    rungs = rungs_of(chosen, options.smoke, options.runs)
-    made = make_all(rungs, options.jobs, tell=lambda line: print(line, file=sys.stderr, flush=True))
+    before = {family: book.read(family) for family in asked}
+    made = make_all(rungs_of(asked, options.smoke, options.runs), options.jobs, tell=lambda line: print(line, file=sys.stderr, flush=True))
     measured = rows_of(made)
     if options.accept:
         accept(measured, known, before)
-    rows = judged(measured, {family: book.read(family) for family in chosen})
+    rows = judged(measured, {family: book.read(family) for family in asked})
     part = bool(options.smoke or options.family or options.case)
-    stale = [line for line in book.stale(known) if not part or line.split("/")[0] in chosen]
+    stale = [line for line in book.stale(known) if not part or line.split("/")[0] in asked]
     count = tally(rows)
     out = options.out or options.runs / ("ladder_part.json" if part else "ladder.json")
-    write_json(out, rows, chosen, count, stale, part)
+    write_json(out, rows, asked, count, stale, part)
     print(text(rows))
     for line in stale:
         print(f"gate of nothing: {line}")

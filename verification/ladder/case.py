@@ -6,9 +6,10 @@ of a family as CASES, `verification/ladder/gates/FAMILY.json` holds what each ma
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -70,6 +71,12 @@ class Quantity:
     # The same for single levels, by their labels: {"1 m": "the error changes its sign"} is of the order from the level before.
     no_order_at: Mapping[str, str] = field(default_factory=dict)
 
+    @staticmethod
+    def of(name: str, unit: str, value: Callable[[Run], float], exact: Callable[[Run], float], why: str = "", **further: Any) -> Quantity:
+        """A single number of a run beside its exact one; `further`: of the quantity, or scale and reference_error of the sample."""
+        own = {key: further.pop(key) for key in ("scale", "reference_error") if key in further}
+        return Quantity(name, unit, lambda run: Sample.of(float(value(run)), exact(run), **own), why, **further)
+
     def reason(self, level: str) -> str:
         """Why no order is to be expected from the level before to this one; empty where one is."""
         return self.no_order or self.no_order_at.get(level, "")
@@ -99,6 +106,11 @@ class Case:
     threads: int = 1
 
 
-def cell_levels(*cells_m: float, settings: tuple[str, ...] = (), variant: str = "") -> tuple[Level, ...]:
-    """Levels of cell sizes (m), coarse to fine, all with the same further settings."""
-    return tuple(Level(f"{cell:g} m", cell, (f"numerics.cell_m={cell!r}", *settings), variant) for cell in cells_m)
+Keys = Callable[[float], tuple[str, ...]]  # the further scene keys of a size of cells (m)
+
+
+def cell_levels(*cells_m: float, settings: tuple[str, ...] = (), variant: str = "", of: Iterable[Keys] = ()) -> tuple[Level, ...]:
+    """Levels of cell sizes (m), coarse to fine, all with the same further settings, and with those that each size asks for."""
+    return tuple(
+        Level(f"{h:g} m", h, (f"numerics.cell_m={h!r}", *settings, *(key for keys in of for key in keys(h))), variant) for h in cells_m
+    )

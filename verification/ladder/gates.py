@@ -10,6 +10,7 @@ import math
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from verification.harness import store
 from verification.ladder.catalogue import Families
 
 FOLDER = Path(__file__).resolve().parent / "gates"
@@ -116,9 +117,7 @@ def write(family: str, gates: Gates, folder: Path | None = None) -> None:
     for (case, quantity, level), gate in gates.items():
         content = {name: value for name, value in asdict(gate).items() if value is not None}
         cases.setdefault(case, {}).setdefault(quantity, {})[level] = content
-    path = path_of(family, folder)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps({"family": family, "cases": cases}, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    store.write({"family": family, "cases": cases}, path_of(family, folder))
 
 
 def keys_of(families: Families, family: str) -> list[Key]:

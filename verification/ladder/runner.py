@@ -1,16 +1,16 @@
 """Makes the runs of cases, several at a time, each in RUNS/FAMILY/CASE/LEVEL; what was run before is not run again."""
 from __future__ import annotations
 
-import fcntl
 import threading
 from dataclasses import dataclass
 from pathlib import Path
 
 from verification.harness import paths
+from verification.harness.choose import claimed, folder_name
 from verification.harness.run import Job, Outcome, load_outcome, run
 from verification.harness.side_by_side import Task, Tell, say, side_by_side
 from verification.ladder.case import Case, Level
-from verification.ladder.catalogue import Families, folder_name
+from verification.ladder.catalogue import Families
 
 RUNS = paths.RUNS / "ladder"
 MECHANICS_KEY = "numerics.mechanics"
@@ -37,6 +37,11 @@ class Rung:
             settings = (f"{MECHANICS_KEY}={self.case.mechanics}", *settings)
         return Job(self.case.scene, self.level.variant, self.folder, settings, self.case.threads)
 
+    def expected_s(self) -> float:
+        """How long the run may take, s: as the last time, or 0.1 s at the coarsest level and 8 times more at each (points and steps)."""
+        before = load_outcome(self.folder)
+        return before.wall_s if before is not None else 0.1 * 8.0 ** self.case.levels.index(self.level)
+
 
 @dataclass(frozen=True)
 class Made:
@@ -44,6 +49,12 @@ class Made:
 
     rung: Rung
     outcome: Outcome
+
+    def words(self) -> str:
+        """How the run ended."""
+        if not self.outcome.ok:
+            return f"FAILED: {self.outcome.reason}"
+        return "done before" if self.outcome.skipped else f"{self.outcome.wall_s:.1f} s"
 
 
 def rungs_of(chosen: Families, smoke: bool = False, runs: Path = RUNS) -> list[Rung]:
@@ -58,29 +69,14 @@ def rungs_of(chosen: Families, smoke: bool = False, runs: Path = RUNS) -> list[R
 
 def make_one(rung: Rung, binary: Path | None = None, stop: threading.Event | None = None) -> Made:
     """Make one run unless it is there; another process that wants the same one waits for it."""
-    rung.folder.parent.mkdir(parents=True, exist_ok=True)
-    with (rung.folder.parent / f"{rung.folder.name}.lock").open("w", encoding="utf-8") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
+    with claimed(rung.folder):
         return Made(rung, run(rung.job(), binary, stop=stop))
-
-
-def made_words(made: Made) -> str:
-    """How a run ended, in words."""
-    if not made.outcome.ok:
-        return f"FAILED: {made.outcome.reason}"
-    return "done before" if made.outcome.skipped else f"{made.outcome.wall_s:.1f} s"
 
 
 def make_all(rungs: list[Rung], jobs: int = 2, binary: Path | None = None, tell: Tell = say) -> list[Made]:
     """Make the runs of all rungs on `jobs` threads, those that take longest first; in the order given."""
     tasks = [
-        Task(rung.name, lambda stop, rung=rung: make_one(rung, binary, stop), made_words, expected_s(rung), rung.case.threads)
+        Task(rung.name, lambda stop, rung=rung: make_one(rung, binary, stop), Made.words, rung.expected_s(), rung.case.threads)
         for rung in rungs
     ]
     return side_by_side(tasks, jobs, tell)
-
-
-def expected_s(rung: Rung) -> float:
-    """How long a run may take, s: as long as the last time, or 0.1 s at the coarsest level and 8 times more at each (points and steps)."""
-    before = load_outcome(rung.folder)
-    return before.wall_s if before is not None else 0.1 * 8.0 ** rung.case.levels.index(rung.level)

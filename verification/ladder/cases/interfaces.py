@@ -6,16 +6,15 @@ are apart, and than 2 to another rock, there is none.
 """
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
-import numpy as np
-
-from verification.harness.load import LoadError, Run, Tip, frames
+from verification.harness.given import crack_ends, first_failed_Pa, given, half_length, lower, net_Pa, rock, tip, upper
+from verification.harness.load import Run
 from verification.harness.paths import ANALYTIC
 from verification.harness.reference import value
-from verification.ladder.case import Case, Level, Quantity, Sample
+from verification.ladder.case import Case, Level, Quantity
 
 BONDED, SPRINGS, FRICTION = (ANALYTIC / f"near_{name}.toml" for name in ("bonded", "springs", "friction"))
 
@@ -27,105 +26,77 @@ RINGS = "rings are of 4 cells or less at any cell size: the tip's own error in t
 EDGES = "what is left at the widest block is the discretisation's"
 LETS_GO = 0.3  # of what makes it slip: where the solver splits an interface with friction
 SLIP = "the mean over a column (second order, slips later) stands against a crack that is 0.2 % too soft; columns move along the peak"
+SMALL = "it is the block's edges that cost a per cent"
 
+# --- references: a name with its settings for a run
 
-def path(run: Run) -> np.ndarray:
-    """The fracture as the scene has it, m."""
-    return np.array(run.scene["fracture"]["path_m"], dtype=float)
-
-
-def rock(run: Run, layer: int, prefix: str = "") -> dict[str, float]:
-    """Modulus and Poisson's ratio of a layer's rock as the references take them."""
-    given = run.scene["rock"][run.scene["strata"]["layers"][layer]["rock"]]
-    return {f"{prefix}{name}": float(given[name]) for name in ("youngs_modulus_Pa", "poisson_ratio")}
+Reference = Callable[[Run], tuple[str, dict[str, Any]]]
 
 
 def crack(run: Run) -> dict[str, float]:
     """Half-length (m), distance to the interface (m) and net pressure (Pa) of a run's crack, which lies before the interface."""
-    ends = path(run)
-    distance = float(np.min(run.interfaces_m[0] - ends[:, 0 if run.along == "x" else 1]))
-    net = run.summary.inlet_Pa - float(run.scene["in_situ"]["horizontal_Pa"])
-    return {"half_length_m": 0.5 * math.dist(ends[0], ends[-1]), "distance_m": distance, "pressure_Pa": net}
+    distance = min(run.interfaces_m[0] - end[0 if run.along == "x" else 1] for end in crack_ends(run))
+    return {"half_length_m": half_length(run), "distance_m": distance, "pressure_Pa": net_Pa(run)}
 
 
 def bonded(run: Run) -> tuple[str, dict[str, Any]]:
-    """The reference of a crack near a bonded interface, with its settings."""
+    """A crack near a bonded interface."""
     name = "bonded_parallel" if run.along == "x" else "bonded_normal"
     return name, crack(run) | rock(run, 0) | rock(run, 1, "beyond_")
 
 
 def springs(run: Run) -> tuple[str, dict[str, Any]]:
     """The same near springs."""
-    law = run.scene["interface"]["springs"]
-    stiffness = {name: float(law[name]) for name in ("normal_stiffness_Pa_m", "shear_stiffness_Pa_m")}
+    stiffness = {name: given(run, f"interface.springs.{name}") for name in ("normal_stiffness_Pa_m", "shear_stiffness_Pa_m")}
     return "spring_interface", crack(run) | rock(run, 0) | stiffness
 
 
-def without_springs(law: str) -> Callable[[Run], tuple[str, dict[str, Any]]]:
+def without_springs(law: str) -> Reference:
     """The same near an interface that is 'free' or 'frictionless'."""
     return lambda run: ("spring_interface", crack(run) | rock(run, 0) | {"law": law})
 
 
-Reference = Callable[[Run], tuple[str, dict[str, Any]]]
+def first_slip_Pa(run: Run) -> float:
+    """The net pressure (Pa) at which a sticking interface is at LETS_GO of what makes it slip."""
+    law = {"friction": LETS_GO * given(run, "interface.rough.coefficient"), "compression_Pa": given(run, "in_situ.vertical_Pa")}
+    place = {key: crack(run)[key] for key in ("half_length_m", "distance_m")}
+    return value("coulomb_first_slip", "net_pressure_Pa", **law, **place)
 
 
-def upper(run: Run) -> Tip:
-    """The tip that is nearer to an interface above the crack, or the upper one of a crack beside it."""
-    return max(run.summary.tips, key=lambda tip: tip.y_m)
+# --- quantities
 
 
-def lower(run: Run) -> Tip:
-    """The other tip."""
-    return min(run.summary.tips, key=lambda tip: tip.y_m)
-
-
-def quantity(
-    name: str, unit: str, measured: Callable[[Run], float], reference: Reference, exact: str, why: str = RINGS
-) -> Quantity:
+def quantity(name: str, unit: str, measured: Callable[[Run], float], reference: Reference, exact: str, why: str = RINGS) -> Quantity:
     """A number of a run beside a value of its reference."""
 
-    def sample(run: Run) -> Sample:
+    def wanted(run: Run) -> float:
         source, settings = reference(run)
-        return Sample.of(measured(run), value(source, exact, **settings))
+        return value(source, exact, **settings)
 
-    return Quantity(name, unit, sample, why)
+    return Quantity.of(name, unit, measured, wanted, why)
 
 
 def both_tips(reference: Reference, why: str = RINGS) -> tuple[Quantity, ...]:
     """K_I from the interaction integral and J, each at both tips of a crack normal to the interface."""
-    return (
-        quantity("K_I, near tip", "Pa sqrt(m)", lambda run: upper(run).K_I_Pa_sqrt_m, reference, "K_I_near", why),
-        quantity("K_I, far tip", "Pa sqrt(m)", lambda run: lower(run).K_I_Pa_sqrt_m, reference, "K_I_far", why),
-        quantity("J, near tip", "N/m", lambda run: upper(run).J_N_m, reference, "J_near_N_m", why),
-        quantity("J, far tip", "N/m", lambda run: lower(run).J_N_m, reference, "J_far_N_m", why),
+    return tuple(
+        quantity(f"{words}, {place} tip", unit, tip(name, which), reference, exact.format(place), why)
+        for words, unit, name, exact in (("K_I", "Pa sqrt(m)", "K_I_Pa_sqrt_m", "K_I_{}"), ("J", "N/m", "J_N_m", "J_{}_N_m"))
+        for place, which in (("near", upper), ("far", lower))
     )
 
 
-MIXED = (
-    quantity("K_I", "Pa sqrt(m)", lambda run: upper(run).K_I_Pa_sqrt_m, bonded, "K_I"),
-    quantity("K_II", "Pa sqrt(m)", lambda run: upper(run).K_II_Pa_sqrt_m, bonded, "K_II"),
-    quantity("kink angle", "degrees", lambda run: upper(run).kink_deg, bonded, "kink_deg"),
-    quantity("J", "N/m", lambda run: upper(run).J_N_m, bonded, "J_N_m"),
-    quantity("K_II, lower tip", "Pa sqrt(m)", lambda run: lower(run).K_II_Pa_sqrt_m, bonded, "K_II_minus"),
-)
+MIXED = tuple(
+    quantity(name, unit, tip(measured, which), bonded, exact)
+    for name, unit, measured, which, exact in (
+        ("K_I", "Pa sqrt(m)", "K_I_Pa_sqrt_m", upper, "K_I"), ("K_II", "Pa sqrt(m)", "K_II_Pa_sqrt_m", upper, "K_II"),
+        ("kink angle", "degrees", "kink_deg", upper, "kink_deg"), ("J", "N/m", "J_N_m", upper, "J_N_m"),
+        ("K_II, lower tip", "Pa sqrt(m)", "K_II_Pa_sqrt_m", lower, "K_II_minus"),
+    )
+)  # fmt: skip
+SLIPS = (Quantity.of("net pressure at 0.3 of first slip", "Pa", first_failed_Pa, first_slip_Pa, SLIP),)
 
 
-def first_slip(run: Run) -> Sample:
-    """The net pressure (Pa) at which the first place of the interface let go: sticking, at LETS_GO of what makes it slip."""
-    _, fields = frames(run, "interfaces")[-1]
-    failed_s = fields["0/failed_s"]
-    if not np.any(failed_s >= 0.0):
-        raise LoadError(f"{run.folder}: the interface did not slip")
-    inlet, in_situ = run.scene["fluid"]["inlet"], run.scene["in_situ"]
-    pressure = float(inlet["start_Pa"]) + float(inlet["rate_Pa_s"]) * float(np.min(failed_s[failed_s >= 0.0]))
-    given = crack(run)
-    settings = {
-        "friction": LETS_GO * float(run.scene["interface"]["rough"]["coefficient"]),
-        "compression_Pa": float(in_situ["vertical_Pa"]),
-        "half_length_m": given["half_length_m"],
-        "distance_m": given["distance_m"],
-    }
-    return Sample.of(pressure - float(in_situ["horizontal_Pa"]), value("coulomb_first_slip", "net_pressure_Pa", **settings))
+# --- levels
 
 
 def path_setting(distance_m: float, parallel: bool, middle_m: float = MIDDLE_M) -> str:
@@ -138,39 +109,20 @@ def path_setting(distance_m: float, parallel: bool, middle_m: float = MIDDLE_M) 
 
 def levels(variant: str, distance_m: float, *cells: int, settings: tuple[str, ...] = ()) -> tuple[Level, ...]:
     """Levels by the number of cells in the distance (m) between crack and interface."""
-    where = path_setting(distance_m, variant.startswith("parallel"))
-    return tuple(
-        Level(f"{n} cells", distance_m / n, (f"numerics.cell_m={distance_m / n!r}", where, *settings), variant) for n in cells
-    )
+    keys = (path_setting(distance_m, variant.startswith("parallel")), *settings)
+    return tuple(Level(f"{n} cells", distance_m / n, (f"numerics.cell_m={distance_m / n!r}", *keys), variant) for n in cells)
 
 
-def block_levels(*widths_m: float) -> tuple[Level, ...]:
-    """Levels by the block's width (m), 4 cells from the interface; edges cost as the square of their size."""
-    found = []
-    for width in widths_m:
-        block = (f"domain.width_m={width}", f"domain.height_m={width}", "numerics.cell_m=0.25")
-        layers = f'strata.layers=[{{rock="stiff",thickness_m={width / 2}}},{{rock="soft"}}]'
-        settings = (*block, layers, path_setting(1.0, False, width / 2))
-        found.append(Level(f"{width:g} m block", 100.0 / width, settings, "normal_in_stiff"))
-    return tuple(found)
+def block_level(width: float) -> Level:
+    """A level by the block's width (m), 4 cells from the interface; edges cost as the square of their size."""
+    block = (f"domain.width_m={width}", f"domain.height_m={width}", "numerics.cell_m=0.25")
+    layers = f'strata.layers=[{{rock="stiff",thickness_m={width / 2}}},{{rock="soft"}}]'
+    return Level(f"{width:g} m block", 100.0 / width, (*block, layers, path_setting(1.0, False, width / 2)), "normal_in_stiff")
 
 
-def normal(held_by: str, distance_m: float, *cells: int, smoke: int = 1) -> Case:
-    """A crack normal to a bonded interface."""
-    name = f"bonded_normal_{held_by}_{distance_m:g}"
-    says = f"crack in {held_by} rock, {distance_m:g} m from the other rock, normal to it"
-    return Case(name, says, BONDED, "quasistatic", levels(f"normal_in_{held_by}", distance_m, *cells), both_tips(bonded), smoke)
-
-
-def parallel(held_by: str, distance_m: float, *cells: int, smoke: int = 1) -> Case:
-    """A crack parallel to a bonded interface."""
-    name, says = f"bonded_parallel_{held_by}_{distance_m:g}", f"crack in {held_by} rock, {distance_m:g} m beside the other rock"
-    return Case(name, says, BONDED, "quasistatic", levels(f"parallel_in_{held_by}", distance_m, *cells), MIXED, smoke)
-
-
-def in_both(make: Callable[..., Case], distance_m: float, *cells: int, smoke: int = 1) -> tuple[Case, ...]:
-    """A crack in either rock at a distance (m) from the interface."""
-    return tuple(make(held_by, distance_m, *cells, smoke=smoke) for held_by in ("stiff", "soft"))
+def small_levels(variant: str) -> tuple[Level, ...]:
+    """Levels of a crack 5 m from the interface in the middle of a block of 160 m, with cells of one size."""
+    return tuple(Level(f"{n} cells", 5.0 / n, tuple(f"numerics.{key}={5.0 / n!r}" for key in ("cell_m", "far_cell_m")), variant) for n in (2, 4))
 
 
 def stiffness_settings(stiffness: float) -> tuple[str, ...]:
@@ -179,57 +131,61 @@ def stiffness_settings(stiffness: float) -> tuple[str, ...]:
     return tuple(f"interface.springs.{name}_stiffness_Pa_m={D!r}" for name in ("normal", "shear"))
 
 
-def sprung(stiffness: float, *cells: int) -> Case:
+# --- cases
+
+
+def case(
+    scene: Any, name: str, says: str, own: tuple[Level, ...], quantities: tuple[Quantity, ...], smoke: int = 1, mechanics: str = "quasistatic"
+) -> Case:
+    """A case of one of the scenes."""
+    return Case(name, says, scene, mechanics, own, quantities, smoke)
+
+
+near_bonded, near_springs, near_friction = (partial(case, scene) for scene in (BONDED, SPRINGS, FRICTION))
+
+
+def in_both(lies: str, distance_m: float, *cells: int, smoke: int = 1) -> tuple[Case, ...]:
+    """A crack in either rock at a distance (m) from the other one, normal or parallel to their border."""
+    where = "{:g} m from the other rock, normal to it" if lies == "normal" else "{:g} m beside the other rock"
+    return tuple(
+        near_bonded(f"bonded_{lies}_{held_by}_{distance_m:g}", f"crack in {held_by} rock, {where.format(distance_m)}",
+                    levels(f"{lies}_in_{held_by}", distance_m, *cells), both_tips(bonded) if lies == "normal" else MIXED, smoke)
+        for held_by in ("stiff", "soft")
+    )  # fmt: skip
+
+
+def sprung(stiffness: float) -> Case:
     """A crack normal to a soft interface of D a/E' = stiffness, 1 m from it."""
-    law = stiffness_settings(stiffness)
-    says = f"crack 1 m from springs of D a/E' = {stiffness:g}, normal to them"
-    made = levels("springs", 1.0, *cells, settings=law)
-    return Case(f"springs_{stiffness:g}", says, SPRINGS, "quasistatic", made, both_tips(springs), 1)
+    own = levels("springs", 1.0, 4, 8, settings=stiffness_settings(stiffness))
+    return near_springs(f"springs_{stiffness:g}", f"crack 1 m from springs of D a/E' = {stiffness:g}, normal to them", own, both_tips(springs))
 
 
-# Wide columns slip late: the ramp goes on to 8 % above the reference instead of 3 %.
-LONGER = {
-    f"friction_{share}": (f"stop.time_s={stop}", f"output.fields_every_s={stop}") for share, stop in ((4, 0.98), (6, 1.12))
-}
-
-
-def slipping(coefficient: float, *cells: int) -> Case:
-    """A crack 1 m from an interface with friction, under a rising pressure."""
-    slip = Quantity("net pressure at 0.3 of first slip", "Pa", first_slip, SLIP)
-    variant = f"friction_{10 * coefficient:g}"
-    made = levels(variant, 1.0, *cells[:1], settings=LONGER[variant]) + levels(variant, 1.0, *cells[1:])
-    says = f"crack 1 m from an interface with friction {coefficient:g}: when that is at 0.3 of its first slip"
-    return Case(f"slip_{coefficient:g}", says, FRICTION, "quasistatic", made, (slip,), 1)
-
-
-NO_SPRINGS = stiffness_settings(1e-6)  # K is 4e-6 below that near a free surface
-
-SMALL = "it is the block's edges that cost a per cent"
-
-
-def small_levels(variant: str) -> tuple[Level, ...]:
-    """Levels of a crack 5 m from the interface in the middle of a block of 160 m, with cells of one size."""
-    return tuple(Level(f"{n} cells", 5.0 / n, tuple(f"numerics.{key}={5.0 / n!r}" for key in ("cell_m", "far_cell_m")), variant) for n in (2, 4))
+def slipping(coefficient: float, longer_s: float) -> Case:
+    """A crack 1 m from an interface with friction, under a rising pressure; wide columns slip late, so that their ramp goes on for longer:
+    to 8 % above the reference instead of 3 %."""
+    variant, says = f"friction_{10 * coefficient:g}", f"crack 1 m from an interface with friction {coefficient:g}: when that is at 0.3 of its first slip"
+    own = levels(variant, 1.0, 4, settings=(f"stop.time_s={longer_s}", f"output.fields_every_s={longer_s}")) + levels(variant, 1.0, 8, 16)
+    return near_friction(f"slip_{coefficient:g}", says, own, SLIPS)
 
 
 CASES = (
-    *in_both(normal, 1.0, 2, 4, 8, 16, smoke=2),
-    *in_both(normal, 0.5, 2, 4, 8),
-    *in_both(normal, 2.5, 4, 8, 16),
-    Case("block_edges", "what the edges of the block cost: its width doubled", BONDED, "quasistatic",
-         block_levels(200.0, 400.0, 800.0, 1600.0), both_tips(bonded, EDGES), 1),
-    *in_both(parallel, 2.5, 2, 4, 8, 16, smoke=2),
-    *in_both(parallel, 1.25, 2, 4, 8),
-    *in_both(parallel, 5.0, 4, 8, 16),
-    *(sprung(stiffness, 4, 8) for stiffness in (0.01, 0.1, 1.0, 10.0, 100.0)),
-    Case("free", "crack 1 m from springs so soft that they are a free surface", SPRINGS, "quasistatic",
-         levels("springs", 1.0, 4, 8, settings=NO_SPRINGS), both_tips(without_springs("free")), 1),
-    Case("frictionless", "crack 1 m from a closed interface without friction", SPRINGS, "quasistatic",
-         levels("frictionless", 1.0, 4, 8), both_tips(without_springs("frictionless")), 1),
-    slipping(0.4, 4, 8, 16),
-    slipping(0.6, 4, 8, 16),
-    Case("small_block", "crack 5 m from a bonded interface in a uniform block of 160 m, without inertia", BONDED, "quasistatic",
-         small_levels("small_block"), both_tips(bonded, SMALL), 1),
-    Case("small_block_settling", "the same brought to rest by damping: the same K", BONDED, "explicit",
-         small_levels("small_block_settling"), both_tips(bonded, SMALL), 1),
+    *in_both("normal", 1.0, 2, 4, 8, 16, smoke=2),
+    *in_both("normal", 0.5, 2, 4, 8),
+    *in_both("normal", 2.5, 4, 8, 16),
+    near_bonded("block_edges", "what the edges of the block cost: its width doubled",
+                tuple(block_level(width) for width in (200.0, 400.0, 800.0, 1600.0)), both_tips(bonded, EDGES)),
+    *in_both("parallel", 2.5, 2, 4, 8, 16, smoke=2),
+    *in_both("parallel", 1.25, 2, 4, 8),
+    *in_both("parallel", 5.0, 4, 8, 16),
+    *(sprung(stiffness) for stiffness in (0.01, 0.1, 1.0, 10.0, 100.0)),
+    near_springs("free", "crack 1 m from springs so soft that they are a free surface",  # K is 4e-6 below that near one
+                 levels("springs", 1.0, 4, 8, settings=stiffness_settings(1e-6)), both_tips(without_springs("free"))),
+    near_springs("frictionless", "crack 1 m from a closed interface without friction",
+                 levels("frictionless", 1.0, 4, 8), both_tips(without_springs("frictionless"))),
+    slipping(0.4, 0.98),
+    slipping(0.6, 1.12),
+    near_bonded("small_block", "crack 5 m from a bonded interface in a uniform block of 160 m, without inertia",
+                small_levels("small_block"), both_tips(bonded, SMALL)),
+    near_bonded("small_block_settling", "the same brought to rest by damping: the same K",
+                small_levels("small_block_settling"), both_tips(bonded, SMALL), mechanics="explicit"),
 )  # fmt: skip
