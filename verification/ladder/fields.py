@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from verification.harness.load import LoadError, Run, frames
+from verification.harness.given import given, last
+from verification.harness.load import LoadError, Run
 from verification.harness.reference import values
 from verification.ladder.case import Array, Quantity, Sample
 
@@ -29,11 +30,6 @@ class End:
     Y: Array
     fields: dict[str, Array]
 
-    @property
-    def volumes(self) -> Array:
-        """Volumes of the particles, m^2."""
-        return self.fields["volume_m2"]
-
 
 def lattice(places: Array, spacing: float) -> Array:
     """Places (m) moved to the lattice where particles of a uniform grid start, which single precision has left by a little."""
@@ -45,13 +41,9 @@ def lattice(places: Array, spacing: float) -> Array:
 
 def end_of(run: Run) -> End:
     """The particles at the run's last output."""
-    stored = frames(run, "particles")
-    if not stored:
-        raise LoadError(f"{run.folder}: no fields of particles")
-    time_s, particles = stored[-1]
+    time_s, particles = last(run, "particles")
     fields = {name: array.astype(float) for name, array in particles.items()}
-    numerics = run.scene["numerics"]
-    spacing = float(numerics["cell_m"]) / math.sqrt(float(numerics["particles_per_cell"]))
+    spacing = given(run, "numerics.cell_m") / math.sqrt(given(run, "numerics.particles_per_cell"))
     places = [lattice(fields[f"{axis}_m"] - fields[f"u_{axis}_m"], spacing) for axis in "xy"]
     return End(time_s, time_s / run.summary.steps if run.summary.steps else 0.0, places[0], places[1], fields)
 
@@ -65,11 +57,6 @@ def at_points(name: str, quantities: tuple[str, ...], places: dict[str, Array], 
             np.savetxt(path, numbers, fmt="%.17g")
             files[key] = f"@{path}"
         return [values(name, quantity, **settings, **files) for quantity in quantities]
-
-
-def rock_settings(run: Run, rock: str) -> dict[str, float]:
-    """Young's modulus, Poisson's ratio and density of a rock of the scene, as strata-reference names them."""
-    return {key: float(run.scene["rock"][rock][key]) for key in ("youngs_modulus_Pa", "poisson_ratio", "density_kg_m3")}
 
 
 Exact = Callable[[Run, End, tuple[str, ...], float], list[Array]]  # of fields by their names at a time, s
@@ -86,6 +73,6 @@ def field_quantity(name: str, unit: str, fields: tuple[str, ...], exact: Exact, 
         behind = 0.5 * end.step_s if fields[0].startswith("v_") else 0.0
         found = np.concatenate([end.fields[field] for field in fields])
         wanted = np.concatenate(exact(run, end, fields, end.time_s - behind))
-        return Sample(found, wanted, np.tile(end.volumes, len(fields)))
+        return Sample(found, wanted, np.tile(end.fields["volume_m2"], len(fields)))
 
     return Quantity(name, unit, sample, **further)  # type: ignore[arg-type]

@@ -3,7 +3,7 @@
 usage: ci/atlas [--family NAME[,NAME...]] [--smoke] [--accept] [--list]
 
 Runs go to runs/atlas/FAMILY/POINT; what is there for the same scene, settings and solver is not run again. Without --accept nothing is
-written: what differs from the records (verification/stability/records) is told.
+written: what differs from the records (verification/stability/records) is told. --smoke judges by the recorded edges.
 Exit status: 0 all as declared and as recorded, 1 some are not, 2 wrong use.
 """
 from __future__ import annotations
@@ -11,30 +11,16 @@ from __future__ import annotations
 import argparse
 import sys
 from dataclasses import replace
-from pathlib import Path
 
+from verification.harness.choose import beginnings, choose
+from verification.harness.command import command
 from verification.harness.paths import solver
+from verification.harness.side_by_side import say
 from verification.stability import store
-from verification.stability.catalogue import choose, families
-from verification.stability.family import BadFamily, Family
+from verification.stability.catalogue import families
+from verification.stability.family import Family
 from verification.stability.judge import changes, headline, problems
 from verification.stability.runner import RUNS, walk
-
-
-def parser() -> argparse.ArgumentParser:
-    """The options."""
-    options = argparse.ArgumentParser("ci/atlas", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    options.add_argument("--family", default="", help="families by the beginnings of their names, comma-separated (default: all)")
-    options.add_argument("--smoke", action="store_true", help="only the points that ci/test runs too, by the recorded edges")
-    options.add_argument("--accept", action="store_true", help="write what was found as the record")
-    options.add_argument("--list", action="store_true", help="name the families; run nothing")
-    options.add_argument("--runs", type=Path, default=RUNS, help="folder of the runs")
-    return options
-
-
-def say(line: str) -> None:
-    """Print a line at once."""
-    print(line, flush=True)
 
 
 def judged(family: Family, options: argparse.Namespace) -> list[str]:
@@ -61,21 +47,21 @@ def judged(family: Family, options: argparse.Namespace) -> list[str]:
 
 def main(arguments: list[str] | None = None) -> int:
     """Walk what is asked for."""
-    command = parser()
-    options = command.parse_args(arguments)
+    parser = command("ci/atlas", __doc__, "family", "smoke", "accept", "list", "runs", runs=RUNS)
+    options = parser.parse_args(arguments)
     try:
-        chosen = choose(families(), [name for name in options.family.split(",") if name])
-    except BadFamily as error:
-        command.error(str(error))
+        asked = choose(families(), beginnings(options.family))
+    except ValueError as error:
+        parser.error(str(error))
     if options.list:
-        for family in chosen.values():
+        for family in asked.values():
             print(f"{family.name}: {family.title} ({len(family.points)} points)")
         return 0
     if options.smoke and options.accept:
-        command.error("--accept needs all points: without --smoke")
+        parser.error("--accept needs all points: without --smoke")
     if not solver().is_file():
-        command.error(f"there is no {solver()}: build it first")
-    verdicts = [judged(family, options) for family in chosen.values()]
+        parser.error(f"there is no {solver()}: build it first")
+    verdicts = [judged(family, options) for family in asked.values()]
     print(headline(verdicts))
     return 1 if any(verdicts) else 0
 

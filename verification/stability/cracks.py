@@ -3,12 +3,11 @@ from __future__ import annotations
 
 import math
 
-from verification.harness.load import LoadError, Run, Tip
-from verification.harness.paths import ROOT
+from verification.harness.given import E_prime, half_length, path_key
+from verification.harness.load import Run
+from verification.stability.family import SCENES, Checked
 
-SCENES = ROOT / "verification" / "stability" / "scenes"
 CRACK = SCENES / "crack.toml"
-
 NET_PA = 0.3e6  # the scenes' pressure above their closing stress
 HALF_LENGTH_M = 5.0
 MIDDLE_M = 16.0  # of the scenes' block
@@ -20,9 +19,9 @@ SETTLING = (
 )  # fmt: skip
 
 
-def path_setting(*points: tuple[float, float]) -> str:
-    """The crack along these points (m), as a scene key."""
-    return "fracture.path_m=[" + ",".join(f"[{x!r},{y!r}]" for x, y in points) + "]"
+def upright(x_m: float, top_m: float, length_m: float = 2.0 * HALF_LENGTH_M) -> str:
+    """A crack along y with its upper tip at a height, as a scene key."""
+    return path_key((x_m, top_m - length_m), (x_m, top_m))
 
 
 def layers_setting(*layers: tuple[str, float | None], interfaces: tuple[str, ...] = ()) -> tuple[str, ...]:
@@ -32,15 +31,9 @@ def layers_setting(*layers: tuple[str, float | None], interfaces: tuple[str, ...
     return (f"strata.layers=[{tables}]",) + ((f"strata.interfaces=[{names}]",) if interfaces else ())
 
 
-def crack_ends(run: Run) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Both ends of the scene's crack, m."""
-    points = run.scene["fracture"]["path_m"]
-    return (float(points[0][0]), float(points[0][1])), (float(points[-1][0]), float(points[-1][1]))
-
-
-def half_length(run: Run) -> float:
-    """Half the length of a straight crack with two tips, m."""
-    return 0.5 * math.dist(*crack_ends(run))
+def parted(below: str, above: str, *interfaces: str) -> tuple[str, ...]:
+    """Two rocks that meet in the middle of the block, at an interface where one is named, as scene keys."""
+    return layers_setting((below, MIDDLE_M), (above, None), interfaces=interfaces)
 
 
 def griffith_K(run: Run) -> float:
@@ -48,24 +41,16 @@ def griffith_K(run: Run) -> float:
     return NET_PA * math.sqrt(math.pi * half_length(run))
 
 
-def E_prime(run: Run, rock: str = "stiff") -> float:
-    """E/(1 - nu^2) of a rock, Pa."""
-    given = run.scene["rock"][rock]
-    return float(given["youngs_modulus_Pa"]) / (1.0 - float(given["poisson_ratio"]) ** 2)
-
-
 def sneddon_opening(run: Run) -> float:
     """Largest opening 4 p a/E' of the crack in one rock without end, m (Sneddon)."""
     return 4.0 * NET_PA * half_length(run) / E_prime(run)
 
 
-def upper_tip(run: Run) -> Tip:
-    """The tip with the largest y."""
-    if not run.summary.tips:
-        raise LoadError(f"{run.folder}: no tip")
-    return max(run.summary.tips, key=lambda tip: tip.y_m)
-
-
 def farthest_off(found: list[float], wanted: float) -> float:
     """Of several values the one that is farthest from what is wanted."""
     return max(found, key=lambda value: abs(value - wanted) if math.isfinite(value) else math.inf)
+
+
+def worse(*checks: Checked) -> Checked:
+    """Of several checks the one that is farthest off its own tolerance: one that fails before one that holds, then the larger error."""
+    return max(checks, key=lambda checked: (not checked.holds, abs(checked.error)))

@@ -6,11 +6,14 @@ A family only describes; running (runner.py), judging (judge.py), keeping (store
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from verification.harness.load import Run
+from verification.harness.paths import ROOT
+
+SCENES = ROOT / "verification" / "stability" / "scenes"
 
 # How a point ended.
 STABLE = "stable"  # completed, the check holds, nothing is suspect
@@ -22,6 +25,8 @@ OUTCOMES = (STABLE, MARKED, REFUSED, FAILED, GARBAGE)
 SAFE = (STABLE, MARKED, REFUSED, FAILED)  # what a family may declare of its points beyond the edge
 
 STRATA = "strata"  # the program of a point that is run through the command line
+
+KINEMATICS = {"total": "points in their places", "updated": "points that move"}
 
 LEAST_REFUSED = 0.9  # no check may hold for a value that is off by more than this: zero and twice must fail
 
@@ -35,6 +40,10 @@ class Checked:
     error: float
     holds: bool
     words: str = ""
+
+    def rounded(self) -> Checked:
+        """The same with numbers of seven digits."""
+        return replace(self, **{name: float(f"{getattr(self, name):.7g}") for name in ("value", "reference", "error")})
 
 
 Check = Callable[[Run], Checked]  # may raise LoadError: then nothing is known of the run, which is garbage
@@ -75,19 +84,32 @@ class Point:
     beyond: bool | None = None
 
 
+At = Callable[[float], Point]
+
+
+def at_values(scene: Path, keys: Callable[[float], tuple[str, ...]], label: str = "{:.5g}", variant: str = "") -> At:
+    """The points of a scene at values of the parameter, with the scene keys that each asks for."""
+    return lambda value: Point(label.format(value), value, scene, keys(value), variant)
+
+
+def walked(at: At, values: Iterable[float], smoke: Collection[float] = (), beyond: Callable[[float], bool | None] = lambda _: None) -> tuple[Point, ...]:
+    """The points at some values, of which those in `smoke` are run in ci/test too; `beyond` as in Point."""
+    return tuple(replace(at(value), smoke=value in smoke, beyond=beyond(value)) for value in values)
+
+
 @dataclass(frozen=True)
 class Edge:
     """Where a family ceases to be sound.
 
     predicted: computed by Python or strata-reference without the solver, None where no theory gives it; source: whose theory, and how
     it was computed, a sentence. at: the point at any value, by which the edge is measured: bisection in `bracket` (sound end first) until
-    the ends differ by `resolution` of the value. Without it the edge is read from the points' runs by `read`, or else lies between
-    the last sound and the first unsound point. A difference of more than `tolerance` is a failure.
+    the ends differ by `resolution` of the value. Without it the edge is read from the points' runs by `read`. A difference of more
+    than `tolerance` is a failure.
     """
 
     source: str
     predicted: Callable[[], float] | None = None
-    at: Callable[[float], Point] | None = None
+    at: At | None = None
     bracket: tuple[float, float] = (0.0, 0.0)
     resolution: float = 0.005
     tolerance: float = 0.03
@@ -150,5 +172,5 @@ class Family:
         return found
 
 
-class BadFamily(Exception):
+class BadFamily(ValueError):
     """A family that the atlas cannot judge; the message says which and why."""

@@ -1,18 +1,18 @@
 """Runs the points of a family through the command line and says how each ended; what was run before is not run again."""
 from __future__ import annotations
 
-import fcntl
 import json
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from pathlib import Path
 
 from verification.harness import paths
 from verification.harness import run as harness
+from verification.harness.choose import claimed, folder_name
 from verification.harness.load import OF_SPEEDS, LoadError, Run, load
 from verification.harness.paths import ROOT
 from verification.harness.run import Job, Outcome
-from verification.ladder.catalogue import folder_name
+from verification.harness.side_by_side import Tell
 from verification.precision.measure import timed
 from verification.stability.family import FAILED, GARBAGE, MARKED, REFUSED, STABLE, STRATA, Checked, Edge, Family, Point
 from verification.stability.store import EdgeFound, PointFound, Record
@@ -23,13 +23,6 @@ CPU = "cpu_s.json"
 REASON_LENGTH = 400
 BAD_INPUT, NUMERICS_FAILED = 2, 3
 
-Tell = Callable[[str], None]
-
-
-def quiet(line: str) -> None:
-    """Say nothing."""
-    del line
-
 
 def folder_of(family: Family, point: Point, runs: Path = RUNS) -> Path:
     """Where a point's run is."""
@@ -39,11 +32,8 @@ def folder_of(family: Family, point: Point, runs: Path = RUNS) -> Path:
 def make(family: Family, point: Point, runs: Path = RUNS, binary: Path | None = None) -> tuple[Outcome, float]:
     """A point's run and its CPU time (s), made unless it is there; another process that wants the same one waits for it."""
     folder = folder_of(family, point, runs)
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    job = Job(point.scene, point.variant, folder, point.settings)
-    with (folder.parent / f"{folder.name}.lock").open("w", encoding="utf-8") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        outcome, (_, cpu_s) = timed(lambda: harness.run(job, binary, limit_s=LIMIT_S))
+    with claimed(folder):
+        outcome, (_, cpu_s) = timed(lambda: harness.run(Job(point.scene, point.variant, folder, point.settings), binary, limit_s=LIMIT_S))
         if outcome.skipped and (folder / CPU).is_file():
             return outcome, float(json.loads((folder / CPU).read_text(encoding="utf-8")))
         (folder / CPU).write_text(json.dumps(round(cpu_s, 4)), encoding="utf-8")
@@ -108,18 +98,7 @@ def bisected(sound: Callable[[float], bool], edge: Edge) -> tuple[float, float]:
     return good, bad
 
 
-def between(points: Iterable[PointFound], edge: Edge, before: tuple[str, ...] = (STABLE,)) -> tuple[float | None, float | None]:
-    """The last sound value before the first unsound one, and that; None where there is no such."""
-    ordered = sorted(points, key=lambda point: point.value, reverse=not edge.unsound_above)
-    good: float | None = None
-    for point in ordered:
-        if point.outcome not in before:
-            return good, point.value
-        good = point.value
-    return good, None
-
-
-def edge_of(family: Family, points: tuple[PointFound, ...], runs: Path = RUNS, binary: Path | None = None, tell: Tell = quiet) -> EdgeFound | None:
+def edge_of(family: Family, points: tuple[PointFound, ...], runs: Path = RUNS, binary: Path | None = None, tell: Tell = lambda _: None) -> EdgeFound | None:
     """The family's edge, predicted and measured."""
     edge = family.edge
     if edge is None:
@@ -128,19 +107,16 @@ def edge_of(family: Family, points: tuple[PointFound, ...], runs: Path = RUNS, b
     if edge.read is not None:
         made = {point.label: load(folder_of(family, family.point(point.label), runs)) for point in points if point.checked is not None}
         return EdgeFound(predicted, edge.read(made))
-    if edge.at is None:
-        good, bad = between(points, edge, family.before)
-    else:
-        at = edge.at
+    at = edge.at
+    assert at is not None
 
-        def sound(value: float) -> bool:
-            one = found(family, at(value), runs, binary)
-            tell(f"{family.name}: edge at {value:.5g}? {one.outcome}")
-            return one.checked is not None and one.checked.holds if edge.by_check else one.outcome in family.before
+    def sound(value: float) -> bool:
+        one = found(family, at(value), runs, binary)
+        tell(f"{family.name}: edge at {value:.5g}? {one.outcome}")
+        return one.checked is not None and one.checked.holds if edge.by_check else one.outcome in family.before
 
-        good, bad = bisected(sound, edge)
-    measured = 0.5 * (good + bad) if good is not None and bad is not None else None
-    return EdgeFound(predicted, measured, good, bad)
+    good, bad = bisected(sound, edge)
+    return EdgeFound(predicted, 0.5 * (good + bad), good, bad)
 
 
 def version_of(family: Family, runs: Path) -> str:
@@ -154,7 +130,7 @@ def version_of(family: Family, runs: Path) -> str:
     return ""
 
 
-def walk(family: Family, smoke: bool = False, runs: Path = RUNS, binary: Path | None = None, tell: Tell = quiet) -> Record:
+def walk(family: Family, smoke: bool = False, runs: Path = RUNS, binary: Path | None = None, tell: Tell = lambda _: None) -> Record:
     """All points of a family (of a smoke run its smoke points alone, and no edge), and its edge."""
     points = []
     for point in family.points:
@@ -165,4 +141,4 @@ def walk(family: Family, smoke: bool = False, runs: Path = RUNS, binary: Path | 
         tell(f"{family.name}: {point.label}: {one.outcome}{error} {one.reason[:140]}")
         points.append(one)
     edge = None if smoke else edge_of(family, tuple(points), runs, binary, tell)
-    return Record(family.name, version_of(family, runs), tuple(points), edge)
+    return Record(family.name, version_of(family, runs), edge, tuple(points))

@@ -25,7 +25,7 @@ def no_check(run: Any) -> Checked:
     raise AssertionError(run)
 
 
-def walked(**more: Any) -> Family:
+def a_walk(**more: Any) -> Family:
     """A family with points at 0.5, 0.9, 1.1 and 2 whose edge is to be at 1."""
     points = tuple(Point(f"{value:g}", value, SCENE, smoke=value < 1.0) for value in (0.5, 0.9, 1.1, 2.0))
     edge = Edge("Made up.", lambda: 1.0, lambda value: Point(f"at {value}", value, SCENE), (0.5, 2.0))
@@ -37,12 +37,12 @@ def recorded(outcomes: str = "ssff", measured: float | None = 1.01) -> Record:
     """A record of that family: outcomes by their first letters (x: garbage)."""
     names = {"s": STABLE, "m": MARKED, "r": REFUSED, "f": FAILED, "x": GARBAGE}
     points = tuple(PointFound(f"{value:g}", value, names[letter], Checked(1.0, 1.0, 0.1, True)) for value, letter in zip((0.5, 0.9, 1.1, 2.0), outcomes))
-    return Record("walk", "1", points, EdgeFound(1.0, measured, 1.0, 1.02))
+    return Record("walk", "1", EdgeFound(1.0, measured, 1.0, 1.02), points)
 
 
 def test_a_sound_record_passes() -> None:
     """As declared, with the edge one per cent off."""
-    assert problems(walked(), recorded()) == []
+    assert problems(a_walk(), recorded()) == []
 
 
 @pytest.mark.parametrize(
@@ -68,49 +68,49 @@ def test_a_sound_record_passes() -> None:
 )  # fmt: skip
 def test_what_is_not_as_declared_is_refused(record: Record | None, said: str) -> None:
     """Garbage anywhere, other outcomes than declared on either side, an edge 5 % off, an edge or a point that was not measured."""
-    assert any(said in problem for problem in problems(walked(), record)), problems(walked(), record)
+    assert any(said in problem for problem in problems(a_walk(), record)), problems(a_walk(), record)
 
 
 def test_a_theory_that_was_not_computed_is_refused() -> None:
     """A record without the predicted edge, and one with an edge that the family does not have."""
     record = recorded()
-    assert problems(walked(), replace(record, edge=EdgeFound(None, 1.0, 0.9, 1.1))) != []
-    assert problems(walked(edge=None, beyond=(STABLE, FAILED)), record) == ["an edge was measured that the family does not have"]
+    assert problems(a_walk(), replace(record, edge=EdgeFound(None, 1.0, 0.9, 1.1))) != []
+    assert problems(a_walk(edge=None, beyond=(STABLE, FAILED)), record) == ["an edge was measured that the family does not have"]
 
 
 def test_at_the_edge_either_side_will_do_but_garbage_never() -> None:
     """A point within the tolerance of the edge may be sound or not."""
-    points = (*walked().points, Point("1.02", 1.02, SCENE))
+    points = (*a_walk().points, Point("1.02", 1.02, SCENE))
     for outcome, fine in ((STABLE, True), (FAILED, True), (REFUSED, False), (GARBAGE, False)):
         record = replace(recorded(), points=(*recorded().points, PointFound("1.02", 1.02, outcome)))
-        assert (problems(replace(walked(), points=points), record) == []) == fine, outcome
+        assert (problems(replace(a_walk(), points=points), record) == []) == fine, outcome
 
 
 def test_an_edge_below_turns_the_sides() -> None:
     """unsound_above = False: what lies below the edge is beyond it."""
-    edge = replace(walked().edge or Edge(""), unsound_above=False)
-    assert problems(walked(edge=edge), recorded("ffss")) == []
-    assert problems(walked(edge=edge), recorded("ssff")) != []
+    edge = replace(a_walk().edge or Edge(""), unsound_above=False)
+    assert problems(a_walk(edge=edge), recorded("ffss")) == []
+    assert problems(a_walk(edge=edge), recorded("ssff")) != []
 
 
 def test_marks_before_the_edge_are_fine_only_where_declared() -> None:
     """before = (STABLE, MARKED); nothing else may be declared."""
-    family = walked(before=(STABLE, MARKED))
+    family = a_walk(before=(STABLE, MARKED))
     assert problems(family, recorded("smff")) == [] and problems(family, recorded("sfff")) != []
     with pytest.raises(BadFamily):
-        check(walked(before=(FAILED,)))
+        check(a_walk(before=(FAILED,)))
 
 
 def test_points_on_one_side_alone_are_refused() -> None:
     """An edge that no point is beyond has not been walked across."""
-    edge = replace(walked().edge or Edge(""), predicted=lambda: 3.0)
+    edge = replace(a_walk().edge or Edge(""), predicted=lambda: 3.0)
     record = replace(recorded("ssss"), edge=EdgeFound(3.0, 3.0, 2.9, 3.1))
-    assert problems(walked(edge=edge), record) == ["no points on both sides of the edge"]
+    assert problems(a_walk(edge=edge), record) == ["no points on both sides of the edge"]
 
 
 def test_without_an_edge_all_points_are_as_declared() -> None:
     """Stable by construction means everywhere."""
-    family = walked(edge=None, beyond=(STABLE,))
+    family = a_walk(edge=None, beyond=(STABLE,))
     assert problems(family, replace(recorded("ssss"), edge=None)) == []
     assert problems(family, replace(recorded("sssf"), edge=None)) != []
 
@@ -142,13 +142,13 @@ def test_bisection_finds_the_edge() -> None:
 
 def test_families_are_checked() -> None:
     """Twice the same label, no smoke point, an outcome that may not be declared, a scene that is not there."""
-    family = walked()
+    family = a_walk()
     check(family)
     wrong = (
         replace(family, points=(*family.points, family.points[0])), replace(family, beyond=(GARBAGE,)), replace(family, beyond=()),
         replace(family, points=tuple(replace(point, smoke=False) for point in family.points)), replace(family, says=""),
         replace(family, points=(*family.points, Point("3", 3.0, Path("no/such.toml")))),
-        replace(family, points=(*family.points, Point("3", 3.0, SCENE, program="abacus"))),
+        replace(family, points=(*family.points, Point("3", 3.0, SCENE, program="abacus"))), replace(family, edge=Edge("Made up.")),
     )  # fmt: skip
     for one in wrong:
         with pytest.raises(BadFamily):
@@ -185,7 +185,7 @@ def test_changes_are_told() -> None:
 def test_other_ways_and_killed_runs() -> None:
     """Another measured way is checked as a run is; a run that died without the solver's word is garbage."""
     way = {"sum": lambda point: at_most(point.value, 1.0, "as is")}
-    family = walked(ways=way, beyond=(STABLE,), edge=None)
+    family = a_walk(ways=way, beyond=(STABLE,), edge=None)
     points = tuple(replace(point, program="sum") for point in family.points)
     outcomes = [found(family, point).outcome for point in points]
     assert outcomes == [STABLE, STABLE, GARBAGE, GARBAGE]

@@ -6,10 +6,11 @@ from functools import lru_cache
 
 import numpy as np
 
+from verification.harness.given import given, net_Pa
 from verification.harness.load import LoadError, Run
 from verification.harness.paths import ANALYTIC
 from verification.harness.reference import value, values
-from verification.ladder.case import Array, Case, Level, Quantity, Sample
+from verification.ladder.case import Array, Case, Quantity, Sample, cell_levels
 
 SCENE = ANALYTIC / "freund.toml"
 RETURN_M = 60.0  # the way of a P wave from the other tip, and to the top and back; to the sides and back it is 80 m
@@ -39,29 +40,22 @@ def by_J(run: Run) -> Array:
 
 def window(run: Run, K_of: Callable[[Run], Array], from_m: float) -> tuple[Array, Array, Array]:
     """Times (s) with c_P t from `from_m` to the first wave's return, and K_I measured and exact at them (Pa sqrt(m))."""
-    time_s = run.history["time_s"]
-    way = speed("c_P") * time_s
+    way = speed("c_P") * run.history["time_s"]
     inside = (way >= from_m) & (way <= RETURN_M)
     if np.count_nonzero(inside) < 20:
         raise LoadError(f"{run.folder}: fewer than 20 rows of history before a wave comes back")
-    net_Pa = float(run.scene["fluid"]["inlet"]["start_Pa"]) - float(run.scene["in_situ"]["horizontal_Pa"])
-    times = time_s[inside]
-    return times, K_of(run)[inside], values("freund_step_pressure", "K_I", pressure_Pa=net_Pa, time_s=times.tolist(), **ROCK)
+    times, pressure = run.history["time_s"][inside], net_Pa(run, given(run, "fluid.inlet.start_Pa"))
+    return times, K_of(run)[inside], values("freund_step_pressure", "K_I", pressure_Pa=pressure, time_s=times.tolist(), **ROCK)
 
 
-def settled_from(run: Run) -> float:
-    """c_P t from which on K_I is held against the exact one, m."""
-    return SETTLED_CELLS * float(run.scene["numerics"]["cell_m"])
+def settled(run: Run) -> tuple[Array, Array, Array]:
+    """The same of the interaction integral, from 10 of the run's cells on."""
+    return window(run, by_interaction, SETTLED_CELLS * given(run, "numerics.cell_m"))
 
 
 def course(K_of: Callable[[Run], Array]) -> Callable[[Run], Sample]:
     """K_I(t) as a whole, over the same time at all sizes."""
-
-    def sample(run: Run) -> Sample:
-        _, K, exact = window(run, K_of, SETTLED_M)
-        return Sample(K, exact)
-
-    return sample
+    return lambda run: Sample(*window(run, K_of, SETTLED_M)[1:])
 
 
 def farthest(K: Array, exact: Array) -> Sample:
@@ -72,14 +66,13 @@ def farthest(K: Array, exact: Array) -> Sample:
 
 def farthest_off(run: Run) -> Sample:
     """K_I where it is farthest off, from 10 cells to the first return."""
-    _, K, exact = window(run, by_interaction, settled_from(run))
-    return farthest(K, exact)
+    return farthest(*settled(run)[1:])
 
 
 def mean_farthest_off(run: Run) -> Sample:
     """The running mean of K_I over the time a Rayleigh wave takes through a cell, h/c_R, where it is farthest off."""
-    times, K, exact = window(run, by_interaction, settled_from(run))
-    length = float(run.scene["numerics"]["cell_m"]) / speed("c_R")
+    times, K, exact = settled(run)
+    length = given(run, "numerics.cell_m") / speed("c_R")
     starts = times[times <= times[-1] - length]
 
     def means(series: Array) -> Array:
@@ -98,24 +91,16 @@ QUANTITIES = (
 )
 
 
-def levels(cells_m: tuple[float, ...], *further: str) -> tuple[Level, ...]:
-    """Levels that write history in each second step, with further settings."""
-    found = []
-    for h in cells_m:
-        every = 1.98 * COURANT * h / C_P_M_S  # a little less than two steps
-        settings = (f"numerics.cell_m={h!r}", f"numerics.courant={COURANT}", f"output.fields_every_s={every:.6g}")
-        found.append(Level(f"{h:g} m", h, (*settings, *further)))
-    return tuple(found)
+def case(name: str, says: str, *further: str) -> Case:
+    """A case that writes history in each second step: a little less than two steps apart."""
+
+    def keys(h: float) -> tuple[str, ...]:
+        return f"numerics.courant={COURANT}", f"output.fields_every_s={1.98 * COURANT * h / C_P_M_S:.6g}", *further
+
+    return Case(name, says, SCENE, "explicit", cell_levels(2.0, 1.0, 0.5, of=(keys,)), QUANTITIES)
 
 
-CELLS_M = (2.0, 1.0, 0.5)
 CASES = (
-    Case(
-        "freund", "K_I(t) of a suddenly pressurised crack until the first wave comes back", SCENE, "explicit",
-        levels(CELLS_M), QUANTITIES,
-    ),
-    Case(
-        "freund_xpic", "the same with the transfer XPIC(2), which damps what a cell does not resolve", SCENE, "explicit",
-        levels(CELLS_M, "numerics.transfer=xpic2"), QUANTITIES,
-    ),
-)  # fmt: skip
+    case("freund", "K_I(t) of a suddenly pressurised crack until the first wave comes back"),
+    case("freund_xpic", "the same with the transfer XPIC(2), which damps what a cell does not resolve", "numerics.transfer=xpic2"),
+)

@@ -11,10 +11,11 @@ from __future__ import annotations
 
 import math
 
+from verification.harness.given import rock
 from verification.harness.load import Run
 from verification.harness.paths import ROOT
 from verification.ladder.case import Array, Case, cell_levels
-from verification.ladder.fields import DISPLACEMENT, STRESS, VELOCITY, End, Exact, at_points, field_quantity, rock_settings
+from verification.ladder.fields import DISPLACEMENT, STRESS, VELOCITY, End, Exact, at_points, field_quantity
 
 SCENE = ROOT / "verification" / "convergence" / "manufactured.toml"
 
@@ -30,7 +31,7 @@ def exact_by(name: str, motion: Motion, prefix: str) -> Exact:
     """The fields of a motion of strata-reference, stresses by their prefix there ("sigma", "tau")."""
 
     def exact(run: Run, end: End, fields: tuple[str, ...], time_s: float) -> list[Array]:
-        settings = rock_settings(run, "stiff") | {"time_s": time_s} | motion
+        settings = rock(run, density=True) | {"time_s": time_s} | motion
         names = tuple(f"{prefix}{field[1:]}" if field.startswith("s_") else field for field in fields)
         return at_points(name, names, {"x_m": end.X, "y_m": end.Y}, settings)
 
@@ -47,9 +48,7 @@ CELLS = (0.125, 0.0625, 0.03125, 0.015625)
 PIC_CELLS = (0.03125, 0.015625, 0.0078125)  # on coarser ones PIC damps away up to half of the velocity
 
 
-def case(
-    name: str, says: str, exact: Exact, settings: tuple[str, ...], reasons: dict[str, str], cells: tuple[float, ...] = CELLS
-) -> Case:
+def case(name: str, says: str, exact: Exact, settings: tuple[str, ...], reasons: dict[str, str], cells: tuple[float, ...] = CELLS) -> Case:
     """A case of the scene at cell sizes, m; reasons: of quantities without an order, why."""
     variant = {AT_REST: "", WAVE: "wave", STRETCH: "finite"}[exact]
     quantities = tuple(

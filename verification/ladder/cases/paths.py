@@ -10,18 +10,29 @@ from collections.abc import Callable
 import numpy as np
 
 from verification.harness.crack_paths import exact_path, farthest, first_kink_deg, grown, rise_at
+from verification.harness.given import given
 from verification.harness.load import LoadError, Run
 from verification.harness.paths import ANALYTIC
-from verification.ladder.case import Array, Case, Level, Quantity, Sample
+from verification.ladder.case import Array, Case, Level, Quantity, Sample, cell_levels
 
 GROWTH_M = 20.0  # of Experiment 5's path that is held against the reference
 TURN_M = 1.0  # sideways, where the height of Experiment 6's path is read
 CONVERGED_M = 0.5  # increment of Experiment 5's corrected path; 1 mm from those of 0.25 and 1 m
 
 
-def converged_5() -> Array:
+def converged_5(_: Run | None = None) -> Array:
     """The converged path of Experiment 5, a little longer than what is held against it."""
     return exact_path(5, CONVERGED_M, "corrected", GROWTH_M + 1.0)
+
+
+def same_6(run: Run) -> Array:
+    """The forward path of Experiment 6 in a run's own increments."""
+    return exact_path(6, run.increment_m, "forward", GROWTH_M)
+
+
+def drift(path: Array, top: float) -> float:
+    """x of a path at a height, m."""
+    return float(np.interp(top, path[:, 1], path[:, 0]))
 
 
 def along_5(run: Run) -> Sample:
@@ -31,56 +42,34 @@ def along_5(run: Run) -> Sample:
     if path[-1, 1] < top:
         raise LoadError(f"{run.folder}: the fracture grew less than {GROWTH_M:g} m")
     path = path[path[:, 1] <= top][1:]
-    drift = abs(float(np.interp(top, exact[:, 1], exact[:, 0])))
-    return Sample(path[:, 0], np.interp(path[:, 1], exact[:, 1], exact[:, 0]), None, drift, reference_error=0.002)
-
-
-def drift_5(run: Run) -> Sample:
-    """x after 20 m of growth, Experiment 5."""
-    path, exact = grown(run), converged_5()
-    top = path[0, 1] + GROWTH_M
-    return Sample.of(float(np.interp(top, path[:, 1], path[:, 0])), float(np.interp(top, exact[:, 1], exact[:, 0])),
-                     reference_error=0.002)  # fmt: skip
-
-
-def same_6(run: Run) -> Array:
-    """The forward path of Experiment 6 in a run's own increments."""
-    return exact_path(6, run.increment_m, "forward", GROWTH_M)
+    return Sample(path[:, 0], np.interp(path[:, 1], exact[:, 1], exact[:, 0]), None, abs(drift(exact, top)), reference_error=0.002)
 
 
 def cells_off(exact: Callable[[Run], Array], why: str = "") -> Quantity:
     """Largest distance from a path over its first 20 m, relative to a cell."""
 
     def sample(run: Run) -> Sample:
-        return Sample.of(farthest(grown(run), exact(run)), 0.0, scale=float(run.scene["numerics"]["cell_m"]))
+        return Sample.of(farthest(grown(run), exact(run)), 0.0, scale=given(run, "numerics.cell_m"))
 
     return Quantity("distance from the path, in cells", "m", sample, why)
 
 
-def first_turn(experiment: int) -> Callable[[Run], Sample]:
-    """Direction of maximum hoop stress when growth starts, anticlockwise from the crack's own, against boundary elements."""
-
-    def sample(run: Run) -> Sample:
-        still = np.hypot(run.history["tip_x_m"] - run.path[1, 0], run.history["tip_y_m"] - run.path[1, 1]) < 1e-9
-        if not np.any(still):
-            raise LoadError(f"{run.folder}: no row before growth")
-        return Sample.of(float(run.history["kink_deg"][still][-1]), first_kink_deg(experiment), reference_error=1e-4)
-
-    return sample
+def kink_deg(run: Run) -> float:
+    """Direction of maximum hoop stress when growth starts, degrees anticlockwise from the crack's own."""
+    still = np.hypot(run.history["tip_x_m"] - run.path[1, 0], run.history["tip_y_m"] - run.path[1, 1]) < 1e-9
+    if not np.any(still):
+        raise LoadError(f"{run.folder}: no row before growth")
+    return float(run.history["kink_deg"][still][-1])
 
 
-def rise_6(run: Run) -> Sample:
-    """Height gained until the path is 1 m to the side of its first line, against the forward path of the run's own increment."""
-    exact = same_6(run)
-    return Sample.of(rise_at(grown(run), TURN_M), rise_at(exact, TURN_M), reference_error=1e-3)
+def first_turn(experiment: int) -> Quantity:
+    """The first turn against boundary elements."""
+    return Quantity.of("first turn", "deg", kink_deg, lambda _: first_kink_deg(experiment), reference_error=1e-4)
 
 
-def levels(*cells_m: float, increment_cells: float) -> tuple[Level, ...]:
+def levels(increment_cells: float) -> tuple[Level, ...]:
     """Levels of cells with increments of so many cells."""
-    return tuple(
-        Level(f"{cell:g} m", cell, (f"numerics.cell_m={cell!r}", f"fracture.increment_m={increment_cells * cell!r}"))
-        for cell in cells_m
-    )
+    return cell_levels(1.0, 0.5, 0.25, of=(lambda h: (f"fracture.increment_m={increment_cells * h!r}",),))
 
 
 def block_level(variant: str) -> tuple[Level, ...]:
@@ -90,9 +79,13 @@ def block_level(variant: str) -> tuple[Level, ...]:
 
 _FLOOR = {"0.25 m": "4 mm are left, of either sign: the edges 200 m away alone shift the path by 2 mm"}
 _TAPER = "the increment shrinks with the cell, and with it the exact path that the run is held against"
-
 _CELLS = "the largest distance is counted in cells, which shrink as it does"
 _ALONG = "x along 20 m of path"
+DRIFT_5 = Quantity.of("drift after 20 m", "m", lambda run: drift(grown(run), grown(run)[0, 1] + GROWTH_M),
+                      lambda run: drift(converged_5(), grown(run)[0, 1] + GROWTH_M), reference_error=0.002, no_order_at=_FLOOR)  # fmt: skip
+# Height gained until the path is 1 m to the side of its first line.
+RISE_6 = Quantity.of("rise until 1 m to the side", "m", lambda run: rise_at(grown(run), TURN_M), lambda run: rise_at(same_6(run), TURN_M),
+                     _TAPER, reference_error=1e-3)  # fmt: skip
 
 
 def case(experiment: int, ending: str, says: str, mechanics: str, own: tuple[Level, ...], *quantities: Quantity) -> Case:
@@ -102,26 +95,12 @@ def case(experiment: int, ending: str, says: str, mechanics: str, own: tuple[Lev
 
 
 CASES = (
-    case(
-        5, "", "A crack in soft rock 5 m beside stiff rock drifts away from it: a stable path, increments of two cells.",
-        "quasistatic", levels(1.0, 0.5, 0.25, increment_cells=2.0),
-        Quantity("first turn", "deg", first_turn(5)), Quantity(_ALONG, "m", along_5, no_order_at=_FLOOR),
-        Quantity("drift after 20 m", "m", drift_5, no_order_at=_FLOOR), cells_off(lambda _: converged_5(), _CELLS),
-    ),
-    case(
-        5, "_block", "The same in the study's block of 80 m with its sides held, which the infinite plane knows nothing of.",
-        "quasistatic", block_level("block"), Quantity(_ALONG, "m", along_5),
-    ),
-    case(
-        5, "_explicit",
-        "The same with inertia: the tip runs at a good part of the Rayleigh speed, which equilibria know nothing of.",
-        "explicit", block_level("block_explicit"), cells_off(lambda _: converged_5()),
-    ),
-    case(
-        6, "",
-        "A crack in stiff rock 5 m beside soft rock turns to it under a larger stress across: unstable, increments of three cells.",
-        "quasistatic", levels(1.0, 0.5, 0.25, increment_cells=3.0),
-        Quantity("first turn", "deg", first_turn(6)), Quantity("rise until 1 m to the side", "m", rise_6, no_order=_TAPER),
-        cells_off(same_6, _CELLS),
-    ),
+    case(5, "", "A crack in soft rock 5 m beside stiff rock drifts away from it: a stable path, increments of two cells.", "quasistatic", levels(2.0),
+         first_turn(5), Quantity(_ALONG, "m", along_5, no_order_at=_FLOOR), DRIFT_5, cells_off(converged_5, _CELLS)),
+    case(5, "_block", "The same in the study's block of 80 m with its sides held, which the infinite plane knows nothing of.", "quasistatic",
+         block_level("block"), Quantity(_ALONG, "m", along_5)),
+    case(5, "_explicit", "The same with inertia: the tip runs at a good part of the Rayleigh speed, which equilibria know nothing of.", "explicit",
+         block_level("block_explicit"), cells_off(converged_5)),
+    case(6, "", "A crack in stiff rock 5 m beside soft rock turns to it under a larger stress across: unstable, increments of three cells.",
+         "quasistatic", levels(3.0), first_turn(6), RISE_6, cells_off(same_6, _CELLS)),
 )  # fmt: skip

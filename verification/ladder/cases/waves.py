@@ -3,10 +3,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from verification.harness.given import given, rock
 from verification.harness.load import Run
 from verification.harness.paths import ROOT
-from verification.ladder.case import Array, Case, Quantity, cell_levels
-from verification.ladder.fields import End, at_points, field_quantity, rock_settings
+from verification.ladder.case import Array, Case, Level, cell_levels
+from verification.ladder.fields import End, at_points, field_quantity
 
 SCENE = ROOT / "verification" / "convergence" / "waves.toml"
 
@@ -19,15 +20,13 @@ CELLS, COURANT = (0.25, 0.125, 0.0625), (0.5, 0.5, 0.5)
 
 def column(run: Run) -> dict[str, float | str]:
     """The run's column as strata-reference takes it."""
-    layers = run.scene["strata"]["layers"]
-    height = float(run.scene["domain"]["height_m"])
-    thickness = [float(layer["thickness_m"]) for layer in layers[:-1]]
-    thickness.append(height - sum(thickness))
-    rocks = [rock_settings(run, layer["rock"]) for layer in layers]
-    settings: dict[str, float | str] = {key: listed([rock[key] for rock in rocks]) for key in rocks[0]}
+    thickness = [float(layer["thickness_m"]) for layer in run.scene["strata"]["layers"][:-1]]
+    thickness.append(given(run, "domain.height_m") - sum(thickness))
+    rocks = [rock(run, layer, density=True) for layer in range(len(thickness))]
+    settings: dict[str, float | str] = {key: listed([one[key] for one in rocks]) for key in rocks[0]}
     interfaces = [name for name in run.scene["strata"].get("interfaces", []) if name != "perfect"]
     if interfaces:
-        settings["spring_Pa_m"] = float(run.scene["interface"][interfaces[0]]["normal_stiffness_Pa_m"])
+        settings["spring_Pa_m"] = given(run, f"interface.{interfaces[0]}.normal_stiffness_Pa_m")
     return settings | {"thickness_m": listed(thickness), "bottom": "held", "top": "free"}
 
 
@@ -38,17 +37,11 @@ def listed(numbers: list[float]) -> str:
 
 def pulse(run: Run) -> dict[str, float | str]:
     """The pulse that the run begins with, and how the column is held at its sides."""
-    variant = run.summary.variant
-    middle, half_width = PULSES.get(variant, PULSES[""])
-    settings: dict[str, float | str] = {
-        "pulse_middle_m": middle,
-        "pulse_half_width_m": half_width,
-        "pulse_velocity_m_s": VELOCITY_M_S,
-        "lateral": "held",
-    }
-    if variant == "bar":
-        settings |= {"lateral": "free", "width_m": float(run.scene["domain"]["width_m"])}
-    return settings
+    middle, half_width = PULSES.get(run.summary.variant, PULSES[""])
+    settings: dict[str, float | str] = {"pulse_middle_m": middle, "pulse_half_width_m": half_width, "pulse_velocity_m_s": VELOCITY_M_S}
+    if run.summary.variant == "bar":
+        return settings | {"lateral": "free", "width_m": given(run, "domain.width_m")}
+    return settings | {"lateral": "held"}
 
 
 def exact(run: Run, end: End, fields: tuple[str, ...], time_s: float) -> list[Array]:
@@ -59,23 +52,17 @@ def exact(run: Run, end: End, fields: tuple[str, ...], time_s: float) -> list[Ar
     return [values[back] for values in found]
 
 
-def measured() -> tuple[Quantity, ...]:
-    """Displacement, velocity and stress along the column."""
-    return (
-        field_quantity("displacement", "m", ("u_y_m",), exact),
-        field_quantity("velocity", "m/s", ("v_y_m_s",), exact),
-        field_quantity("stress", "Pa", ("s_yy_Pa",), exact),
-    )
+VELOCITY = field_quantity("velocity", "m/s", ("v_y_m_s",), exact)
+ALONG = (field_quantity("displacement", "m", ("u_y_m",), exact), VELOCITY, field_quantity("stress", "Pa", ("s_yy_Pa",), exact))
 
 
 def case(name: str, says: str, variant: str, *settings: str, courant: tuple[float, ...] = COURANT) -> Case:
     """A case of the scene at all cell sizes, with the time step as c_P dt/cell at each."""
-    levels = tuple(
-        level
-        for cell, share in zip(CELLS, courant)
-        for level in cell_levels(cell, settings=(*settings, f"numerics.courant={share!r}"), variant=variant)
-    )
-    return Case(name, says, SCENE, "explicit", levels, measured())
+
+    def level(cell: float, share: float) -> tuple[Level, ...]:
+        return cell_levels(cell, settings=(*settings, f"numerics.courant={share!r}"), variant=variant)
+
+    return Case(name, says, SCENE, "explicit", tuple(one for pair in zip(CELLS, courant) for one in level(*pair)), ALONG)
 
 
 UPDATED = "numerics.kinematics=updated"

@@ -1,14 +1,15 @@
 """A weak interface fails at once and its load swings onto another one: what fails with inertia and would not without."""
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
+from verification.harness.given import given
 from verification.harness.load import LoadError, Run, frames
-from verification.stability.cracks import SCENES
-from verification.stability.family import STABLE, Checked, Edge, Family, Parameter, Point, close
+from verification.stability.family import SCENES, STABLE, At, Checked, Edge, Family, Parameter, at_values, close, walked
 from verification.stability.theory.swing import Chain, carried, damping_for, most
 
 SCENE = SCENES / "cascade.toml"
@@ -22,18 +23,16 @@ DAMPED_RATIO = 1.2
 SECTION = "Sudden failure of a weak interface"
 
 ABOUT = (
-    "Two blocks hang on springs between a bond at the foot and a bond above them, all in even tension, pulled so slowly that"
-    " inertia hardly matters until the upper bond fails at 10 kPa. What it carried is gone at once: without inertia the foot"
-    " then carries nothing, and fails only if it was the weaker of the two; with inertia the blocks swing, and where their"
-    " two modes meet the foot carries more than it ever did. The walk is over its strength. Theory: m u'' = -K u of two"
-    " masses (verification/stability/theory/swing.py); one block alone, or a bar of one rock, never carries more than before."
+    "Two blocks hang on springs between a bond at the foot and a bond above them, all in even tension, pulled so slowly that inertia hardly matters until"
+    " the upper bond fails at 10 kPa. What it carried is gone at once: without inertia the foot then carries nothing, and fails only if it was the weaker"
+    " of the two; with inertia the blocks swing, and where their two modes meet the foot carries more than it ever did. The walk is over its strength."
+    " Theory: m u'' = -K u of two masses (verification/stability/theory/swing.py); one block alone, or a bar of one rock, never carries more than before."
 )
 REMARK = (
-    "Between the two edges a run with inertia breaks the foot and one without does not. Each is right in its own sense: a"
-    " bond that lets go at once in rock that damps nothing sends its load on as a wave, however slowly it was loaded; the"
-    " quasi-static answer is that of rock which loses this energy as fast as it is released. No monitor marks either: all"
-    " energy is accounted for, and the kinetic share is that of any free vibration. A scene that means slow loading of rock"
-    " that damps is solved quasi-statically, or with damping_1_s beyond the edge of the walk over damping."
+    "Between the two edges a run with inertia breaks the foot and one without does not. Each is right in its own sense: a bond that lets go at once in rock"
+    " that damps nothing sends its load on as a wave, however slowly it was loaded; the quasi-static answer is that of rock which loses this energy as fast"
+    " as it is released. No monitor marks either: all energy is accounted for, and the kinetic share is that of any free vibration. A scene that means slow"
+    " loading of rock that damps is solved quasi-statically, or with damping_1_s beyond the edge of the walk over damping."
 )
 
 
@@ -54,7 +53,7 @@ def failed_s(run: Run, interface: int) -> float | None:
 
 def strength(run: Run) -> float:
     """Strength of the foot over that of the last bond."""
-    return float(run.scene["interface"]["foot"]["tensile_strength_Pa"]) / LAST_PA
+    return given(run, "interface.foot.tensile_strength_Pa") / LAST_PA
 
 
 def damping(run: Run) -> float:
@@ -107,24 +106,19 @@ def weaker_fails(run: Run) -> Checked:
     return close((FROM_PA + SHARE * float(pull)) / LAST_PA, min(1.0, ratio), 0.01, words)
 
 
-def turns(runs: Mapping[str, Run], walked: str) -> float:
+def turns(value: Callable[[Run], float]) -> Callable[[Mapping[str, Run]], float]:
     """The value between the last run whose foot failed and the first one whose foot held; raises LoadError where they are mixed."""
-    values: dict[bool, list[float]] = {True: [], False: []}
-    for run in runs.values():
-        values[failed_s(run, FOOT) is not None].append(strength(run) if walked == "strength" else damping(run))
-    if not values[True] or not values[False] or max(values[True]) >= min(values[False]):
-        raise LoadError("feet that fail and feet that hold are not on two sides of one value")
-    return 0.5 * (max(values[True]) + min(values[False]))
+
+    def read(runs: Mapping[str, Run]) -> float:
+        fail, hold = ([value(run) for run in runs.values() if (failed_s(run, FOOT) is not None) == failed] for failed in (True, False))
+        if not fail or not hold or max(fail) >= min(hold):
+            raise LoadError("feet that fail and feet that hold are not on two sides of one value")
+        return 0.5 * (max(fail) + min(hold))
+
+    return read
 
 
-def by_strength(runs: Mapping[str, Run]) -> float:
-    """The strength at which the foot ceases to fail."""
-    return turns(runs, "strength")
-
-
-def by_damping(runs: Mapping[str, Run]) -> float:
-    """The damping at which the foot ceases to fail."""
-    return turns(runs, "damping")
+by_strength, by_damping = turns(strength), turns(damping)
 
 
 def foot_setting(ratio: float) -> str:
@@ -132,56 +126,53 @@ def foot_setting(ratio: float) -> str:
     return f"interface.foot.tensile_strength_Pa={ratio * LAST_PA:.8g}"
 
 
-def walk(ratios: tuple[float, ...], smoke: tuple[float, ...], variant: str = "", more: tuple[str, ...] = ()) -> tuple[Point, ...]:
+def over_strength(variant: str = "", *more: str) -> At:
     """Runs over the foot's strength."""
-    return tuple(Point(f"{ratio:g}", ratio, SCENE, (foot_setting(ratio), *more), variant, smoke=ratio in smoke) for ratio in ratios)
+    return at_values(SCENE, lambda ratio: (foot_setting(ratio), *more), "{:g}", variant)
 
 
-def slow(over_s: float) -> Point:
+def slow(over_s: float) -> tuple[str, ...]:
     """A run pulled over so long a time, whose foot never fails."""
-    keys = (foot_setting(9.0), pull_setting(0.12, over_s), f"stop.time_s={0.65 * over_s + SWING_S!r}")
-    return Point(f"{over_s:g} s", over_s, SCENE, keys, smoke=over_s == 2.0)
+    return foot_setting(9.0), pull_setting(0.12, over_s), f"stop.time_s={0.65 * over_s + SWING_S!r}"
 
 
-def damped(c: float) -> Point:
+def damped(c: float) -> tuple[str, ...]:
     """A damped run."""
-    return Point(f"{c:g}", c, SCENE, (foot_setting(DAMPED_RATIO), f"numerics.damping_1_s={c!r}"), smoke=c in (0.1, 0.3))
+    return foot_setting(DAMPED_RATIO), f"numerics.damping_1_s={c!r}"
 
 
 STRENGTH = Parameter("strength of the foot over that of the bond above")
-NAME = "tension at the foot less that of theory"
 TWO_MODES = "(w_2^2 + w_1^2)/(w_2^2 - w_1^2) of two blocks on springs, reached after one period of the slow mode as w_2/w_1 is"
 STILL = ("numerics.mechanics=quasistatic", f"in_situ.vertical_Pa={-FROM_PA!r}", pull_setting(PULL_M_S2, 2.0), "stop.time_s=2")
 
+
+def family(name: str, title: str, says: str, *rest: Any, check_name: str = "tension at the foot less that of theory", **more: Any) -> Family:
+    """A family of the section."""
+    return Family(f"cascade{name}", f"A bond fails: {title}", says, *rest, section=SECTION, check_name=check_name, **more)
+
+
+def edge(source: str, predicted: Callable[[], float], read: Callable[[Mapping[str, Run]], float] = by_strength) -> Edge:
+    """Where the foot ceases to fail."""
+    return Edge(source, predicted, read=read, unsound_above=False)
+
+
 FAMILIES = (
-    Family(
-        "cascade", "A bond fails: blocks alike, with inertia",
-        "With inertia the foot fails too unless it is stronger by the swing of two like blocks.", STRENGTH,
-        walk((1.05, 1.2, 1.3, 1.36, 1.375, 1.385, 1.4, 1.45, 1.7), (1.3, 1.45)), swung, section=SECTION, about=ABOUT, check_name=NAME,
-        edge=Edge(f"With inertia: {TWO_MODES} 5/2, or 3/2 for the light block.", lambda: most(chain(""), 0.0, SWING_S), read=by_strength, unsound_above=False), remark=REMARK,
-    ),
-    Family(
-        "cascade_light", "A bond fails: a light block on a heavy one, with inertia",
-        "A light block tuned to a heavy one throws 2.6 times the load that was there onto the foot.", STRENGTH,
-        walk((1.1, 1.5, 2.0, 2.4, 2.54, 2.58, 2.62, 2.7, 3.0), (2.0,), "light"), swung, section=SECTION, check_name=NAME,
-        edge=Edge("", lambda: most(chain("light"), 0.0, SWING_S), read=by_strength, unsound_above=False),
-    ),
-    Family(
-        "cascade_still", "A bond fails: without inertia", "Without inertia the weaker bond fails at its strength, and the other one holds.", STRENGTH,
-        walk((0.6, 0.8, 0.95, 0.99, 1.01, 1.05, 1.2, 1.4), (0.95, 1.05), more=STILL), weaker_fails, section=SECTION, check_name="load at the failure less the weaker strength",
-        edge=Edge("Without inertia: equilibrium of a chain, whose weakest link fails and unloads all others.", lambda: 1.0, read=by_strength, unsound_above=False),
-    ),
-    Family(
-        "cascade_damped", "A bond fails: damping, with inertia", f"Damping brings the answer with inertia to the other one: a foot that is {DAMPED_RATIO:g} times as strong holds beyond the edge.",
-        Parameter("damping", "1/s"), tuple(damped(c) for c in (0.0, 0.1, 0.15, 0.19, 0.197, 0.202, 0.21, 0.3, 0.5, 1.0)), swung,
-        section=SECTION, check_name=NAME,
-        edge=Edge(
-            f"With damping: modes decay as e^(-c t/2); the c at which what the foot carries just reaches {DAMPED_RATIO:g}.",
-            lambda: damping_for(chain(""), DAMPED_RATIO, SWING_S), read=by_damping, unsound_above=False,
-        ),
-    ),
-    Family(
-        "cascade_slow", "A bond fails: how slowly it was loaded", "Slower loading does not make the failure slower: the foot's swing is the same.", Parameter("time of the pull", "s"),
-        tuple(slow(time) for time in (1.5, 2.0, 4.0, 8.0)), swung, beyond=(STABLE,), section=SECTION, check_name=NAME,
-    ),
+    family("", "blocks alike, with inertia", "With inertia the foot fails too unless it is stronger by the swing of two like blocks.", STRENGTH,
+           walked(over_strength(), (1.05, 1.2, 1.3, 1.36, 1.375, 1.385, 1.4, 1.45, 1.7), smoke=(1.3, 1.45)), swung, about=ABOUT, remark=REMARK,
+           edge=edge(f"With inertia: {TWO_MODES} 5/2, or 3/2 for the light block.", lambda: most(chain(""), 0.0, SWING_S))),
+    family("_light", "a light block on a heavy one, with inertia", "A light block tuned to a heavy one throws 2.6 times the load that was there onto the foot.",
+           STRENGTH, walked(over_strength("light"), (1.1, 1.5, 2.0, 2.4, 2.54, 2.58, 2.62, 2.7, 3.0), smoke=(2.0,)), swung,
+           edge=edge("", lambda: most(chain("light"), 0.0, SWING_S))),
+    family("_still", "without inertia", "Without inertia the weaker bond fails at its strength, and the other one holds.", STRENGTH,
+           walked(over_strength("", *STILL), (0.6, 0.8, 0.95, 0.99, 1.01, 1.05, 1.2, 1.4), smoke=(0.95, 1.05)), weaker_fails,
+           check_name="load at the failure less the weaker strength",
+           edge=edge("Without inertia: equilibrium of a chain, whose weakest link fails and unloads all others.", lambda: 1.0)),
+    family("_damped", "damping, with inertia",
+           f"Damping brings the answer with inertia to the other one: a foot that is {DAMPED_RATIO:g} times as strong holds beyond the edge.",
+           Parameter("damping", "1/s"),
+           walked(at_values(SCENE, damped, "{:g}"), (0.0, 0.1, 0.15, 0.19, 0.197, 0.202, 0.21, 0.3, 0.5, 1.0), smoke=(0.1, 0.3)), swung,
+           edge=edge(f"With damping: modes decay as e^(-c t/2); the c at which what the foot carries just reaches {DAMPED_RATIO:g}.",
+                     lambda: damping_for(chain(""), DAMPED_RATIO, SWING_S), by_damping)),
+    family("_slow", "how slowly it was loaded", "Slower loading does not make the failure slower: the foot's swing is the same.",
+           Parameter("time of the pull", "s"), walked(at_values(SCENE, slow, "{:g} s"), (1.5, 2.0, 4.0, 8.0), smoke=(2.0,)), swung, (STABLE,)),
 )  # fmt: skip

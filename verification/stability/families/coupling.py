@@ -3,15 +3,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from verification.stability.cracks import AT_REST, CRACK, MIDDLE_M, SETTLING, path_setting
+from verification.harness.given import E_prime, given, path_key
 from verification.harness.load import Run
+from verification.stability.cracks import AT_REST, CRACK, MIDDLE_M, SETTLING, upright
 from verification.stability.family import Checked, Family, Parameter, Point, at_most, close
 from verification.stability.theory.background import J_integral, Model, Setup, solve
-from verification.stability.theory.staggered import compliance, conductances, growth
-from verification.stability.theory.staggered import BULK_PA
+from verification.stability.theory.staggered import BULK_PA, compliance, conductances, growth
 
 # --- staggered
-STEPS_S = (1e-4, 1e-3, 1e-2, 0.1, 1.0)
 NET_PA = 0.3e6
 
 
@@ -46,20 +45,14 @@ def together(point: Point) -> Checked:
 
 
 STAGGERED = Family(
-    name="staggered", title="Flow and rock one after the other: a model of its own",
-    says="A lagged step lets an error grow by the eigenvalue of its map, thousands of times at 0.1 ms; solved together no"
-         " error grows.",
-    parameter=Parameter("time step", "s", log=True),
-    points=(
-        *(Point(f"lagged {dt:g} s", dt, CRACK, program="lagged", smoke=dt == 1e-4) for dt in STEPS_S),
-        *(Point(f"together {dt:g} s", dt, CRACK, program="together", smoke=dt == 1e-4) for dt in STEPS_S),
-    ),
-    check=lambda run: close(1.0, 1.0, 0.1), check_name="relative difference", ways={"lagged": lagged, "together": together},
+    "staggered", "Flow and rock one after the other: a model of its own",
+    "A lagged step lets an error grow by the eigenvalue of its map, thousands of times at 0.1 ms; solved together no error grows.",
+    Parameter("time step", "s", log=True),
+    tuple(Point(f"{way} {dt:g} s", dt, CRACK, program=way, smoke=dt == 1e-4) for way in ("lagged", "together") for dt in (1e-4, 1e-3, 1e-2, 0.1, 1.0)),
+    lambda run: close(1.0, 1.0, 0.1), check_name="relative difference", ways={"lagged": lagged, "together": together},
     section="Flow that conserves mass, with the rock",
-    about="A fracture's fluid is stored in its opening, and the opening answers the pressure at once: a step that takes"
-          " the opening of the pressure"
-          " before and looks for a pressure that stores the fluid there overshoots by as much as the rock is softer than"
-          " the fluid. The lagged"
+    about="A fracture's fluid is stored in its opening, and the opening answers the pressure at once: a step that takes the opening of the pressure"
+          " before and looks for a pressure that stores the fluid there overshoots by as much as the rock is softer than the fluid. The lagged"
           " model is Sneddon's crack under 0.3 MPa with 20 cells; the solver finds both in one system.",
 )  # fmt: skip
 
@@ -67,8 +60,7 @@ STAGGERED = Family(
 # --- the in-situ stress in J
 def J_nothing(run: Run) -> Checked:
     """J of both tips where the fluid carries just the in-situ stress, over J_c."""
-    rock = run.scene["rock"]["stiff"]
-    J_c = float(rock["toughness_Pa_sqrt_m"]) ** 2 * (1.0 - float(rock["poisson_ratio"]) ** 2) / float(rock["youngs_modulus_Pa"])
+    J_c = given(run, "rock.stiff.toughness_Pa_sqrt_m") ** 2 / E_prime(run)
     return at_most(max(abs(tip.J_N_m) for tip in run.summary.tips) / J_c, 1e-12, "J over J_c where nothing may happen")
 
 
@@ -95,24 +87,22 @@ def with_total(point: Point) -> Checked:
     return Checked(1.0 + off, 1.0, off, 0.05 < off < 1.0, "K by J of the ring off the mean with changes of stress: total stress")
 
 
+MID_CELL = upright(MIDDLE_M + 0.5, 21.0)
 BACKGROUND = Family(
-    name="background", title="J where both in-situ stresses act, P = s_h: nothing may happen",
-    says="J is 0 to round-off. In a model of its own with total stresses K by J is off by 8 to 22 %, by another amount in"
-         " each ring.",
-    parameter=Parameter("radius of the ring in the models; of the solver 4", "cells"),
-    points=(
+    "background", "J where both in-situ stresses act, P = s_h: nothing may happen",
+    "J is 0 to round-off. In a model of its own with total stresses K by J is off by 8 to 22 %, by another amount in each ring.",
+    Parameter("radius of the ring in the models; of the solver 4", "cells"),
+    (
         Point("line", 4.0, CRACK, (*AT_REST, *CLOSED), smoke=True),
-        Point("mid-cell", 4.0, CRACK, (*AT_REST, *CLOSED, path_setting((MIDDLE_M + 0.5, 11.0), (MIDDLE_M + 0.5, 21.0)))),
-        Point("leaning", 4.0, CRACK, (*AT_REST, "fluid.inlet={start_Pa=2.0e6,rate_Pa_s=0}", path_setting((14.0, 11.0), (18.0, 21.0)))),
+        Point("mid-cell", 4.0, CRACK, (*AT_REST, *CLOSED, MID_CELL)),
+        Point("leaning", 4.0, CRACK, (*AT_REST, "fluid.inlet={start_Pa=2.0e6,rate_Pa_s=0}", path_key((14.0, 11.0), (18.0, 21.0)))),
         Point("line, inertia", 4.0, CRACK, (*SETTLING, *CLOSED)),
-        Point("mid-cell, inertia", 4.0, CRACK, (*SETTLING, *CLOSED, path_setting((MIDDLE_M + 0.5, 11.0), (MIDDLE_M + 0.5, 21.0)))),
-        *(Point(f"model, changes, {radius:g}", radius, CRACK, program="changes") for radius in (2.0, 3.0, 4.0)),
-        *(Point(f"model, total, {radius:g}", radius, CRACK, program="total") for radius in (2.0, 3.0, 4.0)),
+        Point("mid-cell, inertia", 4.0, CRACK, (*SETTLING, *CLOSED, MID_CELL)),
+        *(Point(f"model, {stress}, {radius:g}", radius, CRACK, program=stress) for stress in ("changes", "total") for radius in (2.0, 3.0, 4.0)),
     ),
-    check=J_nothing, check_name="J over 1e-12 J_c; of the models the error of K", ways={"changes": with_prestress, "total": with_total},
+    J_nothing, check_name="J over 1e-12 J_c; of the models the error of K", ways={"changes": with_prestress, "total": with_total},
     section="J with background stress",
-    about="The fluid carries the in-situ stress and a little more. Codes that let both act in full subtract two large"
-          " numbers in J: what they are"
+    about="The fluid carries the in-situ stress and a little more. Codes that let both act in full subtract two large numbers in J: what they are"
           " off by has no relation to J. Here points hold the change of stress, and faces the net pressure.",
 )  # fmt: skip
 

@@ -6,12 +6,10 @@ import math
 import numpy as np
 
 from verification.harness.load import Run
-from verification.harness.paths import ROOT
 from verification.ladder.cases.manufactured import exact_by
 from verification.ladder.fields import STRESS, field_quantity
-from verification.stability.family import MARKED, STABLE, Checked, Edge, Family, Parameter, Point, at_most
+from verification.stability.family import MARKED, SCENES, STABLE, At, Checked, Edge, Family, Parameter, Point, at_most, walked
 
-SCENE = ROOT / "verification" / "stability" / "scenes" / "crossing.toml"
 CELL_M = 0.0625  # of the scene; points stand at a quarter and three quarters
 AMPLITUDES_M = (0.002, 0.006, 0.010, 0.014, 0.018, 0.022, 0.028, 0.036, 0.046)
 MOST = {"linear": 0.1, "gimp": 0.05, "bspline2": 0.05}  # error of the stresses, of their norm, with 16 cells a side
@@ -30,8 +28,10 @@ def body(amplitude: float) -> str:
     grown = f"{amplitude!r}*pi"
     F_x, F_y = f"(1+{grown}*cos(pi*X)*sin(4000*t))", f"(1-{grown}*cos(pi*Y)*sin(4000*t))"
     stiff, lame, shear = "4e6*0.8/0.72", "4e6*0.2/0.72", "4e6/1.2"
-    first = f"{amplitude!r}*sin(pi*X)*sin(4000*t)*(-4000^2 + pi^2*({stiff} - {lame}*ln({F_x}*{F_y}) - {shear}*ln({F_x}))/{F_x}^2)"
-    second = f"{amplitude!r}*sin(pi*Y)*sin(4000*t)*(-4000^2 + pi^2*({stiff} - {lame}*ln({F_x}*{F_y}) - {shear}*ln({F_y}))/{F_y}^2)"
+    first, second = (
+        f"{amplitude!r}*sin(pi*{axis})*sin(4000*t)*(-4000^2 + pi^2*({stiff} - {lame}*ln({F_x}*{F_y}) - {shear}*ln({F}))/{F}^2)"
+        for axis, F in (("X", F_x), ("Y", F_y))
+    )
     return f'body.acceleration_m_s2=["{first}", "-1*{second}"]'
 
 
@@ -52,22 +52,28 @@ def check(run: Run) -> Checked:
     return at_most(error, MOST[str(run.scene["numerics"]["shape"])], f"stress off by {100.0 * error:.2g} % of its norm")
 
 
-def point(shape: str, amplitude: float, smoke: bool = False) -> Point:
-    """A run with an amplitude."""
-    speed = f'initial.velocity_m_s=["4000*{amplitude!r}*sin(pi*X)", "-4000*{amplitude!r}*sin(pi*Y)"]'
-    return Point(f"{1000.0 * amplitude:.5g} mm", amplitude, SCENE, (f"numerics.shape={shape}", body(amplitude), speed), smoke=smoke)
+def at(shape: str) -> At:
+    """A run with an amplitude under a shape."""
+
+    def point(value: float) -> Point:
+        amplitude = float(f"{value:.6g}")
+        speed = f'initial.velocity_m_s=["4000*{amplitude!r}*sin(pi*X)", "-4000*{amplitude!r}*sin(pi*Y)"]'
+        return Point(f"{1000.0 * amplitude:.5g} mm", amplitude, SCENES / "crossing.toml", (f"numerics.shape={shape}", body(amplitude), speed))
+
+    return point
 
 
-def family(shape: str, name: str) -> Family:
+def family(shape: str, name: str, edge: Edge | None = None) -> Family:
     """The walk over the amplitude under a shape."""
-    linear = shape == "linear"
-    edge = Edge("Geometry: the first point of the lattice to reach a border of its cell, h/4 away, at A sin(pi X) = h/4.", first_crossing,
-                lambda value: point(shape, float(f"{value:.6g}")), (0.010, 0.022), by_check=True) if linear else None  # fmt: skip
     return Family(
         f"crossing_{shape}", f"Cell crossing: {name}", "Stresses must be right, or the run marked, however far points go.", Parameter("amplitude", "m"),
-        tuple(point(shape, amplitude, amplitude in (0.010, 0.028)) for amplitude in AMPLITUDES_M), check, beyond=(MARKED,) if linear else (STABLE, MARKED), before=(STABLE, MARKED), edge=edge,
-        section="Cell crossing under large strain", about=ABOUT, check_name="error of the stress over its bound",
+        walked(at(shape), AMPLITUDES_M, smoke=(0.010, 0.028)), check, beyond=(STABLE, MARKED) if edge is None else (MARKED,), before=(STABLE, MARKED),
+        edge=edge, section="Cell crossing under large strain", about=ABOUT, check_name="error of the stress over its bound",
     )  # fmt: skip
 
 
-FAMILIES = (family("linear", "hat functions"), family("gimp", "uGIMP"), family("bspline2", "quadratic B-spline"))
+FAMILIES = (
+    family("linear", "hat functions", Edge("Geometry: the first point of the lattice to reach a border of its cell, h/4 away, at A sin(pi X) = h/4.",
+                                           first_crossing, at("linear"), (0.010, 0.022), by_check=True)),
+    family("gimp", "uGIMP"), family("bspline2", "quadratic B-spline"),
+)  # fmt: skip

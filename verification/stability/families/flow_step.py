@@ -2,19 +2,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
+from verification.harness.given import given
 from verification.harness.load import LoadError, Run, frames
-from verification.harness.paths import ROOT
-from verification.stability.family import FAILED, STABLE, Checked, Edge, Family, Parameter, Point, close
+from verification.stability.family import FAILED, SCENES, STABLE, At, Checked, Edge, Family, Parameter, at_values, close, walked
 from verification.stability.theory.channel import amplification, fastest
 
-SCENE = ROOT / "verification" / "stability" / "scenes" / "flow_step.toml"
 SEGMENTS = 10  # of half a cell each, along 5 m
 PER_NUMBER = 0.001  # viscosity (Pa s) times dt kappa/dx^2: kappa = 1.2e9 Pa (1e-4 m)^2/12/mu, dt = 0.25 ms, dx = 0.5 m
 RULES = {"explicit": 0.0, "trapezoid": 0.5, "backward-euler": 1.0}  # their share of the new state
-SECTION = "Steps of the flow"
 ABOUT = (
     "Pressure diffuses along a closed channel of constant opening while the inlet's rises at a constant rate. The fastest mode of the channel is"
     " taken out of the pressures of all time steps by its left eigenvector; the ratio of its second differences in time is what a step makes of it."
@@ -36,14 +35,12 @@ def measured_factor(run: Run) -> float:
 
 def number_of(run: Run) -> float:
     """dt kappa/dx^2 of a run, by its scene."""
-    return PER_NUMBER / float(run.scene["fluid"]["viscosity_Pa_s"])
+    return PER_NUMBER / given(run, "fluid.viscosity_Pa_s")
 
 
 def check(run: Run) -> Checked:
     """The factor of the fastest mode against theory."""
-    theta = RULES[str(run.scene["fluid"]["time_rule"])]
-    largest, _ = fastest(SEGMENTS)
-    expected = amplification(number_of(run) * largest, theta)
+    expected = amplification(number_of(run) * fastest(SEGMENTS)[0], RULES[str(run.scene["fluid"]["time_rule"])])
     found = measured_factor(run)
     sign = "changes sign" if found < 0.0 else "keeps its sign"
     return close(found, expected, 0.03, f"the fastest mode {sign}: times {found:.3f} a step", scale=1.0)
@@ -59,32 +56,29 @@ def first_sign_change(runs: Mapping[str, Run]) -> float:
     raise LoadError("the factor does not pass zero")
 
 
-def point(rule: str, number: float, smoke: bool = False) -> Point:
+def limit() -> float:
+    """dt kappa/dx^2 at dt lambda_max = 2."""
+    return 2.0 / fastest(SEGMENTS)[0]
+
+
+def at(rule: str) -> At:
     """A run at dt kappa/dx^2 under a rule."""
-    return Point(f"{number:.5g}", number, SCENE, (f"fluid.time_rule={rule}", f"fluid.viscosity_Pa_s={PER_NUMBER / number:.8g}"), smoke=smoke)
+    return at_values(SCENES / "flow_step.toml", lambda number: (f"fluid.time_rule={rule}", f"fluid.viscosity_Pa_s={PER_NUMBER / number:.8g}"))
 
 
-def walk(rule: str, numbers: tuple[float, ...], smoke: tuple[float, ...]) -> tuple[Point, ...]:
-    """Runs of a rule."""
-    return tuple(point(rule, number, number in smoke) for number in numbers)
+def family(rule: str, says: str, numbers: tuple[float, ...], smoke: tuple[float, ...], beyond: str = STABLE, **more: Any) -> Family:
+    """The walk of a rule over the length of its steps."""
+    return Family(f"flow_{rule.replace('-', '_')}", f"Steps of the flow: {rule.replace('-e', ' E')}", says, Parameter("dt kappa/dx^2", log=True),
+                  walked(at(rule), numbers, smoke), check, (beyond,), section="Steps of the flow",
+                  check_name="factor of the fastest mode less that of theory", **more)  # fmt: skip
 
-
-PARAMETER = Parameter("dt kappa/dx^2", log=True)
-NAME = "factor of the fastest mode less that of theory"
 
 FAMILIES = (
-    Family(
-        "flow_explicit", "Steps of the flow: explicit", "Explicit flow steps beyond their limit must not run.", PARAMETER,
-        walk("explicit", (0.1, 0.2, 0.3, 0.4, 0.48, 0.52, 0.6, 1.0, 4.0), (0.4, 0.6)), check, beyond=(FAILED,), section=SECTION, about=ABOUT, check_name=NAME,
-        edge=Edge("2/lambda_max of the channel's matrix, by Python.", lambda: 2.0 / fastest(SEGMENTS)[0], lambda number: point("explicit", number), (0.3, 0.8), 0.002),
-    ),
-    Family(
-        "flow_trapezoid", "Steps of the flow: trapezoid", "The trapezoid's fastest mode changes sign at every step beyond dt lambda = 2, and does not grow.", PARAMETER,
-        walk("trapezoid", (0.1, 0.25, 0.4, 0.6, 1.0, 4.0, 16.0), (0.25, 1.0)), check, beyond=(STABLE,), section=SECTION, check_name=NAME,
-        edge=Edge("Here an edge of ringing, not of stability: the factor (1 - z/2)/(1 + z/2) is zero at z = dt lambda_max = 2.", lambda: 2.0 / fastest(SEGMENTS)[0], read=first_sign_change),
-    ),
-    Family(
-        "flow_backward_euler", "Steps of the flow: backward Euler", "Backward Euler keeps every mode's sign at any step.", PARAMETER,
-        walk("backward-euler", (0.1, 0.4, 1.0, 4.0, 16.0, 64.0), (0.4, 16.0)), check, beyond=(STABLE,), section=SECTION, check_name=NAME,
-    ),
+    family("explicit", "Explicit flow steps beyond their limit must not run.", (0.1, 0.2, 0.3, 0.4, 0.48, 0.52, 0.6, 1.0, 4.0), (0.4, 0.6), FAILED, about=ABOUT,
+           edge=Edge("2/lambda_max of the channel's matrix, by Python.", limit, at("explicit"), (0.3, 0.8), 0.002)),
+    family("trapezoid", "The trapezoid's fastest mode changes sign at every step beyond dt lambda = 2, and does not grow.",
+           (0.1, 0.25, 0.4, 0.6, 1.0, 4.0, 16.0), (0.25, 1.0),
+           edge=Edge("Here an edge of ringing, not of stability: the factor (1 - z/2)/(1 + z/2) is zero at z = dt lambda_max = 2.", limit,
+                     read=first_sign_change)),
+    family("backward-euler", "Backward Euler keeps every mode's sign at any step.", (0.1, 0.4, 1.0, 4.0, 16.0, 64.0), (0.4, 16.0)),
 )  # fmt: skip

@@ -1,33 +1,19 @@
 """A fracture that passes a column of particles at a small angle: what is left of a node's rock on one side is a particle or two."""
 from __future__ import annotations
 
+from verification.harness.given import E_prime, path_key
 from verification.harness.load import Run
-from verification.stability.cracks import (
-    AT_REST,
-    CRACK,
-    HALF_LENGTH_M,
-    MIDDLE_M,
-    SETTLING,
-    E_prime,
-    farthest_off,
-    griffith_K,
-    path_setting,
-    sneddon_opening,
-)
-from verification.stability.family import Checked, Family, Parameter, Point, close
+from verification.stability.cracks import AT_REST, CRACK, HALF_LENGTH_M, MIDDLE_M, SETTLING, farthest_off, griffith_K, sneddon_opening
+from verification.stability.family import Checked, Family, Parameter, at_values, close, walked
 
-# Of the crack's middle from a grid line: columns of particles, 4 x 4 in cells of 1 m, are at 0.125 and 0.375. As many of these
-# places as
+# Of the crack's middle from a grid line: columns of particles, 4 x 4 in cells of 1 m, are at 0.125 and 0.375. As many of these places as
 # not made a crack open 1.2 to 30 times too far before light copies took no load.
 OFFSETS_M = (0.2, 0.3, 0.375, 0.385, 0.405, 0.475, 0.5, 0.51, 0.53)
 
 ABOUT = (
-    "Beside a fracture nodes have a copy for each side. Where the fracture leans against the grid by little, it leaves"
-    " some copies with a"
-    " particle or two in the corner of their reach, while its faces there are a metre long: they bore a hundred times the"
-    " fluid's pressure, and K by J and"
-    " the opening were worthless without a sign of it. Such copies take no load now (solver/state/light_copies.hpp): jump"
-    " and traction leave"
+    "Beside a fracture nodes have a copy for each side. Where the fracture leans against the grid by little, it leaves some copies with a"
+    " particle or two in the corner of their reach, while its faces there are a metre long: they bore a hundred times the fluid's pressure, and K by J and"
+    " the opening were worthless without a sign of it. Such copies take no load now (solver/state/light_copies.hpp): jump and traction leave"
     " them out alike, their particles follow the rock beside."
 )
 
@@ -43,26 +29,21 @@ def opening(run: Run) -> Checked:
 def leaning(slope: float, offset_m: float) -> str:
     """A crack that leans by `slope`, its middle at a distance from a grid line."""
     x, reach = MIDDLE_M + offset_m, slope * HALF_LENGTH_M
-    return path_setting((x - reach, 11.0), (x + reach, 21.0))
+    return path_key((x - reach, 11.0), (x + reach, 21.0))
 
 
-def family(slope: float, name: str, keys: tuple[str, ...], how: str, offsets: tuple[float, ...] = OFFSETS_M) -> Family:
+def family(slope: float, name: str, keys: tuple[str, ...] = AT_REST, how: str = "without inertia", offsets: tuple[float, ...] = OFFSETS_M) -> Family:
     """The walk of a crack of a slope towards a column."""
-    points = tuple(
-        Point(f"{offset:g} m", offset, CRACK, (*keys, leaning(slope, offset)), smoke=offset in (0.385, 0.5))
-        for offset in offsets
-    )
     return Family(
-        name=f"grazing_{name}", title=f"A crack that leans by {slope:g}, past a column of particles, {how}",
-        says="However near to a column of particles the path passes, opening and J are those of the closed form.",
-        parameter=Parameter("middle of the crack from a grid line", "m"), points=points, check=opening,
+        f"grazing_{name}", f"A crack that leans by {slope:g}, past a column of particles, {how}",
+        "However near to a column of particles the path passes, opening and J are those of the closed form.",
+        Parameter("middle of the crack from a grid line", "m"),
+        walked(at_values(CRACK, lambda offset: (*keys, leaning(slope, offset)), "{:g} m"), offsets, smoke=(0.385, 0.5)), opening,
         section="Small parts cut off by a fracture", about=ABOUT,
     )  # fmt: skip
 
 
 FAMILIES = (
-    family(0.03, "3", AT_REST, "without inertia"),
-    family(0.1, "10", AT_REST, "without inertia"),
-    family(0.2, "20", AT_REST, "without inertia"),
+    family(0.03, "3"), family(0.1, "10"), family(0.2, "20"),
     family(0.1, "10_explicit", SETTLING, "brought to rest by damping", (0.2, 0.385, 0.5)),
-)
+)  # fmt: skip

@@ -5,11 +5,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from verification.harness.given import given
 from verification.harness.load import LoadError, Run
-from verification.harness.paths import ROOT
-from verification.stability.family import STABLE, Checked, Edge, Family, Parameter, Point, close
+from verification.stability.family import KINEMATICS, SCENES, STABLE, Checked, Edge, Family, Parameter, at_values, close, walked
 
-SCENE = ROOT / "verification" / "stability" / "scenes" / "sliding.toml"
 NORMAL_PA, HEIGHT_M, WIDTH_M, DENSITY = 1.0e6, 16.0, 2.0, 2500.0  # of the scene, a block's width
 PUSH_FROM_S, PUSH_M_S3, END_S = 0.05, 2000.0, 0.15
 MOST_PUSH_PA = DENSITY * WIDTH_M * PUSH_M_S3 * (END_S - PUSH_FROM_S)
@@ -30,7 +29,7 @@ def slip_m(coefficient: float, time_s: float = END_S) -> float:
 
 def coefficient_of(run: Run) -> float:
     """The coefficient of friction of a run."""
-    return float(run.scene["interface"]["rough"]["coefficient"])
+    return given(run, "interface.rough.coefficient")
 
 
 def check(run: Run) -> Checked:
@@ -57,16 +56,18 @@ def onset(runs: Mapping[str, Run]) -> float:
 
 def family(kinematics: str) -> Family:
     """The walk over the push's largest value by mu N."""
-    points = tuple(
-        Point(f"{ratio:g}", ratio, SCENE, (f"numerics.kinematics={kinematics}", f"interface.rough.coefficient={MOST_PUSH_PA / NORMAL_PA / ratio:.6g}"), smoke=ratio in (0.5, 2.0) and kinematics == "total" or ratio == 2.0)
-        for ratio in (0.5, 0.9, 1.2, 2.0, 3.0, 5.0)
-    )  # fmt: skip
+
+    def keys(ratio: float) -> tuple[str, ...]:
+        return f"numerics.kinematics={kinematics}", f"interface.rough.coefficient={MOST_PUSH_PA / NORMAL_PA / ratio:.6g}"
+
     return Family(
-        f"sliding_{kinematics}", f"Stick and slip: {'points in their places' if kinematics == 'total' else 'points that move'}",
+        f"sliding_{kinematics}", f"Stick and slip: {KINEMATICS[kinematics]}",
         "Blocks stick until the push is mu N, then slide as rigid ones do, and the work of friction is mu N times the slip.",
-        Parameter("largest push over mu N"), points, check, beyond=(STABLE,), section="Contact: stick, slip and chatter", about=ABOUT,
-        check_name="work of friction less that of rigid blocks", edge=Edge("Coulomb: the slide begins at a push of mu N.", lambda: 1.0, read=onset),
+        Parameter("largest push over mu N"),
+        walked(at_values(SCENES / "sliding.toml", keys, "{:g}"), (0.5, 0.9, 1.2, 2.0, 3.0, 5.0), smoke=(0.5, 2.0) if kinematics == "total" else (2.0,)),
+        check, beyond=(STABLE,), section="Contact: stick, slip and chatter", about=ABOUT, check_name="work of friction less that of rigid blocks",
+        edge=Edge("Coulomb: the slide begins at a push of mu N.", lambda: 1.0, read=onset),
     )  # fmt: skip
 
 
-FAMILIES = (family("total"), family("updated"))
+FAMILIES = tuple(map(family, KINEMATICS))
