@@ -81,7 +81,7 @@ def main(arguments: list[str] | None = None) -> int:
     print(text(rows))
     for line in stale:
         print(f"gate of nothing: {line}")
-    minutes = sum(one.outcome.wall_s * min(one.rung.case.threads, options.jobs) for one in made) / 60.0
+    minutes = sum(one.outcome.wall_s for one in made) / 60.0
     skipped = sum(one.outcome.skipped for one in made)
     print(f"{len(made)} runs, {skipped} of them made before, {minutes:.1f} thread-minutes in all")
     print(f"ladder: {count.words()}{f'; {len(stale)} gates of nothing' if stale else ''}; written to {out}")

@@ -103,7 +103,6 @@ class Case:
     levels: tuple[Level, ...]
     quantities: tuple[Quantity, ...]
     smoke: int = 2
-    threads: int = 1
 
 
 Keys = Callable[[float], tuple[str, ...]]  # the further scene keys of a size of cells (m)

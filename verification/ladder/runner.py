@@ -35,7 +35,7 @@ class Rung:
         settings = self.level.settings
         if not any(setting.startswith(f"{MECHANICS_KEY}=") for setting in settings):
             settings = (f"{MECHANICS_KEY}={self.case.mechanics}", *settings)
-        return Job(self.case.scene, self.level.variant, self.folder, settings, self.case.threads)
+        return Job(self.case.scene, self.level.variant, self.folder, settings)
 
     def expected_s(self) -> float:
         """How long the run may take, s: as the last time, or 0.1 s at the coarsest level and 8 times more at each (points and steps)."""
@@ -67,16 +67,13 @@ def rungs_of(chosen: Families, smoke: bool = False, runs: Path = RUNS) -> list[R
     ]
 
 
-def make_one(rung: Rung, binary: Path | None = None, stop: threading.Event | None = None) -> Made:
+def make_one(rung: Rung, stop: threading.Event | None = None) -> Made:
     """Make one run unless it is there; another process that wants the same one waits for it."""
     with claimed(rung.folder):
-        return Made(rung, run(rung.job(), binary, stop=stop))
+        return Made(rung, run(rung.job(), stop=stop))
 
 
-def make_all(rungs: list[Rung], jobs: int = 2, binary: Path | None = None, tell: Tell = say) -> list[Made]:
+def make_all(rungs: list[Rung], jobs: int = 2, tell: Tell = say) -> list[Made]:
     """Make the runs of all rungs on `jobs` threads, those that take longest first; in the order given."""
-    tasks = [
-        Task(rung.name, lambda stop, rung=rung: make_one(rung, binary, stop), Made.words, rung.expected_s(), rung.case.threads)
-        for rung in rungs
-    ]
+    tasks = [Task(rung.name, lambda stop, rung=rung: make_one(rung, stop), Made.words, rung.expected_s()) for rung in rungs]
     return side_by_side(tasks, jobs, tell)

@@ -6,8 +6,10 @@ A family only describes; running (runner.py), judging (judge.py), keeping (store
 from __future__ import annotations
 
 import math
+import tomllib
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from pathlib import Path
 
 from verification.harness.load import Run
@@ -29,6 +31,12 @@ STRATA = "strata"  # the program of a point that is run through the command line
 KINEMATICS = {"total": "points in their places", "updated": "points that move"}
 
 LEAST_REFUSED = 0.9  # no check may hold for a value that is off by more than this: zero and twice must fail
+
+
+@lru_cache(maxsize=None)
+def sections() -> dict[str, str]:
+    """What is said of each section, by its heading."""
+    return tomllib.loads((SCENES.parent / "sections.toml").read_text(encoding="utf-8"))
 
 
 @dataclass(frozen=True)
@@ -143,7 +151,7 @@ def tip_is_near(run: Run) -> str:
 class Family:
     """A known failure, walked across. beyond: what strata does beyond the edge, any of SAFE; without an edge all points must be so.
 
-    section: families of the same section share a heading and a figure (its first family's `about` stands above). check_name: what is on
+    section: families of the same section (of sections.toml) share a heading, what is said below it, and a figure. check_name: what is on
     the figure's vertical axis. flag: words for a completed run that is marked otherwise than by `suspect`. ways: other programs
     than strata by name, each giving what the check would.
     """
@@ -157,12 +165,16 @@ class Family:
     beyond: tuple[str, ...] = (STABLE,)
     edge: Edge | None = None
     section: str = ""
-    about: str = ""
     check_name: str = "relative error"
     flag: Callable[[Run], str] = no_flag
     ways: Mapping[str, Callable[[Point], Checked]] = field(default_factory=dict)
     before: tuple[str, ...] = (STABLE,)  # outcomes of points before the edge, which bisection takes as sound: with MARKED only for a reason
     remark: str = ""  # what the walk showed, in words, for the page
+
+    @property
+    def about(self) -> str:
+        """What is said below the heading of its section."""
+        return sections().get(self.section, "")
 
     def point(self, label: str) -> Point:
         """The point of a label; raises KeyError."""

@@ -29,11 +29,11 @@ def folder_of(family: Family, point: Point, runs: Path = RUNS) -> Path:
     return runs / family.name / folder_name(point.label)
 
 
-def make(family: Family, point: Point, runs: Path = RUNS, binary: Path | None = None) -> tuple[Outcome, float]:
+def make(family: Family, point: Point, runs: Path = RUNS) -> tuple[Outcome, float]:
     """A point's run and its CPU time (s), made unless it is there; another process that wants the same one waits for it."""
     folder = folder_of(family, point, runs)
     with claimed(folder):
-        outcome, (_, cpu_s) = timed(lambda: harness.run(Job(point.scene, point.variant, folder, point.settings), binary, limit_s=LIMIT_S))
+        outcome, (_, cpu_s) = timed(lambda: harness.run(Job(point.scene, point.variant, folder, point.settings), limit_s=LIMIT_S))
         if outcome.skipped and (folder / CPU).is_file():
             return outcome, float(json.loads((folder / CPU).read_text(encoding="utf-8")))
         (folder / CPU).write_text(json.dumps(round(cpu_s, 4)), encoding="utf-8")
@@ -70,12 +70,12 @@ def of_run(family: Family, point: Point, run: Run, cpu_s: float) -> PointFound:
     return PointFound(point.label, point.value, outcome, checked, short(marks or reason), round(cpu_s, 2))
 
 
-def found(family: Family, point: Point, runs: Path = RUNS, binary: Path | None = None) -> PointFound:
+def found(family: Family, point: Point, runs: Path = RUNS) -> PointFound:
     """How a point ends."""
     if point.program != STRATA:
         checked = family.ways[point.program](point)
         return PointFound(point.label, point.value, STABLE if checked.holds else GARBAGE, checked, "")
-    outcome, cpu_s = make(family, point, runs, binary)
+    outcome, cpu_s = make(family, point, runs)
     if not outcome.ok:
         return of_failure(point, outcome, cpu_s)
     try:
@@ -98,7 +98,7 @@ def bisected(sound: Callable[[float], bool], edge: Edge) -> tuple[float, float]:
     return good, bad
 
 
-def edge_of(family: Family, points: tuple[PointFound, ...], runs: Path = RUNS, binary: Path | None = None, tell: Tell = lambda _: None) -> EdgeFound | None:
+def edge_of(family: Family, points: tuple[PointFound, ...], runs: Path = RUNS, tell: Tell = lambda _: None) -> EdgeFound | None:
     """The family's edge, predicted and measured."""
     edge = family.edge
     if edge is None:
@@ -111,7 +111,7 @@ def edge_of(family: Family, points: tuple[PointFound, ...], runs: Path = RUNS, b
     assert at is not None
 
     def sound(value: float) -> bool:
-        one = found(family, at(value), runs, binary)
+        one = found(family, at(value), runs)
         tell(f"{family.name}: edge at {value:.5g}? {one.outcome}")
         return one.checked is not None and one.checked.holds if edge.by_check else one.outcome in family.before
 
@@ -130,15 +130,15 @@ def version_of(family: Family, runs: Path) -> str:
     return ""
 
 
-def walk(family: Family, smoke: bool = False, runs: Path = RUNS, binary: Path | None = None, tell: Tell = lambda _: None) -> Record:
+def walk(family: Family, smoke: bool = False, runs: Path = RUNS, tell: Tell = lambda _: None) -> Record:
     """All points of a family (of a smoke run its smoke points alone, and no edge), and its edge."""
     points = []
     for point in family.points:
         if smoke and not point.smoke:
             continue
-        one = found(family, point, runs, binary)
+        one = found(family, point, runs)
         error = f", error {one.checked.error:.3g}" if one.checked is not None else ""
         tell(f"{family.name}: {point.label}: {one.outcome}{error} {one.reason[:140]}")
         points.append(one)
-    edge = None if smoke else edge_of(family, tuple(points), runs, binary, tell)
+    edge = None if smoke else edge_of(family, tuple(points), runs, tell)
     return Record(family.name, version_of(family, runs), edge, tuple(points))

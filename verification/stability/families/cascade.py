@@ -21,13 +21,6 @@ SWING_S = 1.8  # from the failure to the end of the runs, at least: more than a 
 TOLERANCE = 0.03
 DAMPED_RATIO = 1.2
 SECTION = "Sudden failure of a weak interface"
-
-ABOUT = (
-    "Two blocks hang on springs between a bond at the foot and a bond above them, all in even tension, pulled so slowly that inertia hardly matters until"
-    " the upper bond fails at 10 kPa. What it carried is gone at once: without inertia the foot then carries nothing, and fails only if it was the weaker"
-    " of the two; with inertia the blocks swing, and where their two modes meet the foot carries more than it ever did. The walk is over its strength."
-    " Theory: m u'' = -K u of two masses (verification/stability/theory/swing.py); one block alone, or a bar of one rock, never carries more than before."
-)
 REMARK = (
     "Between the two edges a run with inertia breaks the foot and one without does not. Each is right in its own sense: a bond that lets go at once in rock"
     " that damps nothing sends its load on as a wave, however slowly it was loaded; the quasi-static answer is that of rock which loses this energy as fast"
@@ -158,7 +151,7 @@ def edge(source: str, predicted: Callable[[], float], read: Callable[[Mapping[st
 
 FAMILIES = (
     family("", "blocks alike, with inertia", "With inertia the foot fails too unless it is stronger by the swing of two like blocks.", STRENGTH,
-           walked(over_strength(), (1.05, 1.2, 1.3, 1.36, 1.375, 1.385, 1.4, 1.45, 1.7), smoke=(1.3, 1.45)), swung, about=ABOUT, remark=REMARK,
+           walked(over_strength(), (1.05, 1.2, 1.3, 1.36, 1.375, 1.385, 1.4, 1.45, 1.7), smoke=(1.3, 1.45)), swung, remark=REMARK,
            edge=edge(f"With inertia: {TWO_MODES} 5/2, or 3/2 for the light block.", lambda: most(chain(""), 0.0, SWING_S))),
     family("_light", "a light block on a heavy one, with inertia", "A light block tuned to a heavy one throws 2.6 times the load that was there onto the foot.",
            STRENGTH, walked(over_strength("light"), (1.1, 1.5, 2.0, 2.4, 2.54, 2.58, 2.62, 2.7, 3.0), smoke=(2.0,)), swung,

@@ -11,12 +11,6 @@ SCENE = SCENES / "closing.toml"
 MOST = 1e-3  # of the pressure at the start: how far pressures may leave the range between it and the inlet's
 SECTION, EXCURSION = "Permeability to nothing as a fracture closes", "excursion of the pressure over 0.1 %"
 
-ABOUT = (
-    "A fracture is open under 3 MPa, 1 MPa above the closing stress; the inlet's pressure then falls to 0.6 MPa. Its faces meet from the inlet on, and without a"
-    " floor of the opening nothing conducts there any more: the fluid behind stays where it is, at a little more than the closing stress. Diffusion"
-    " makes no pressure outside the range of those it was given: everything must stay finite and between the inlet's and the first."
-)
-
 
 def check(run: Run) -> Checked:
     """How far any pressure left the range between the inlet's and that of the start."""
@@ -36,7 +30,7 @@ def over_floor(rule: str) -> Family:
     floors = ("0", "1e-7", "1e-6", "1e-5", "1e-4")
     points = (Point(least, float(least), SCENE, (f"fluid.minimum_opening_m={least}", f"fluid.time_rule={rule}"), smoke=least == "0") for least in floors)
     return Family(f"closing_{rule.replace('-', '_')}", f"k to 0 at closure: {rule}", "Pressures stay finite, and between the inlet's and that of the start.",
-                  Parameter("least opening", "m"), tuple(points), check, beyond=(STABLE,), section=SECTION, about=ABOUT, check_name=EXCURSION)  # fmt: skip
+                  Parameter("least opening", "m"), tuple(points), check, beyond=(STABLE,), section=SECTION, check_name=EXCURSION)  # fmt: skip
 
 
 def falling(rate: float) -> tuple[str, ...]:

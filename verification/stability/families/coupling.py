@@ -51,9 +51,6 @@ STAGGERED = Family(
     tuple(Point(f"{way} {dt:g} s", dt, CRACK, program=way, smoke=dt == 1e-4) for way in ("lagged", "together") for dt in (1e-4, 1e-3, 1e-2, 0.1, 1.0)),
     lambda run: close(1.0, 1.0, 0.1), check_name="relative difference", ways={"lagged": lagged, "together": together},
     section="Flow that conserves mass, with the rock",
-    about="A fracture's fluid is stored in its opening, and the opening answers the pressure at once: a step that takes the opening of the pressure"
-          " before and looks for a pressure that stores the fluid there overshoots by as much as the rock is softer than the fluid. The lagged"
-          " model is Sneddon's crack under 0.3 MPa with 20 cells; the solver finds both in one system.",
 )  # fmt: skip
 
 
@@ -102,8 +99,6 @@ BACKGROUND = Family(
     ),
     J_nothing, check_name="J over 1e-12 J_c; of the models the error of K", ways={"changes": with_prestress, "total": with_total},
     section="J with background stress",
-    about="The fluid carries the in-situ stress and a little more. Codes that let both act in full subtract two large numbers in J: what they are"
-          " off by has no relation to J. Here points hold the change of stress, and faces the net pressure.",
 )  # fmt: skip
 
 FAMILIES = (STAGGERED, BACKGROUND)

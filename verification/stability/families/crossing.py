@@ -14,14 +14,6 @@ CELL_M = 0.0625  # of the scene; points stand at a quarter and three quarters
 AMPLITUDES_M = (0.002, 0.006, 0.010, 0.014, 0.018, 0.022, 0.028, 0.036, 0.046)
 MOST = {"linear": 0.1, "gimp": 0.05, "bspline2": 0.05}  # error of the stresses, of their norm, with 16 cells a side
 
-ABOUT = (
-    "A square on rollers is stretched along x and compressed along y, u = A sin(pi X), by the body force that this motion needs (strata-reference"
-    " manufactured_finite); at the end, a quarter of a period, strain is up to pi A, 14 % at most. Under hat functions a point whose cell changes sees another"
-    " gradient at once, and its stress acts on other nodes. Predicted by geometry: the first point to reach a border of its cell does so at A sin(pi X) = h/4."
-    " Beyond, such runs are marked (cells_crossed). All of these runs are marked for the swing"
-    " of their energy between steps, too; under B-splines and uGIMP the stress stays right all the same."
-)
-
 
 def body(amplitude: float) -> str:
     """The body force of the motion, m/s^2: b = u_tt - (dF_xx/dX)(lambda + 2 mu - J sigma_xx)/(rho F_xx^2), and the like along y."""
@@ -68,7 +60,7 @@ def family(shape: str, name: str, edge: Edge | None = None) -> Family:
     return Family(
         f"crossing_{shape}", f"Cell crossing: {name}", "Stresses must be right, or the run marked, however far points go.", Parameter("amplitude", "m"),
         walked(at(shape), AMPLITUDES_M, smoke=(0.010, 0.028)), check, beyond=(STABLE, MARKED) if edge is None else (MARKED,), before=(STABLE, MARKED),
-        edge=edge, section="Cell crossing under large strain", about=ABOUT, check_name="error of the stress over its bound",
+        edge=edge, section="Cell crossing under large strain", check_name="error of the stress over its bound",
     )  # fmt: skip
 
 

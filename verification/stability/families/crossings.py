@@ -14,10 +14,6 @@ from verification.stability.family import (
 )  # fmt: skip
 
 SECTION = "Fractures that cross interfaces, corners, edges"
-ABOUT = (
-    "Where a fracture crosses an interface nodes have up to four copies, and the smaller the angle the less rock some of them have. Other codes"
-    " give a fracture a segment of no length there, turn it back, or let the energy grow without bound."
-)
 CROSSING_M = 13.0  # half length of these cracks: at 20 degrees their tips are 4.4 cells from the interface
 ANGLES = (90.0, 75.0, 60.0, 45.0, 30.0, 20.0)
 
@@ -53,7 +49,7 @@ def crossing(name: str, title: str, keys: tuple[str, ...]) -> Family:
         Parameter("angle between fracture and interface", "degrees"),
         walked(at_values(CRACK, lambda angle: (*AT_REST, *keys, through(angle)), "{:g} degrees"),
                (*ANGLES, *(180.0 - angle for angle in ANGLES[1:])), smoke=(90.0, 30.0)),
-        no_effect, beyond=(STABLE, MARKED), section=SECTION, about=ABOUT, flag=tips_are_near,
+        no_effect, beyond=(STABLE, MARKED), section=SECTION, flag=tips_are_near,
     )  # fmt: skip
 
 

@@ -15,12 +15,6 @@ MOST = 0.02  # error of K_I at 4 cells a half length, uniform cells
 COURANT = {"total": 1.1, "updated": 0.65}  # a little below what a block without a crack stands
 DAMPING_1_S, SPEED_M_S = 200.0, math.sqrt(1.0e10 / 2500.0 * 0.8 / (1.2 * 0.6))  # of the scene, with cells of 1 m
 SECTION = "Small cut masses as a crack moves through a cell"
-ABOUT = (
-    "A crack of 4 m half length under constant pressure in a block of 1 m cells stands at 0.01 to 0.99 of a cell, and motion is damped until nothing moves. A node"
-    " beside it has a copy on each side, whose mass falls to a ten thousandth of a whole one's as the crack comes to a column of points. K_I is held against"
-    " collocation for the same block (strata-reference block_crack). Small masses come with as small stiffnesses, so the time step is that of a block without a"
-    " crack: its largest eigenvalue, by Python, is the prediction."
-)
 
 
 def check(run: Run) -> Checked:
@@ -45,7 +39,7 @@ def through_cell(kinematics: str) -> Family:
         "K_I must be right wherever the crack is in its cell, at a time step little below that of a block without a crack.",
         Parameter("place of the crack in a cell"),
         walked(at_values(SCENE, lambda offset: settings(kinematics, offset, courant), "{:g}"), OFFSETS, smoke=(0.01, 0.49)), check,
-        beyond=(STABLE,), section=SECTION, about=ABOUT, check_name="error of K_I",
+        beyond=(STABLE,), section=SECTION, check_name="error of K_I",
     )  # fmt: skip
 
 

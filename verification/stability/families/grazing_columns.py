@@ -10,13 +10,6 @@ from verification.stability.family import Checked, Family, Parameter, at_values,
 # not made a crack open 1.2 to 30 times too far before light copies took no load.
 OFFSETS_M = (0.2, 0.3, 0.375, 0.385, 0.405, 0.475, 0.5, 0.51, 0.53)
 
-ABOUT = (
-    "Beside a fracture nodes have a copy for each side. Where the fracture leans against the grid by little, it leaves some copies with a"
-    " particle or two in the corner of their reach, while its faces there are a metre long: they bore a hundred times the fluid's pressure, and K by J and"
-    " the opening were worthless without a sign of it. Such copies take no load now (solver/state/light_copies.hpp): jump and traction leave"
-    " them out alike, their particles follow the rock beside."
-)
-
 
 def opening(run: Run) -> Checked:
     """The opening at the crack's middle and J of both tips against Sneddon's: the worse of the two."""
@@ -39,7 +32,7 @@ def family(slope: float, name: str, keys: tuple[str, ...] = AT_REST, how: str = 
         "However near to a column of particles the path passes, opening and J are those of the closed form.",
         Parameter("middle of the crack from a grid line", "m"),
         walked(at_values(CRACK, lambda offset: (*keys, leaning(slope, offset)), "{:g} m"), offsets, smoke=(0.385, 0.5)), opening,
-        section="Small parts cut off by a fracture", about=ABOUT,
+        section="Small parts cut off by a fracture",
     )  # fmt: skip
 
 

@@ -36,7 +36,5 @@ FAMILIES = (
         Parameter("increment", "cells", log=True),
         walked(at_values(ANALYTIC / "path_exp5.toml", keys, "{:g} cells"), (0.25, 0.5, 1.0, 2.0, 4.0), smoke=(4.0,)), wanders,
         beyond=(STABLE, MARKED), check_name="distance over a quarter of a cell", section="Growth",
-        about="A tip turns by what K_II says of the fracture as it is. Increments shorter than the rings turn before K_II has felt the last turn and"
-              " overshoot; long ones cut corners. An increment turns by half of the kink at most (turn_share), less below 3 cells.",
     ),
 )  # fmt: skip

@@ -56,11 +56,6 @@ LAG = Family(
         *(Point(f"model, steps held back by nothing, {every:g} s", every, CRACK, program="model", smoke=every == 2.0) for every in (0.5, 2.0)),
     ),
     tip_pressure, check_name="net pressure at the tip, relative difference", ways={"model": held_by_nothing}, section="Permeability while the fracture opens",
-    about="A step of the study's law needs the opening on its way, which the rock tells only at its end. Fluid that is to open a fracture which"
-          " conducts by the square of its opening comes late where the opening of the step's start does for all of it: each step is stable, but in steps that"
-          " double until the next output the tip of a fracture of 1 Pa s has a fifth of the pressure that it has in short ones. The opening midway is"
-          " therefore foreseen from the rate of the step before, and steps go by what the openings at both ends would have changed (flow_error). The"
-          " reference is a model of its own: Sneddon's compliance, 2000 steps.",
     remark="The same holds where the fracture grows: Experiment 1 starts and ends within 0.01 % of the pressure that steps a third as long give, and at"
            " ten times the study's viscosity starts at a net pressure 0.2 % above.",
 )  # fmt: skip

@@ -29,7 +29,5 @@ FAMILIES = (
         "mechanism", "Loaded edges and an interface without friction, without inertia",
         "Parts that nothing holds end the run with exit status 3 and its reason; held sides keep it whole.", Parameter("residual friction"),
         (point("loaded, none", "traction", True), point("held, none", "fixed", False)), held, beyond=(FAILED,), section="Mechanisms",
-        about="Where the sides are loaded and an interface has failed without friction, its two sides can move against each other freely: the"
-              " equations are singular. Nothing is regularised silently.",
     ),
 )  # fmt: skip

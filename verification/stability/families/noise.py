@@ -15,19 +15,6 @@ STEP_S = COURANT * math.sqrt(2500.0 / 1.0e10 * 1.2 * 0.6 / 0.8)  # of the scene:
 MOST_DRIFT = 0.01  # of the energy in 1e5 steps: what the mean over half a thousand rows leaves of the swing
 HELD = Block("bspline2", 2, CELLS, True)
 
-ABOUT_NOISE = (
-    "Velocities without a pattern in a block whose edges are held. Where points carry them, most of that noise is in what the grid does not see (the null"
-    " space of the map to the nodes): FLIP keeps it for ever and damps the rest, PIC and XPIC(2) drop it in the first step. Predicted, by the same"
-    " block in Python: the energy of the noise less its projection on the grid. Where nodes keep the velocities there is no such space, and the"
-    " energy stays what it was but for its swing between steps."
-)
-ABOUT_WAVE = (
-    "A standing wave of half a period to three periods along the held block. A step multiplies its amplitude by the size of the eigenvalue of the step's"
-    " map: 1 where nodes keep velocities, S^(1/2) for PIC, (2 S - S^2 - z (S - S^2))^(1/2) for XPIC(2), (1 - (1 - S) z)^(1/2) for FLIP, with S what a"
-    " transfer to the points and back leaves of it and z = (omega dt)^2, both of the same block put together in Python. Kinetic energy is of the middle of a step and strain energy of its end, so their sum swings by a"
-    " share of omega dt with twice the wave's frequency. Where nodes keep velocities, those that give the points theirs hold 1/S of the points' energy: short"
-    " waves start with 7 % to 45 % more than the scene gave them, which marks the runs (energy_made)."
-)
 
 
 def point(label: str, value: float, way: str, steps: float, rows: int, smoke: bool, *keys: str) -> Point:
@@ -99,7 +86,7 @@ def noise(way: str) -> Family:
     points = tuple(point(f"{steps}", float(steps), way, steps, 50, steps == 1000) for steps in (100, 1000, 10000, 100000))
     return Family(
         f"noise_{way}", f"Noise over 1e5 steps: {WAYS[way]}", "Noise must not grow, and what is left of it is what theory says.", Parameter("steps", log=True),
-        points, check_noise, beyond=(STABLE,), section="Null-space noise over 1e5 steps", about=ABOUT_NOISE,
+        points, check_noise, beyond=(STABLE,), section="Null-space noise over 1e5 steps",
         check_name="energy left, less that of theory or over its bound",
     )  # fmt: skip
 
@@ -118,7 +105,7 @@ def wave(way: str) -> Family:
     return Family(
         f"wave_{way}", f"Damping of a wave: {WAYS[way]}", "A standing wave loses by the transfer what theory says, and nothing else.",
         Parameter("half waves in the block"), tuple(moving(way, mode) for mode in (1, 2, 3)), check_wave, beyond=(MARKED,) if way == "total" else (STABLE,),
-        section="What transfers take from a wave", about=ABOUT_WAVE, check_name="loss of energy a step less that of theory, or drift over 2 %",
+        section="What transfers take from a wave", check_name="loss of energy a step less that of theory, or drift over 2 %",
     )  # fmt: skip
 
 

@@ -9,11 +9,6 @@ from verification.stability.families.tip_places import LAYERS, near_K, near_sett
 from verification.stability.family import REFUSED, Check, Checked, Family, Parameter, at_values, close, walked
 
 GAP_CELLS = 6.0
-ABOUT = (
-    "J does not depend on its path only where nothing but one rock and the crack is inside. A ring that reaches over another rock, a face that"
-    " slides or a spring gives another J for each radius, without a sign of it but the spread. Here the widest ring that is asked for grows past"
-    " an interface 6 cells ahead of the tip: rings end a cell before it, whatever is asked for."
-)
 
 
 def within(reference: Reference) -> Check:
@@ -37,7 +32,7 @@ def family(kind: str, how: str, reference: Reference) -> Family:
         f"rings_{kind}", f"Rings for J towards an interface 6 cells ahead: {how}",
         "K and J stay those of the integral equation: a ring never reaches over the interface; rings of more than 8 cells are refused.",
         Parameter("radius asked for", "cells"), walked(at, (3.0, 4.0, 5.0, 6.0, 8.0, 12.0), smoke=(8.0,), beyond=lambda ring: ring > 8.0),
-        within(reference), beyond=(REFUSED,), section="Rings for J across interfaces", about=ABOUT,
+        within(reference), beyond=(REFUSED,), section="Rings for J across interfaces",
     )  # fmt: skip
 
 

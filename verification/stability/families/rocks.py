@@ -16,10 +16,6 @@ from verification.stability.families.tip_places import near_setting
 from verification.stability.family import MARKED, Check, Checked, Family, Parameter, Point, at_values, close, walked
 
 SECTION = "Rock: Poisson's ratio to 0.4999, stiffness contrast to 1e4"
-ABOUT = (
-    "Elements of low order lock as Poisson's ratio comes near 0.5: the rock seems too stiff. Rocks whose stiffnesses are a factor of 1e4 apart ask"
-    " for equations with as much more range."
-)
 
 # --- Poisson's ratio
 POISSON = (0.2, 0.4, 0.45, 0.49, 0.495, 0.499, 0.4999)
@@ -40,7 +36,7 @@ def poisson(name: str, keys: tuple[str, ...], how: str, ratios: tuple[float, ...
 
     return Family(
         f"poisson{name}", f"Poisson's ratio to {ratios[-1]:g}, {how}", "K_I and the opening are those of the closed form, or the run says that its functions lock.",
-        Parameter("0.5 less Poisson's ratio", log=True), tuple(map(point, ratios)), K_and_opening, beyond=(MARKED,), section=SECTION, about=ABOUT,
+        Parameter("0.5 less Poisson's ratio", log=True), tuple(map(point, ratios)), K_and_opening, beyond=(MARKED,), section=SECTION,
     )  # fmt: skip
 
 

@@ -14,12 +14,6 @@ PUSH_FROM_S, PUSH_M_S3, END_S = 0.05, 2000.0, 0.15
 MOST_PUSH_PA = DENSITY * WIDTH_M * PUSH_M_S3 * (END_S - PUSH_FROM_S)
 READ_FROM = "5"  # the run that slides longest tells best when it began
 
-ABOUT = (
-    "Two blocks are pressed together by 1 MPa and pushed past each other by a body force that rises to 1 MPa on their interface. As rigid blocks they stick"
-    " until the push is mu N; from then on each is pushed by what is left, and the work of friction is mu N times the slip: mu N H 2 (2000 m/s^3) (t -"
-    " t_0)^3/6. The walk is over the coefficient of friction. What waves in the blocks add is of the order of their crossing time, 1 ms, over that of the slide."
-)
-
 
 def slip_m(coefficient: float, time_s: float = END_S) -> float:
     """Slip of two rigid blocks at a time."""
@@ -65,7 +59,7 @@ def family(kinematics: str) -> Family:
         "Blocks stick until the push is mu N, then slide as rigid ones do, and the work of friction is mu N times the slip.",
         Parameter("largest push over mu N"),
         walked(at_values(SCENES / "sliding.toml", keys, "{:g}"), (0.5, 0.9, 1.2, 2.0, 3.0, 5.0), smoke=(0.5, 2.0) if kinematics == "total" else (2.0,)),
-        check, beyond=(STABLE,), section="Contact: stick, slip and chatter", about=ABOUT, check_name="work of friction less that of rigid blocks",
+        check, beyond=(STABLE,), section="Contact: stick, slip and chatter", check_name="work of friction less that of rigid blocks",
         edge=Edge("Coulomb: the slide begins at a push of mu N.", lambda: 1.0, read=onset),
     )  # fmt: skip
 

@@ -7,12 +7,6 @@ from verification.stability.family import KINEMATICS, MARKED, STABLE, Checked, F
 
 MOST = {"total": 0.033, "updated": 0.065}  # error of the velocity, of its norm: what such cells make of a pulse that meets no interface (ladder: plane_wave)
 
-ABOUT = (
-    "A pulse of velocity meets an interface whose springs have 1e3 to 1e15 Pa/m, and is turned, split or let through; the exact wave of a layered column"
-    " with a spring (strata-reference layered_wave) is the reference. Springs are taken at the step's end: a free one would need steps of"
-    " 2 sqrt(m/(D A)), a nanosecond at 1e15 Pa/m."
-)
-
 
 def check(run: Run) -> Checked:
     """The velocity all along the column against the exact wave."""
@@ -32,7 +26,7 @@ FAMILIES = tuple(
         f"springs_{kinematics}", f"Springs of an interface: {points}",
         "Springs of any stiffness pass the pulse as the exact wave has it, with the rock's own time step.", Parameter("D", "Pa/m", log=True),
         tuple(point(kinematics, decade) for decade in range(3, 16)), check,
-        beyond=(STABLE, MARKED), section="Stiff and soft springs of an interface", about=ABOUT, check_name="error of the velocity over its bound",
+        beyond=(STABLE, MARKED), section="Stiff and soft springs of an interface", check_name="error of the velocity over its bound",
     )
     for kinematics, points in KINEMATICS.items()
 )  # fmt: skip

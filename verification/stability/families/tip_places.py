@@ -14,11 +14,6 @@ SECTION = "Tips: within a cell, near an interface, near an edge"
 
 # --- within a cell
 SHARES = (0.0, 0.001, 0.01, 0.03, 0.1, 0.25, 0.5, 0.75, 0.9, 0.97, 0.99, 0.999, 1.0)
-ABOUT = (
-    "A tip within a cell: nodes split behind it only, so that K would jump by 6 % from one row of nodes to the next; a spring at the last row"
-    " (tip tie) carries what is left of the cell. Near an interface no ring for J fits between the tip's own error and the other rock: from 4 cells"
-    " on down K is flagged. Near an edge of the block the same, from 3.5 cells on down."
-)
 
 
 def in_cell(
@@ -29,7 +24,7 @@ def in_cell(
     return Family(
         f"tip_in_cell{name}", f"A tip within a cell, {how}", "K_I must not depend on where in its cell a tip stands.",
         Parameter("tip above a row of nodes", "cells"), walked(at, shares, smoke=(0.03, 0.5)),
-        lambda run: close(upper(run).K_I_Pa_sqrt_m, griffith_K(run), tolerance, "K_I of the upper tip"), section=SECTION, about=ABOUT,
+        lambda run: close(upper(run).K_I_Pa_sqrt_m, griffith_K(run), tolerance, "K_I of the upper tip"), section=SECTION,
     )  # fmt: skip
 
 

@@ -20,13 +20,6 @@ SHARE_OFF = 0.05  # what a pressure may be off by
 SHARE_OFF_FEW = 0.10  # the same of increments down to half a cell
 
 SECTION = "Tips beside faces that are apart"
-ABOUT = (
-    "A soft interface of 0.5 MPa/m passes hardly any shear. Where the fracture ends on it the rock behind is cut through, and K of a tip"
-    " just beyond begins at nothing. A tip on the interface belongs to the rock ahead; how far it must be past for its energy and"
-    " its growth to be those of strata-reference cut_blocks and crossing_pressure is walked here, in cells. Nearer than 4 cells"
-    " the run says that the tip is near. Below, where no closed form is, the energy is held between its bounds: freedom to slip only adds to"
-    " it, from the rock without an interface to the rock cut through."
-)
 
 
 def below(run: Run) -> Checked:
@@ -90,7 +83,7 @@ def place(
     return Family(
         name, title, says, Parameter("tip beyond the interface", "cells"),
         walked(point, PLACES, smoke=(0.0, 0.25, 3.0), beyond=lambda cells: unsound(cells, variant)), check, beyond=(MARKED,), before=(STABLE, MARKED),
-        flag=tip_is_near, section=SECTION, about=ABOUT, check_name=check_name, remark=remark,
+        flag=tip_is_near, section=SECTION, check_name=check_name, remark=remark,
         edge=edge("how near the interface a tip is told apart from one on it", point),
     )  # fmt: skip
 
@@ -115,7 +108,7 @@ FAMILIES = (
         "cut_increments", "A tip on the interface that goes on by a finite increment",
         "Half a cell and more at once: the pressure is that of the increment within a tenth. Less releases too much.",
         Parameter("increment", "cells", log=True), walked(BY_INCREMENT, (0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0), smoke=(0.25, 2.0)), leaves,
-        beyond=(MARKED,), before=(STABLE, MARKED), flag=tip_is_near, section=SECTION, about=ABOUT, check_name="relative error of the pressure",
+        beyond=(MARKED,), before=(STABLE, MARKED), flag=tip_is_near, section=SECTION, check_name="relative error of the pressure",
         edge=edge("how short an increment releases what it should", BY_INCREMENT),
         remark="Marked is what ends nearer than 4 cells to the interface. A run that goes on past that says nothing of an increment of"
                " less than half a cell.",
