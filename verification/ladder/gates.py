@@ -5,10 +5,10 @@ what was measured when it was accepted, so that it can be checked to be no wider
 """
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from verification.harness import store
 from verification.ladder.catalogue import Families
@@ -40,6 +40,14 @@ class Gate:
     measured: float
     order: float | None = None
     measured_order: float | None = None
+
+
+@dataclass(frozen=True)
+class Book:
+    """A file of gates: those of a family by case, quantity and level."""
+
+    family: str
+    cases: dict[str, dict[str, dict[str, Gate]]]
 
 
 Key = tuple[str, str, str]  # case, quantity, level
@@ -79,45 +87,29 @@ def gate_of(no_order: str, error: float, order: float | None, mutants: dict[str,
         raise CannotAccept(f"an error of {size:.2g} is so large that {', '.join(survivors)} would pass")
     if order is None:
         return Gate(allowed, size)
-    return Gate(allowed, size, order_gate(order), math.floor(1000.0 * order) / 1000.0)
-
-
-def order_gate(order: float) -> float:
-    """The smallest order that passes, to two decimals upwards; raises CannotAccept where nothing converges."""
     if not math.isfinite(order) or order <= ORDER_LOSS:
         raise CannotAccept(f"an order of {order:.2f} is no convergence: find out why, or say it in no_order")
-    return math.ceil(100.0 * (order - ORDER_LOSS) - 1e-9) / 100.0
-
-
-def path_of(family: str, folder: Path | None = None) -> Path:
-    """The file with a family's gates, in a folder (FOLDER where none is given)."""
-    return (folder or FOLDER) / f"{family}.json"
+    return Gate(allowed, size, math.ceil(100.0 * (order - ORDER_LOSS) - 1e-9) / 100.0, math.floor(1000.0 * order) / 1000.0)
 
 
 def read(family: str, folder: Path | None = None) -> Gates:
     """The gates of a family, none where it has no file; raises ValueError for a file that is not as `write` leaves it."""
-    path = path_of(family, folder)
-    if not path.is_file():
-        return {}
-    try:
-        cases = json.loads(path.read_text(encoding="utf-8"))["cases"]
-        return {
-            (case, quantity, level): Gate(**gate)
-            for case, quantities in cases.items()
-            for quantity, levels in quantities.items()
-            for level, gate in levels.items()
-        }
-    except (KeyError, TypeError, AttributeError, json.JSONDecodeError) as error:
-        raise ValueError(f"{path}: {error}") from error
+    book = store.read(Book, (folder or FOLDER) / f"{family}.json") or Book(family, {})
+    return {
+        (case, quantity, level): gate
+        for case, quantities in book.cases.items()
+        for quantity, levels in quantities.items()
+        for level, gate in levels.items()
+    }
 
 
 def write(family: str, gates: Gates, folder: Path | None = None) -> None:
     """Write the gates of a family, in their order."""
-    cases: dict[str, dict[str, dict[str, dict[str, float]]]] = {}
+    cases: dict[str, Any] = {}
     for (case, quantity, level), gate in gates.items():
         content = {name: value for name, value in asdict(gate).items() if value is not None}
         cases.setdefault(case, {}).setdefault(quantity, {})[level] = content
-    store.write({"family": family, "cases": cases}, path_of(family, folder))
+    store.write(Book(family, cases), (folder or FOLDER) / f"{family}.json")
 
 
 def keys_of(families: Families, family: str) -> list[Key]:
@@ -137,8 +129,7 @@ def stale(families: Families, folder: Path | None = None) -> list[str]:
         if path.stem not in families:
             lines.append(f"{path.name}: there is no family {path.stem}; remove the file")
             continue
-        known = set(keys_of(families, path.stem))
-        lines += [f"{path.stem}/{' / '.join(key)}" for key in read(path.stem, folder) if key not in known]
+        lines += [f"{path.stem}/{' / '.join(key)}" for key in read(path.stem, folder) if key not in keys_of(families, path.stem)]
     return lines
 
 

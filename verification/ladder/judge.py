@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from verification.ladder import gates as book
 from verification.ladder.gates import CannotAccept, Gate, Gates
-from verification.ladder.measure import FAIL, FAILED, Row, order_of, sign_changes
+from verification.ladder.measure import FAIL, FAILED, Row, order_of
 
 HALF_AN_ORDER = "half an order lost"
 
@@ -25,8 +25,7 @@ class Tally:
     def words(self) -> str:
         """The tally as a line."""
         said = "all refused" if self.refused == self.mutants else f"{self.mutants - self.refused} NOT REFUSED"
-        kinds = ((self.wrong, "not as their gates ask"), (self.failed, "failed"))
-        bad = "".join(f", {count} {word}" for count, word in kinds if count)
+        bad = "".join(f", {count} {word}" for count, word in ((self.wrong, "not as their gates ask"), (self.failed, "failed")) if count)
         passed = self.rows - self.wrong - self.failed
         notes = f"; {self.loose} can be tightened" if self.loose else ""
         return f"{self.rows} comparisons: {passed} pass{bad}; {self.gates} gates, {self.mutants} mutants, {said}{notes}"
@@ -54,11 +53,9 @@ def judge(row: Row, coarser: Row | None, gate: Gate | None) -> Row:
     if gate is None:
         return replace(row, problems=(f"no gate (measured error {row.error:.3g}); see --accept",))
     round_off = book.is_round_off(row.no_order)
-    problems = [book.too_wide(gate, round_off)]
-    if not passes(gate.error, row.error):
-        problems.append(f"error {abs(row.error):.3g} above {gate.error:g}")
+    problems = [book.too_wide(gate, round_off), "" if passes(gate.error, row.error) else f"error {abs(row.error):.3g} above {gate.error:g}"]
     if coarser is not None and not row.no_order:
-        problems.append(_order_problem(row, coarser, gate))
+        problems.append(unreadable(row, coarser) or _order_problem(row, gate))
     wrong = mutants_of(row, coarser, gate)
     survivors = [name for name, mutant in wrong.items() if not refuses(gate, row, coarser, name, mutant)]
     problems += [f"the gate lets {name} pass" for name in survivors]
@@ -66,12 +63,17 @@ def judge(row: Row, coarser: Row | None, gate: Gate | None) -> Row:
     return replace(row, gate=gate, problems=tuple(filter(None, problems)), note=note, refused=len(wrong) - len(survivors))
 
 
-def _order_problem(row: Row, coarser: Row, gate: Gate) -> str:
-    """What is wrong with the order from the level before to a row, or nothing."""
+def unreadable(row: Row, coarser: Row) -> str:
+    """Why no order can be read from the level before to a row, or nothing."""
     if coarser.failure:
         return "no order: the level before failed"
-    if sign_changes(coarser, row):
+    if coarser.values == row.values == 1 and coarser.error * row.error < 0.0:
         return "the error changes its sign from the level before: no order can be read, say so in no_order"
+    return ""
+
+
+def _order_problem(row: Row, gate: Gate) -> str:
+    """What is wrong with the order of a row, or nothing."""
     if gate.order is None:
         return f"no gate of order (measured {row.order:.2f}); see --accept"
     return "" if keeps(gate.order, row.order) else f"order {row.order:.2f} below {gate.order:g}"
@@ -125,9 +127,7 @@ def tally(rows: list[Row]) -> Tally:
 
 def accepted(rows: list[Row], before: dict[str, Gates]) -> tuple[dict[str, Gates], list[str]]:
     """Gates by family with those of the rows anew, and a line for each that cannot be: those keep the gate they had."""
-    now = {family: dict(own) for family, own in before.items()}
-    refused = []
-    coarser = _coarser(rows)
+    now, refused, coarser = {family: dict(own) for family, own in before.items()}, [], _coarser(rows)
     for index, row in enumerate(rows):
         own = now.setdefault(row.family, {})
         try:
@@ -141,11 +141,8 @@ def _gate(row: Row, coarser: Row | None) -> Gate:
     """The gate that a row asks for; raises CannotAccept."""
     if row.failure:
         raise CannotAccept(f"failed: {row.failure}")
-    order = None
-    if coarser is not None and not row.no_order:
-        if coarser.failure:
-            raise CannotAccept("the level before failed")
-        if sign_changes(coarser, row):
-            raise CannotAccept("the error changes its sign from the level before: say so in no_order")
-        order = row.order
-    return book.gate_of(row.no_order, row.error, order, row.mutants)
+    if coarser is None or row.no_order:
+        return book.gate_of(row.no_order, row.error, None, row.mutants)
+    if unreadable(row, coarser):
+        raise CannotAccept(unreadable(row, coarser))
+    return book.gate_of(row.no_order, row.error, row.order, row.mutants)

@@ -144,8 +144,3 @@ def _ladder(rows: list[Row]) -> list[Row]:
         order = order_of(coarse.error, fine.error, coarse.size / fine.size) if both else None
         found.append(replace(fine, order=order))
     return found
-
-
-def sign_changes(coarse: Row, fine: Row) -> bool:
-    """Whether a single number's error changes its sign between two levels, so that no order can be read from it."""
-    return coarse.values == fine.values == 1 and coarse.error * fine.error < 0.0
