@@ -6,8 +6,6 @@ Exit status: 0 all the same, 1 something differs or is torn.
 """
 from __future__ import annotations
 
-import argparse
-import json
 import subprocess
 import sys
 from dataclasses import asdict
@@ -15,7 +13,10 @@ from pathlib import Path
 
 from verification.faults.kill import Tally, campaign
 from verification.faults.scenes import KILLED
+from verification.harness import store
+from verification.harness.command import command
 from verification.harness.paths import solver
+from verification.harness.table import aligned
 
 RECORD = Path(__file__).parent / "records" / "kills.json"
 
@@ -29,19 +30,15 @@ def as_record(tallies: list[Tally], seed: int, every_s: float) -> dict[str, obje
 
 def table(tallies: list[Tally]) -> str:
     """The campaign as text."""
-    lines = [f"{'scene':24}{'kills':>7}{'checkpoint':>12}{'start':>7}{'no folder':>11}{'ended':>7}{'notes':>7}{'runs':>6}{'identical':>11}"]
-    for t in tallies:
-        lines.append(
-            f"{t.name:24}{t.kills:7}{t.from_checkpoint:12}{t.from_start:7}{t.before_folder:11}{t.after_end:7}{t.changes_finished:7}"
-            f"{t.trials:6}{t.identical:11}"
-        )
-        lines += [f"  {problem}" for problem in t.problems]
-    return "\n".join(lines)
+    header = ("scene", "kills", "checkpoint", "start", "no folder", "ended", "notes", "runs", "identical")
+    numbers = [(t.kills, t.from_checkpoint, t.from_start, t.before_folder, t.after_end, t.changes_finished, t.trials, t.identical) for t in tallies]
+    lines = aligned([header, *((t.name, *map(str, row)) for t, row in zip(tallies, numbers))], range(1, len(header)))
+    return "\n".join([*lines, *(f"  {problem}" for t in tallies for problem in t.problems)])
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command("verification.faults", __doc__)
     parser.add_argument("--kills", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--checkpoint-every", type=float, default=0.02, metavar="S")
@@ -53,8 +50,7 @@ def main(arguments: list[str] | None = None) -> int:
         tallies.append(campaign(killed, share, options.checkpoint_every, options.seed))
         print(table(tallies[-1:]), flush=True)
     if options.record:
-        RECORD.parent.mkdir(exist_ok=True)
-        RECORD.write_text(json.dumps(as_record(tallies, options.seed, options.checkpoint_every), indent=1) + "\n", encoding="utf-8")
+        store.write(as_record(tallies, options.seed, options.checkpoint_every), RECORD)
     good = all(tally.identical == tally.trials and not tally.problems for tally in tallies)
     print(f"{sum(t.kills for t in tallies)} kills, {sum(t.trials for t in tallies)} runs, {sum(t.identical for t in tallies)} identical")
     return 0 if good else 1

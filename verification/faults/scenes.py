@@ -17,28 +17,13 @@ class Killed:
     settings: tuple[str, ...]
 
 
-_EXP1 = EXPERIMENTS / "exp1_single_interface.toml"
-
+QUASISTATIC, COARSE = "numerics.mechanics=quasistatic", ("numerics.cell_m=2", "fracture.increment_m=2")
+EXP1, EXP5 = EXPERIMENTS / "exp1_single_interface.toml", EXPERIMENTS / "exp5_parallel_interface.toml"
 KILLED = (
-    Killed(
-        "explicit total", _EXP1, "weak",
-        ("numerics.cell_m=2", "fracture.increment_m=2", "stop.tip_y_m=40"),
-    ),
-    Killed(
-        "explicit updated", _EXP1, "weak",
-        ("numerics.kinematics=updated", "numerics.cell_m=2", "fracture.increment_m=2", "stop.time_s=0.9",
-         "fluid.inlet={start_Pa=2.3e6, rate_Pa_s=0.7e6}"),
-    ),
-    Killed(
-        "quasi-static paper", _EXP1, "soft",
-        ("numerics.mechanics=quasistatic", "stop.tip_y_m=40"),
-    ),
-    Killed(
-        "quasi-static turning", EXPERIMENTS / "exp5_parallel_interface.toml", "",
-        ("numerics.mechanics=quasistatic", "numerics.cell_m=2", "fracture.increment_m=2"),
-    ),
-    Killed(
-        "quasi-static reynolds", ANALYTIC / "kgd.toml", "",
-        ("stop.time_s=4",),
-    ),
-)
+    Killed("explicit total", EXP1, "weak", (*COARSE, "stop.tip_y_m=40")),
+    Killed("explicit updated", EXP1, "weak",
+           ("numerics.kinematics=updated", *COARSE, "stop.time_s=0.9", "fluid.inlet={start_Pa=2.3e6, rate_Pa_s=0.7e6}")),
+    Killed("quasi-static paper", EXP1, "soft", (QUASISTATIC, "stop.tip_y_m=40")),
+    Killed("quasi-static turning", EXP5, "", (QUASISTATIC, *COARSE)),
+    Killed("quasi-static reynolds", ANALYTIC / "kgd.toml", "", ("stop.time_s=4",)),
+)  # fmt: skip

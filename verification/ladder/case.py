@@ -105,6 +105,17 @@ class Case:
     smoke: int = 2
 
 
+def maker(scene: Path, mechanics: str = "quasistatic", usual: tuple[Quantity, ...] = (), runs: int = 2) -> Callable[..., Case]:
+    """Makes cases of a scene by name, words, levels, and, where they are not as usual, quantities, smoke levels and mechanics."""
+
+    def case(
+        name: str, says: str, levels: tuple[Level, ...], quantities: tuple[Quantity, ...] = usual, smoke: int = runs, mechanics: str = mechanics
+    ) -> Case:
+        return Case(name, says, scene, mechanics, levels, quantities, smoke)
+
+    return case
+
+
 Keys = Callable[[float], tuple[str, ...]]  # the further scene keys of a size of cells (m)
 
 

@@ -5,7 +5,7 @@ import math
 from collections.abc import Iterable
 
 from verification.stability.family import GARBAGE, Family, Point
-from verification.stability.store import PointFound, Record
+from verification.stability.store import Record
 
 
 def side(family: Family, point: Point, record: Record) -> bool | None:
@@ -27,21 +27,17 @@ def side(family: Family, point: Point, record: Record) -> bool | None:
 
 def problems_of_points(family: Family, record: Record, smoke: bool = False) -> list[str]:
     """What is wrong with the outcomes of a family's points."""
-    wrong = []
-    wanted = [point for point in family.points if point.smoke or not smoke]
-    for point in wanted:
-        found = record.point(point.label)
-        if found is None:
-            wrong.append(f"{point.label}: not measured")
-            continue
-        problem = problem_of_point(family, point, found, record)
-        wrong += [f"{point.label}: {problem}"] if problem else []
+    told = {point.label: problem_of_point(family, point, record) for point in family.points if point.smoke or not smoke}
     labels = {point.label for point in family.points}
-    return wrong + [f"{found.label}: no point of the family any more" for found in record.points if found.label not in labels]
+    gone = [f"{found.label}: no point of the family any more" for found in record.points if found.label not in labels]
+    return [f"{label}: {problem}" for label, problem in told.items() if problem] + gone
 
 
-def problem_of_point(family: Family, point: Point, found: PointFound, record: Record) -> str:
+def problem_of_point(family: Family, point: Point, record: Record) -> str:
     """What is wrong with a point's outcome, or nothing."""
+    found = record.point(point.label)
+    if found is None:
+        return "not measured"
     if found.outcome == GARBAGE:
         return f"garbage: {found.reason or (found.checked.words if found.checked else '')}"
     beyond = side(family, point, record)

@@ -15,7 +15,7 @@ from verification.harness.given import energy, given, last, net_Pa, tip
 from verification.harness.load import LoadError, Run
 from verification.harness.paths import ANALYTIC
 from verification.harness.reference import value, values
-from verification.ladder.case import Case, Keys, Level, Quantity, Sample, cell_levels
+from verification.ladder.case import Case, Keys, Level, Quantity, Sample, cell_levels, maker
 
 SETTLED, AT_REST, INCLINED = (ANALYTIC / f"{name}.toml" for name in ("static_crack", "static_quasistatic", "inclined_crack"))
 NET_PA = 0.3e6  # the scenes' pressure above their closing stress
@@ -30,24 +30,11 @@ BALANCE = "round-off: the fluid carries just the in-situ stress"
 # --- references
 
 
-def modelled(run: Run) -> float:
-    """The share of block and crack above the crack's middle that is modelled: all, or half where the bottom is no mirror."""
-    return 1.0 if run.scene["domain"]["bottom"] == "symmetry" else 0.5
-
-
-def half_length(run: Run) -> float:
-    """Half length of the scene's crack, m."""
-    return modelled(run) * math.dist(*run.scene["fracture"]["path_m"])
-
-
-def sizes(run: Run) -> dict[str, float]:
-    """The upper half of a run's block, as block_crack takes it."""
-    return {"width_m": given(run, "domain.width_m"), "half_height_m": modelled(run) * given(run, "domain.height_m")}
-
-
-def block(run: Run, half_length_m: float | None = None) -> dict[str, Any]:
-    """A run's block and its crack, or one of another half length, under NET_PA."""
-    return {**sizes(run), "half_length_m": half_length_m or half_length(run), "pressure_Pa": NET_PA}
+def block(run: Run, half_length_m: float | None = None, pressure: dict[str, Any] | None = None) -> dict[str, Any]:
+    """A run's block and its crack, or one of another half length, under a pressure (NET_PA); they are modelled whole where the bottom is no mirror."""
+    half = 1.0 if run.scene["domain"]["bottom"] == "symmetry" else 0.5
+    length = half_length_m or half * math.dist(*run.scene["fracture"]["path_m"])
+    return {"width_m": given(run, "domain.width_m"), "half_height_m": half * given(run, "domain.height_m"), "half_length_m": length, **(pressure or {"pressure_Pa": NET_PA})}
 
 
 def loaded(run: Run) -> dict[str, Any]:
@@ -69,7 +56,7 @@ def sloped(run: Run) -> dict[str, Any]:
     if p[-1] > 0.5 * p[0]:
         raise LoadError(f"{run.folder}: the pressure hardly falls along the fracture")
     profile = {"profile_x_m": [*(-x[:0:-1]).tolist(), *x.tolist()], "profile_Pa": [*p[:0:-1].tolist(), *p.tolist()]}
-    return {"half_length_m": half_length(run), **sizes(run), "pressure": "profile", **profile}
+    return block(run, pressure={"pressure": "profile", **profile})
 
 
 def exact(quantity: str, share: float = 1.0, settings: Callable[[Run], dict[str, Any]] = loaded, of: str = "block_crack") -> Callable[[Run], float]:
@@ -119,21 +106,14 @@ def volume_at(run: Run, tip_y_m: float) -> float:
     return float(found[0])
 
 
-def K_by_energy(run: Run) -> Sample:
+def volume_of(run: Run, half_length_m: float) -> float:
+    """The same by the reference."""
+    return 0.5 * value("block_crack", "volume_m2", **block(run, half_length_m))
+
+
+def K_by_energy(volume: Callable[[Run, float], float]) -> Callable[[Run], float]:
     """K_I that the energy released between 4 m and 6 m stands for: G = (p/2) dV/da at a constant pressure; Pa sqrt(m)."""
-    E_prime = exact("E_prime_Pa")(run)
-
-    def K_of(longer: float, shorter: float) -> float:
-        return math.sqrt(E_prime * 0.5 * NET_PA * (longer - shorter) / 2.0)
-
-    of_length = {a: 0.5 * value("block_crack", "volume_m2", **block(run, a)) for a in (4.0, 6.0)}
-    return Sample.of(K_of(volume_at(run, 6.0), volume_at(run, 4.0)), K_of(of_length[6.0], of_length[4.0]))
-
-
-def released(run: Run) -> float:
-    """Energy that a step from 5 m to 6 m releases, N/m."""
-    longer, shorter = (0.5 * value("block_crack", "volume_m2", **block(run, a)) for a in (6.0, 5.0))
-    return 0.5 * NET_PA * (longer - shorter)
+    return lambda run: math.sqrt(exact("E_prime_Pa")(run) * 0.5 * NET_PA * (volume(run, 6.0) - volume(run, 4.0)) / 2.0)
 
 
 def start_Pa(run: Run) -> float:
@@ -157,6 +137,7 @@ AT_TIP = (
     Quantity("K_II / K_I", K_UNIT, K_II, SYMMETRY),
     Quantity.of("spread of J over the rings", "1", tip("J_spread"), lambda _: 0.0, RINGS, scale=1.0),
 )
+BOTH_TIPS = (Quantity("K_I of both tips", K_UNIT, K_I, PLACES), Quantity("K_II / K_I of both tips", K_UNIT, K_II, PLACES))
 CRACK = (
     *AT_TIP,
     Quantity.of("mouth opening", "m", MOUTH, exact("mouth_opening_m")),
@@ -174,8 +155,9 @@ SLOPED = (
     Quantity.of("fracture volume", "m^2", VOLUME, exact("volume_m2", 0.5, sloped), reference_error=1e-6),
 )
 RELEASED = (
-    Quantity("K by energy, 4 to 6 m", K_UNIT, K_by_energy),
-    Quantity.of("G of the last step, 5 to 6 m", "N/m", lambda run: run.history["G_N_m"][-1], released),
+    Quantity.of("K by energy, 4 to 6 m", K_UNIT, K_by_energy(volume_at), K_by_energy(volume_of)),
+    Quantity.of("G of the last step, 5 to 6 m", "N/m", lambda run: run.history["G_N_m"][-1],
+                lambda run: 0.5 * NET_PA * (volume_of(run, 6.0) - volume_of(run, 5.0))),
 )
 ENDLESS = (
     Quantity.of("K_I", K_UNIT, K, exact("K_I", 1.0, endless, "pressurised_crack"), RINGS),
@@ -221,25 +203,16 @@ def turned(degrees: float, block_m: float) -> Keys:
     return lambda _: (f"domain.width_m={block_m!r}", f"domain.height_m={block_m!r}", f"fracture.path_m={ends}")
 
 
-def at_rest(name: str, says: str, own: tuple[Level, ...], quantities: tuple[Quantity, ...] = CRACK, smoke: int = 2) -> Case:
-    """A case without inertia."""
-    return Case(name, says, AT_REST, "quasistatic", own, quantities, smoke)
-
-
-def settled(name: str, says: str, own: tuple[Level, ...], quantities: tuple[Quantity, ...] = CRACK, smoke: int = 2) -> Case:
-    """A case that damping brings to rest."""
-    return Case(name, says, SETTLED, "explicit", own, quantities, smoke)
+at_rest, settled = maker(AT_REST, "quasistatic", CRACK), maker(SETTLED, "explicit", CRACK)
+turned_by = maker(INCLINED, "quasistatic", BOTH_TIPS, 1)
 
 
 def inclined(degrees: float) -> tuple[Case, Case]:
     """A crack at an angle to the grid in both mechanics."""
-    tips = (Quantity("K_I of both tips", K_UNIT, K_I, PLACES), Quantity("K_II / K_I of both tips", K_UNIT, K_II, PLACES))
     name, says = f"inclined_{degrees:g}", f"crack turned by {degrees:g} degrees against the grid: K_I as if it were not, no K_II"
     still = levels(FINE, "", turned(degrees, 400.0), graded, lambda _: ("stop.time_s=0",))
-    return (
-        Case(name, says, INCLINED, "quasistatic", still, tips, 1),
-        Case(f"{name}_explicit", says, INCLINED, "explicit", levels((2.0, 1.6, 1.0), "", turned(degrees, 160.0)), tips, 1),
-    )
+    moving = levels((2.0, 1.6, 1.0), "", turned(degrees, 160.0))
+    return turned_by(name, says, still), turned_by(f"{name}_explicit", says, moving, mechanics="explicit")
 
 
 FINE = (1.0, 0.5, 0.25)

@@ -17,7 +17,7 @@ from verification.harness.given import crack_ends, energy, first_failed_Pa, give
 from verification.harness.load import LoadError, Run, frames
 from verification.harness.paths import ANALYTIC
 from verification.harness.reference import value
-from verification.ladder.case import Case, Keys, Level, Quantity, cell_levels
+from verification.ladder.case import Case, Keys, Level, Quantity, cell_levels, maker
 
 SCENE = ANALYTIC / "crossing.toml"
 LINE_M = 10.0  # the interface, where it is on a line of every grid
@@ -190,9 +190,7 @@ def rock_above(E_GPa: float) -> str:
     return f"rock.above.youngs_modulus_Pa={E_GPa * 1e9!r}"
 
 
-def case(name: str, says: str, own: tuple[Level, ...], quantities: tuple[Quantity, ...], mechanics: str = "quasistatic", smoke: int = 1) -> Case:
-    """A case of the scene."""
-    return Case(name, says, SCENE, mechanics, own, quantities, smoke)
+case = maker(SCENE, runs=1)
 
 
 def beyond(tip_m: float, E_GPa: float) -> tuple[Case, ...]:
@@ -225,10 +223,10 @@ def loaded(ratio: float) -> Case:
 CASES = (
     case("on", "tip on the soft interface: 38302 J/m, 7.6626 mm at 1 MPa", levels("rest", FINE), at_rest(), smoke=2),
     case("on_mid_cell", "the same, the interface at mid-cell", levels("rest", FINE, of=mid_cell), at_rest(), smoke=2),
-    case("on_settling", "the same brought to rest by damping", levels("settling", MOVING), at_rest(SETTLING), "explicit"),
+    case("on_settling", "the same brought to rest by damping", levels("settling", MOVING), at_rest(SETTLING), mechanics="explicit"),
     *(one for tip_m in (1.0, 2.0) for E_GPa in E_ABOVE_GPA for one in beyond(tip_m, E_GPa)),
     case("beyond_2_settling", "tip 2 m beyond the soft interface, brought to rest by damping",
-         levels("settling", MOVING, fracture_setting(12.0)), past(2.0, MOVING) + OF_TIP, "explicit"),
+         levels("settling", MOVING, fracture_setting(12.0)), past(2.0, MOVING) + OF_TIP, mechanics="explicit"),
     crossing(0.5, (0.5, 0.25, 0.125)), crossing(1.0, FINE), crossing(2.0, FINE),
     crossing(1.0, FINE, 5.0), crossing(1.0, FINE, 30.0),
     case("lets_go", "tip on a weak interface: first failure at 0.3314 MPa, and how far by 0.36 MPa (23.67 m)",
@@ -241,11 +239,11 @@ CASES = (
          levels("slides", FINE, "interface.rough.coefficient=0.05", far=1.0), SLIDES),
     *(loaded(ratio) for ratio in (2.0, 5.0, 10.0)),
     case("crosses_1_explicit", "tip on the soft interface, with inertia: when it crosses by 1 m at once",
-         levels("grows", MOVING), crosses_by(1.0, MOVING), "explicit"),
+         levels("grows", MOVING), crosses_by(1.0, MOVING), mechanics="explicit"),
     case("start_2_explicit", "tip 2 m beyond the soft interface, with inertia: when it starts",
-         levels("grows", FINE[:1], fracture_setting(12.0)), STARTS, "explicit"),
+         levels("grows", FINE[:1], fracture_setting(12.0)), STARTS, mechanics="explicit"),
     case("lets_go_explicit", "tip on a weak interface, with inertia: first failure",
-         levels("lets_go", MOVING), (first(no_order_at={"0.5 m": ONE_CELL}),), "explicit"),
+         levels("lets_go", MOVING), (first(no_order_at={"0.5 m": ONE_CELL}),), mechanics="explicit"),
     case("slides_explicit", "tip 5 m beyond an interface with friction 0.1, with inertia: waves take some of the work of friction",
-         levels("slides", MOVING, far=1.0), SLIDES[:2], "explicit"),
+         levels("slides", MOVING, far=1.0), SLIDES[:2], mechanics="explicit"),
 )  # fmt: skip

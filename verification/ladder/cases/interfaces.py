@@ -7,14 +7,13 @@ are apart, and than 2 to another rock, there is none.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 from verification.harness.given import crack_ends, first_failed_Pa, given, half_length, lower, net_Pa, rock, tip, upper
 from verification.harness.load import Run
 from verification.harness.paths import ANALYTIC
 from verification.harness.reference import value
-from verification.ladder.case import Case, Level, Quantity
+from verification.ladder.case import Case, Level, Quantity, maker
 
 BONDED, SPRINGS, FRICTION = (ANALYTIC / f"near_{name}.toml" for name in ("bonded", "springs", "friction"))
 
@@ -134,14 +133,7 @@ def stiffness_settings(stiffness: float) -> tuple[str, ...]:
 # --- cases
 
 
-def case(
-    scene: Any, name: str, says: str, own: tuple[Level, ...], quantities: tuple[Quantity, ...], smoke: int = 1, mechanics: str = "quasistatic"
-) -> Case:
-    """A case of one of the scenes."""
-    return Case(name, says, scene, mechanics, own, quantities, smoke)
-
-
-near_bonded, near_springs, near_friction = (partial(case, scene) for scene in (BONDED, SPRINGS, FRICTION))
+near_bonded, near_springs, near_friction = (maker(scene, runs=1) for scene in (BONDED, SPRINGS, FRICTION))
 
 
 def in_both(lies: str, distance_m: float, *cells: int, smoke: int = 1) -> tuple[Case, ...]:
