@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
 from pathlib import Path
 
 from verification.harness import paths
@@ -14,6 +13,7 @@ from verification.harness.paths import ROOT
 from verification.harness.run import Job, Outcome
 from verification.harness.side_by_side import Tell
 from verification.precision.measure import timed
+from verification.stability.bisection import bisected
 from verification.stability.family import FAILED, GARBAGE, MARKED, REFUSED, STABLE, STRATA, Checked, Edge, Family, Point
 from verification.stability.store import EdgeFound, PointFound, Record
 
@@ -84,20 +84,6 @@ def found(family: Family, point: Point, runs: Path = RUNS) -> PointFound:
         return PointFound(point.label, point.value, GARBAGE, None, short(str(error)), round(cpu_s, 2))
 
 
-def bisected(sound: Callable[[float], bool], edge: Edge) -> tuple[float, float]:
-    """The last sound and first unsound value, halving the bracket until they differ by the edge's resolution.
-
-    Raises ValueError where the bracket's first end is not sound or its second one is.
-    """
-    good, bad = edge.bracket
-    if not sound(good) or sound(bad):
-        raise ValueError(f"the bracket {edge.bracket} does not enclose the edge")
-    while abs(bad - good) > edge.resolution * max(abs(good), abs(bad)):
-        middle = 0.5 * (good + bad)
-        good, bad = (middle, bad) if sound(middle) else (good, middle)
-    return good, bad
-
-
 def edge_of(family: Family, points: tuple[PointFound, ...], runs: Path = RUNS, tell: Tell = lambda _: None) -> EdgeFound | None:
     """The family's edge, predicted and measured."""
     edge = family.edge
@@ -115,7 +101,7 @@ def edge_of(family: Family, points: tuple[PointFound, ...], runs: Path = RUNS, t
         tell(f"{family.name}: edge at {value:.5g}? {one.outcome}")
         return one.checked is not None and one.checked.holds if edge.by_check else one.outcome in family.before
 
-    good, bad = bisected(sound, edge)
+    good, bad = bisected(sound, *edge.bracket, edge.resolution)
     return EdgeFound(predicted, 0.5 * (good + bad), good, bad)
 
 

@@ -11,6 +11,7 @@ from verification.ladder.measure import rows_of
 from verification.ladder.runner import make_one, rungs_of
 from verification.ladder.table import text
 
+pytestmark = pytest.mark.smoke
 FAMILIES = families()
 CASES = [pytest.param(family, case, id=f"{family}-{case.name}") for family, members in FAMILIES.items() for case in members]
 

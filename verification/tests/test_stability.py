@@ -12,7 +12,7 @@ from verification.stability.judge import changes, problems, side
 from verification.stability.runner import walk
 
 FAMILIES = families()
-pytestmark = pytest.mark.skipif(not solver().is_file(), reason="no solver is built")
+pytestmark = [pytest.mark.smoke, pytest.mark.skipif(not solver().is_file(), reason="no solver is built")]
 
 
 @pytest.mark.parametrize("name", FAMILIES)

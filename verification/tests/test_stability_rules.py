@@ -8,13 +8,15 @@ from typing import Any
 
 import pytest
 
+from verification.harness.run import Outcome
 from verification.stability import store
+from verification.stability.bisection import bisected
 from verification.stability.catalogue import check
 from verification.stability.family import (
     FAILED, GARBAGE, MARKED, REFUSED, STABLE, BadFamily, Checked, Edge, Family, Parameter, Point, at_most, close,
 )  # fmt: skip
 from verification.stability.judge import changes, differs, problems
-from verification.stability.runner import bisected, found, of_failure, walk
+from verification.stability.runner import found, of_failure, walk
 from verification.stability.store import EdgeFound, PointFound, Record
 
 SCENE = Path(__file__)
@@ -130,14 +132,13 @@ def test_checks_refuse_zero_twice_and_the_other_sign() -> None:
 
 def test_bisection_finds_the_edge() -> None:
     """From either side, to its resolution; a bracket that does not enclose it is an error."""
-    edge = Edge("", bracket=(0.5, 2.0), resolution=0.001)
-    good, bad = bisected(lambda value: value < 1.234, edge)
+    good, bad = bisected(lambda value: value < 1.234, 0.5, 2.0, 0.001)
     assert good < 1.234 <= bad and bad - good < 0.002
-    good, bad = bisected(lambda value: value > 1.234, replace(edge, bracket=(2.0, 0.5)))
+    good, bad = bisected(lambda value: value > 1.234, 2.0, 0.5, 0.001)
     assert bad <= 1.234 < good and good - bad < 0.002
     for wrong in ((0.5, 1.0), (1.5, 2.0)):
         with pytest.raises(ValueError):
-            bisected(lambda value: value < 1.234, replace(edge, bracket=wrong))
+            bisected(lambda value: value < 1.234, *wrong, 0.001)
 
 
 def test_families_are_checked() -> None:
@@ -190,8 +191,6 @@ def test_other_ways_and_killed_runs() -> None:
     outcomes = [found(family, point).outcome for point in points]
     assert outcomes == [STABLE, STABLE, GARBAGE, GARBAGE]
     assert len(walk(replace(family, points=points), smoke=True).points) == 2
-    from verification.harness.run import Outcome
-
     died = Outcome("scene", "", "failed", -9, "killed by signal 9", 1.0, "")
     for exit_status, outcome in ((-9, GARBAGE), (1, GARBAGE), (124, GARBAGE), (2, REFUSED), (3, FAILED)):
         assert of_failure(points[0], replace(died, exit_status=exit_status), 0.0).outcome == outcome

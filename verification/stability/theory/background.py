@@ -12,6 +12,8 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import spsolve
 
+from verification.stability.theory.step_limit import line_weights
+
 Array = np.ndarray
 
 
@@ -38,25 +40,18 @@ class Setup:
         return self.cells / 2 - self.half_length, self.cells / 2 + self.half_length
 
 
-def hat(d: Array) -> tuple[Array, Array]:
-    """Hat function and its derivative at distances d (cells)."""
-    inside = np.abs(d) < 1.0
-    return np.where(inside, 1.0 - np.abs(d), 0.0), np.where(inside, -np.sign(d), 0.0)
-
-
 class Model:
     """Points, nodes with their copies, stiffness."""
 
     def __init__(self, setup: Setup) -> None:
         """Lays out points and copies and sums the stiffness."""
         self.setup = setup
-        n = setup.cells
+        n, (low, high) = setup.cells, setup.ends
         line = np.concatenate([[i + 0.25, i + 0.75] for i in range(n)])
         self.x, self.y = (a.ravel() for a in np.meshgrid(line, line))
         self.V = 0.25
         nodes = np.arange((n + 1) ** 2)
         node_x, node_y = nodes % (n + 1), nodes // (n + 1)
-        low, high = setup.ends
         self.split = (np.abs(node_x - setup.crack_x) < 1.0 - 1e-9) & (node_y > low + 1e-9) & (node_y < high - 1e-9)
         self.copy = np.full(nodes.size, -1)
         self.copy[self.split] = nodes.size + np.arange(int(self.split.sum()))
@@ -74,14 +69,11 @@ class Model:
         """The four nodes around places, their functions and gradients."""
         n = self.setup.cells
         i, j = np.minimum(x.astype(int), n - 1), np.minimum(y.astype(int), n - 1)
-        nodes, N, dN = [], [], []
-        for b in (0, 1):
-            for a in (0, 1):
-                (N_x, d_x), (N_y, d_y) = hat(x - (i + a)), hat(y - (j + b))
-                nodes.append((i + a) + (n + 1) * (j + b))
-                N.append(N_x * N_y)
-                dN.append(np.stack([d_x * N_y, N_x * d_y], axis=1))
-        return np.stack(nodes, axis=1), np.stack(N, axis=1), np.stack(dN, axis=1)
+        corners = [(i + a, j + b) for b in (0, 1) for a in (0, 1)]
+        hats = [(*line_weights("linear", x - i, 0.0), *line_weights("linear", y - j, 0.0)) for i, j in corners]
+        nodes = np.stack([i + (n + 1) * j for i, j in corners], axis=1)
+        N = np.stack([N_x * N_y for N_x, _, N_y, _ in hats], axis=1)
+        return nodes, N, np.stack([np.stack([d_x * N_y, N_x * d_y], axis=1) for N_x, d_x, N_y, d_y in hats], axis=1)
 
     def unknowns(self) -> Array:
         """Unknowns of each point's nodes."""
@@ -109,19 +101,17 @@ class Model:
 
     def of_pressure(self, P: float) -> Array:
         """The forces of a pressure on both faces."""
-        f = np.zeros(2 * self.records)
-        node, N, _ = self.faces()
+        f, (node, N, _) = np.zeros(2 * self.records), self.faces()
         split = self.split[node]
-        np.add.at(f, 2 * self.copy[node][split], (0.5 * P * N)[split])
-        np.add.at(f, 2 * node[split], -(0.5 * P * N)[split])
+        for nodes, side in ((self.copy[node], 1.0), (node, -1.0)):
+            np.add.at(f, 2 * nodes[split], side * (0.5 * P * N)[split])
         return f
 
     def of_edges(self, stress: Array) -> Array:
         """The forces of the in-situ tractions on the block's edges (its nodes there are never split)."""
         n, f = self.setup.cells, np.zeros(2 * self.records)
-        along = np.ones(n + 1)
-        along[[0, -1]] = 0.5
         k = np.arange(n + 1)
+        along = np.where((k == 0) | (k == n), 0.5, 1.0)
         for nodes, axis, sign in ((k * (n + 1), 0, -1.0), (k * (n + 1) + n, 0, 1.0), (k, 1, -1.0), (k + n * (n + 1), 1, 1.0)):
             f[2 * nodes + axis] += sign * stress[axis] * along
         return f
@@ -138,10 +128,8 @@ def solve(model: Model, P: float, prestress: bool) -> Array:
     else:
         stress = np.array([-s.s_h_Pa, -s.s_v_Pa, 0.0])
         f = model.of_stress(stress) + model.of_edges(stress) + model.of_pressure(P)
-    n = s.cells
-    held = np.array([0, 1, 2 * n + 1])  # rigid motion: one corner, and the other one along y
-    free = np.setdiff1d(np.arange(2 * model.records), held)
-    u = np.zeros(2 * model.records)
+    held = np.array([0, 1, 2 * s.cells + 1])  # rigid motion: one corner, and the other one along y
+    u, free = np.zeros(2 * model.records), np.setdiff1d(np.arange(2 * model.records), held)
     u[free] = spsolve(model.stiffness()[free][:, free].tocsc(), f[free])
     return u
 
@@ -151,18 +139,13 @@ def J_integral(model: Model, u: Array, P: float, radius: float, prestress: bool)
 
     Without prestress from total stress, total strain and the whole pressure.
     """
-    s = model.setup
+    s, own = model.setup, u[model.unknowns()]
     tip = np.array([s.crack_x, s.ends[1]])
-    own = u[model.unknowns()]
-    g = np.einsum("pna,pnb->pba", model.dN, own.reshape(-1, 4, 2))  # g[a][b] = du_b/dx_a, transposed below
-    grad = np.swapaxes(np.swapaxes(g, 1, 2), 1, 2)  # [p][i][j] = du_i/dx_j
-    strain = np.einsum("pai,pi->pa", model.B, own)
-    net = P - s.s_h_Pa
+    grad = np.einsum("pna,pnb->pba", model.dN, own.reshape(-1, 4, 2))  # [p][i][j] = du_i/dx_j
+    strain, net = np.einsum("pai,pi->pa", model.B, own), P - s.s_h_Pa
     if not prestress:
         initial = np.linalg.solve(model.C, np.array([-s.s_h_Pa, -s.s_v_Pa, 0.0]))
-        strain = strain + initial
-        grad = grad + np.array([[initial[0], 0.0], [0.0, initial[1]]])
-        net = P
+        strain, grad, net = strain + initial, grad + np.diag(initial[:2]), P
     stress = strain @ model.C
     tensor = np.stack([stress[:, [0, 2]], stress[:, [2, 1]]], axis=1)
     W = 0.5 * np.sum(stress * strain, axis=1)

@@ -22,12 +22,8 @@ def diffused(P: Array, w: Array, ds: float, dt: float, viscosity_Pa_s: float, in
     """Pressures (Pa) of the vertices after a step dt (s) at openings w (m) of the cells between them, the inlet's rising from one value to another."""
     kappa = BULK_PA / viscosity_Pa_s * np.maximum(w, FLOOR_M) ** 2 / 12.0
     n = w.size
-    A = np.zeros((n + 1, n + 1))
-    for i in range(1, n + 1):
-        volume = ds if i < n else 0.5 * ds
-        A[i, i - 1 : i + 1] += np.array([1.0, -1.0]) * kappa[i - 1] / ds / volume
-        if i < n:
-            A[i, i : i + 2] += np.array([-1.0, 1.0]) * kappa[i] / ds / volume
+    below, above = kappa / ds / np.append(np.full(n - 1, ds), 0.5 * ds), np.append(kappa[1:] / ds / ds, 0.0)  # at all vertices but the inlet
+    A = np.diag(np.append(0.0, -below - above)) + np.diag(below, -1) + np.diag(np.append(0.0, above[:-1]), 1)
     parts = max(1, int(np.ceil(dt * float(kappa.max()) / (2.0 * ds * ds))))  # or the trapezoid rings
     h = dt / parts
     left = np.eye(n + 1) - 0.5 * h * A

@@ -38,13 +38,8 @@ def conductances(w: Array, ds: float) -> Array:
     """-d/ds(w^3/(12 mu) d/ds) ds of cells, the inlet's pressure given at s = 0 and nothing through the tip, m^2/(Pa s)."""
     k = w**3 / (12.0 * VISCOSITY_PA_S)
     between = 2.0 * k[1:] * k[:-1] / (k[1:] + k[:-1]) / ds
-    L = np.diag(np.concatenate([[2.0 * k[0] / ds], np.zeros(w.size - 1)]))
-    for i, c in enumerate(between):
-        L[i, i] += c
-        L[i + 1, i + 1] += c
-        L[i, i + 1] -= c
-        L[i + 1, i] -= c
-    return L
+    own = np.concatenate([[2.0 * k[0] / ds], between]) + np.concatenate([between, [0.0]])
+    return np.diag(own) - np.diag(between, 1) - np.diag(between, -1)
 
 
 def growth(dt: float, net_Pa: float = 0.3e6, cells: int = 20, lagged: bool = True) -> float:

@@ -18,6 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from verification.stability.bisection import bisected
+
 Array = np.ndarray
 
 
@@ -131,11 +133,7 @@ def courant_limit(block: Block, transfer: str, poisson: float) -> float:
     leapfrog = 2.0 / omega_max(found)
     if transfer == "total":
         return leapfrog
-    low, high = 0.2 * leapfrog, 2.0 * leapfrog
-    while high - low > 2e-4 * high:
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if growth(found, transfer, middle) < 1.0 + 1e-7 else (low, middle)
-    return low
+    return bisected(lambda dt: growth(found, transfer, dt) < 1.0 + 1e-7, 0.2 * leapfrog, 2.0 * leapfrog, 2e-4)[0]
 
 
 def damped_limit(undamped: float, damping: float) -> float:

@@ -18,6 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from verification.stability.bisection import bisected
+
 Array = np.ndarray
 
 
@@ -30,18 +32,12 @@ class Chain:
 
     def modes(self) -> tuple[Array, Array]:
         """Frequencies w_i (rad/s) from the slowest one, and shares A_i of them in what the foot carries."""
-        count = len(self.masses)
-        K = np.zeros((count, count))
-        for i, k in enumerate(self.springs):
-            K[i, i] += k
-            if i > 0:
-                K[i - 1, i - 1] += k
-                K[i, i - 1] -= k
-                K[i - 1, i] -= k
+        k = np.array(self.springs)
+        K = np.diag(k + np.append(k[1:], 0.0)) - np.diag(k[1:], 1) - np.diag(k[1:], -1)
         root = np.sqrt(np.array(self.masses))
         squares, vectors = np.linalg.eigh(K / np.outer(root, root))
-        stretched = np.cumsum(1.0 / np.array(self.springs))
-        return np.sqrt(squares), self.springs[0] * vectors[0] / root[0] * (vectors.T @ (root * stretched))
+        stretched = np.cumsum(1.0 / k)
+        return np.sqrt(squares), k[0] * vectors[0] / root[0] * (vectors.T @ (root * stretched))
 
 
 def carried(chain: Chain, time_s: Array, damping_1_s: float = 0.0) -> Array:
@@ -64,10 +60,4 @@ def most(chain: Chain, damping_1_s: float, within_s: float) -> float:
 
 def damping_for(chain: Chain, strength: float, within_s: float, largest_1_s: float = 100.0) -> float:
     """The damping (1/s) at which phi just reaches a strength; raises ValueError where it does not without damping, or does with the largest."""
-    low, high = 0.0, largest_1_s
-    if most(chain, low, within_s) < strength or most(chain, high, within_s) >= strength:
-        raise ValueError(f"no damping up to {largest_1_s:g} makes {strength:g} the most that is carried")
-    while high - low > 1e-5 * high:
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if most(chain, middle, within_s) >= strength else (low, middle)
-    return 0.5 * (low + high)
+    return 0.5 * sum(bisected(lambda c: most(chain, c, within_s) >= strength, 0.0, largest_1_s, 1e-5))
