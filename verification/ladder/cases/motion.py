@@ -133,9 +133,14 @@ def free(name: str, says: str, variant: str, *quantities: Quantity) -> tuple[Cas
     )  # fmt: skip
 
 
-def flights() -> tuple[Case, ...]:
-    """A block that flies."""
-    return free(
+def fallen_m(run: Run) -> float:
+    """u_y of the block that falls, m."""
+    t = run.summary.time_s
+    return THROWN[1] * t + 0.5 * FALL * t * t
+
+
+FREE = (
+    *free(
         "flight", "A block that flies by a tenth of a metre keeps its momentum and energy and is not strained.", "flies",
         field("u_x_m", "m", lambda run, _: SPEED[0] * run.summary.time_s),
         field("u_y_m", "m", lambda run, _: SPEED[1] * run.summary.time_s),
@@ -143,38 +148,25 @@ def flights() -> tuple[Case, ...]:
         Quantity.of("momentum along x", "kg/s", momentum("v_x_m_s"), lambda run: SPEED[0] * mass(run), SINGLE),
         Quantity.of("momentum along y", "kg/s", momentum("v_y_m_s"), lambda run: SPEED[1] * mass(run), SINGLE),
         kinetic_kept(ROUND_OFF), ENERGY,
-    )  # fmt: skip
-
-
-def turns() -> tuple[Case, ...]:
-    """A block that turns: a node at a free edge moves as the middle of mass of its points does, not as its own place."""
-    return free(
+    ),
+    *free(
         "turn", "A block that turns by 1e-7 keeps its angular momentum and energy and is not strained, but for the nodes at its free "
-        "edges, whose lumped masses have their middle inside.", "turns",
+        "edges, whose lumped masses have their middle inside.", "turns",  # a node there moves as the middle of mass of its points does
         field("u_x_m", "m", lambda run, at: -SPIN * run.summary.time_s * (at["Y"] - 4.0), ""),
         field("u_y_m", "m", lambda run, at: SPIN * run.summary.time_s * (at["X"] - 4.0), ""),
         no_stress(lambda run: E_of(run) * SPIN * run.summary.time_s, ""),
         Quantity.of("angular momentum", "kg m/s", spin, spin_of_particles),
         kinetic_kept(),
-    )  # fmt: skip
-
-
-def fallen_m(t: float) -> float:
-    """u_y of the block that falls at a time (s), m."""
-    return THROWN[1] * t + 0.5 * FALL * t * t
-
-
-def falls() -> tuple[Case, ...]:
-    """A block that falls freely."""
-    return free(
+    ),
+    *free(
         "fall", "A block that is thrown and falls: u = v t + g t^2/2 exactly, no stress.", "falls",
         field("u_x_m", "m", lambda run, _: THROWN[0] * run.summary.time_s),
-        field("u_y_m", "m", lambda run, _: fallen_m(run.summary.time_s)),
+        field("u_y_m", "m", lambda run, _: fallen_m(run)),
         no_stress(lambda run: rho_of(run) * abs(FALL) * size_m(run)[1], ROUND_OFF),
-        Quantity.of("work of the body force", "J/m", lambda run: run.history["body_work_J"][-1],
-                    lambda run: mass(run) * FALL * fallen_m(run.summary.time_s), ROUND_OFF),
+        Quantity.of("work of the body force", "J/m", lambda run: run.history["body_work_J"][-1], lambda run: mass(run) * FALL * fallen_m(run), ROUND_OFF),
         ENERGY,
-    )  # fmt: skip
+    ),
+)  # fmt: skip
 
 
 # --- Uniform stress -----------------------------------------------------------------------------------------------------
@@ -252,22 +244,21 @@ def layer_mean(layer: int) -> Quantity:
     return Quantity.of(f"mean s_xx_Pa of layer {layer}", "Pa", mean, lambda run: laminate(run)[layer])
 
 
-def profile(run: Run) -> Sample:
-    """Stress along x of all particles about the middle."""
-    fields, of = middle(run)
-    return Sample(fields["s_xx_Pa"], np.array(laminate(run))[of], fields["volume_m2"])
+def of_points(name: str, exact: Callable[[Run, Array], Array]) -> Quantity:
+    """A stress of all particles about the middle beside its exact one of a run and their layers."""
 
+    def sample(run: Run) -> Sample:
+        fields, of = middle(run)
+        return Sample(fields[name], exact(run, of), fields["volume_m2"])
 
-def across(run: Run) -> Sample:
-    """Stress across the layers about the middle, which is that of the top."""
-    fields, _ = middle(run)
-    return Sample(fields["s_yy_Pa"], np.full(fields["X"].shape, -given(run, "in_situ.vertical_Pa")), fields["volume_m2"])
+    return Quantity(f"{name} of points", "Pa", sample)
 
 
 SHARING = Case(
     "loaded_layers", "Two bonded layers under edge tractions share them by their stiffness, far from the ends.", LAYERS, "quasistatic",
     cell_levels(2.0, *SIZES),
-    (layer_mean(0), layer_mean(1), Quantity("s_xx_Pa of points", "Pa", profile), Quantity("s_yy_Pa of points", "Pa", across)),
+    (layer_mean(0), layer_mean(1), of_points("s_xx_Pa", lambda run, of: np.array(laminate(run))[of]),
+     of_points("s_yy_Pa", lambda run, of: np.full(of.shape, -given(run, "in_situ.vertical_Pa")))),  # across the layers it is that of the top
 )  # fmt: skip
 
 
@@ -323,7 +314,7 @@ def spring(mechanics: str, D: float, *more: str, name: str = "", why: str = ROUN
 
 
 CASES = (
-    *flights(), *turns(), *falls(),
+    *FREE,
     *PATCHES,
     SHARING,
     *(own_weight(mechanics, shape) for mechanics in MECHANICS for shape in ("bspline2", "linear")),

@@ -1,11 +1,12 @@
-"""A block cut in two that nothing holds along the cut: with inertia it flies as Newton says, without there is no equilibrium."""
+"""Parts that nothing holds along a cut without friction: with inertia they fly as Newton says, without there is no equilibrium."""
 from __future__ import annotations
 
 import numpy as np
 
 from verification.harness.given import given, last
 from verification.harness.load import Run
-from verification.stability.family import FAILED, KINEMATICS, SCENES, STABLE, Checked, Family, Parameter, Point, close
+from verification.harness.paths import ANALYTIC
+from verification.stability.family import FAILED, KINEMATICS, SCENES, STABLE, Checked, Family, Parameter, Point, at_most, close
 
 SCENE = SCENES / "loose.toml"
 HEIGHT_M, DENSITY = 4.0, 2500.0  # of the upper block
@@ -41,6 +42,23 @@ def spring(stiffness: str, value: float | None = None) -> Point:
     return Point(stiffness, float(stiffness) if value is None else value, SCENE, settings, smoke=stiffness in ("0", "1e6"), beyond=value is not None)
 
 
+# --- a fracture below an interface without strength
+STRAIN_AT_MOST_M = 0.02  # 0.5 MPa over 5 GPa along 80 m is 8 mm; parts that move freely go metres
+
+
+def held(run: Run) -> Checked:
+    """The largest displacement of the rock."""
+    particles = last(run, "particles")[1]
+    return at_most(float(np.max(np.hypot(particles["u_x_m"], particles["u_y_m"]))), STRAIN_AT_MOST_M, "largest displacement")
+
+
+def parted(label: str, sides: str, beyond: bool) -> Point:
+    """The fracture below an interface without strength and without friction; sides loaded or held."""
+    law = 'interface.slick={law="weak",shear_strength_Pa=1.0,tensile_strength_Pa=1.0,residual_friction=0.0}'
+    keys = (f"domain.sides={sides}", law, "output.fields_every_s=4")
+    return Point(label, 0.0, ANALYTIC / "static_quasistatic.toml", keys, "free", smoke=beyond, beyond=beyond)
+
+
 FAMILIES = (
     Family(
         "loose_explicit", "Cut without friction, traction edges: with inertia", "The part that nothing holds moves as Newton says.",
@@ -53,5 +71,10 @@ FAMILIES = (
         " that parts move freely.",
         Parameter("D along the cut", "Pa/m", log=True), (*map(spring, ("1e10", "1e8", "1e6", "1e5")), spring("0", 1.0)), check_springs,
         beyond=(FAILED,), section=SECTION, check_name="slip over rho a H/D less 1",
+    ),
+    Family(
+        "mechanism", "Loaded edges and an interface without friction, without inertia",
+        "Parts that nothing holds end the run with exit status 3 and its reason; held sides keep it whole.", Parameter("residual friction"),
+        (parted("loaded, none", "traction", True), parted("held, none", "fixed", False)), held, beyond=(FAILED,), section="Mechanisms",
     ),
 )  # fmt: skip
