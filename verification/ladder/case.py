@@ -105,11 +105,11 @@ class Case:
     smoke: int = 2
 
 
-def maker(scene: Path, mechanics: str = "quasistatic", usual: tuple[Quantity, ...] = (), runs: int = 2) -> Callable[..., Case]:
-    """Makes cases of a scene by name, words, levels, and, where they are not as usual, quantities, smoke levels and mechanics."""
+def case_of(scene: Path, mechanics: str = "quasistatic", usual: tuple[Quantity, ...] = (), smoke_levels: int = 2) -> Callable[..., Case]:
+    """What makes a case of a scene: by name, words and levels, and by quantities, smoke levels and mechanics where they are not as usual."""
 
     def case(
-        name: str, says: str, levels: tuple[Level, ...], quantities: tuple[Quantity, ...] = usual, smoke: int = runs, mechanics: str = mechanics
+        name: str, says: str, levels: tuple[Level, ...], quantities: tuple[Quantity, ...] = usual, smoke: int = smoke_levels, mechanics: str = mechanics
     ) -> Case:
         return Case(name, says, scene, mechanics, levels, quantities, smoke)
 

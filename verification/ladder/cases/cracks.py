@@ -15,7 +15,7 @@ from verification.harness.given import energy, given, last, net_Pa, tip
 from verification.harness.load import LoadError, Run
 from verification.harness.paths import ANALYTIC
 from verification.harness.reference import value, values
-from verification.ladder.case import Case, Keys, Level, Quantity, Sample, cell_levels, maker
+from verification.ladder.case import Case, Keys, Level, Quantity, Sample, case_of, cell_levels
 
 SETTLED, AT_REST, INCLINED = (ANALYTIC / f"{name}.toml" for name in ("static_crack", "static_quasistatic", "inclined_crack"))
 NET_PA = 0.3e6  # the scenes' pressure above their closing stress
@@ -33,8 +33,9 @@ BALANCE = "round-off: the fluid carries just the in-situ stress"
 def block(run: Run, half_length_m: float | None = None, pressure: dict[str, Any] | None = None) -> dict[str, Any]:
     """A run's block and its crack, or one of another half length, under a pressure (NET_PA); they are modelled whole where the bottom is no mirror."""
     half = 1.0 if run.scene["domain"]["bottom"] == "symmetry" else 0.5
+    sizes = {"width_m": given(run, "domain.width_m"), "half_height_m": half * given(run, "domain.height_m")}
     length = half_length_m or half * math.dist(*run.scene["fracture"]["path_m"])
-    return {"width_m": given(run, "domain.width_m"), "half_height_m": half * given(run, "domain.height_m"), "half_length_m": length, **(pressure or {"pressure_Pa": NET_PA})}
+    return {**sizes, "half_length_m": length, **(pressure or {"pressure_Pa": NET_PA})}
 
 
 def loaded(run: Run) -> dict[str, Any]:
@@ -203,8 +204,8 @@ def turned(degrees: float, block_m: float) -> Keys:
     return lambda _: (f"domain.width_m={block_m!r}", f"domain.height_m={block_m!r}", f"fracture.path_m={ends}")
 
 
-at_rest, settled = maker(AT_REST, "quasistatic", CRACK), maker(SETTLED, "explicit", CRACK)
-turned_by = maker(INCLINED, "quasistatic", BOTH_TIPS, 1)
+at_rest, settled = case_of(AT_REST, "quasistatic", CRACK), case_of(SETTLED, "explicit", CRACK)
+turned_by = case_of(INCLINED, "quasistatic", BOTH_TIPS, 1)
 
 
 def inclined(degrees: float) -> tuple[Case, Case]:

@@ -17,7 +17,7 @@ from verification.harness.given import crack_ends, energy, first_failed_Pa, give
 from verification.harness.load import LoadError, Run, frames
 from verification.harness.paths import ANALYTIC
 from verification.harness.reference import value
-from verification.ladder.case import Case, Keys, Level, Quantity, cell_levels, maker
+from verification.ladder.case import Case, Keys, Level, Quantity, case_of, cell_levels
 
 SCENE = ANALYTIC / "crossing.toml"
 LINE_M = 10.0  # the interface, where it is on a line of every grid
@@ -190,7 +190,7 @@ def rock_above(E_GPa: float) -> str:
     return f"rock.above.youngs_modulus_Pa={E_GPa * 1e9!r}"
 
 
-case = maker(SCENE, runs=1)
+case = case_of(SCENE, smoke_levels=1)
 
 
 def beyond(tip_m: float, E_GPa: float) -> tuple[Case, ...]:

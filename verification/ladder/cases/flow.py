@@ -9,7 +9,7 @@ from verification.harness.given import given, last
 from verification.harness.load import LoadError, Run
 from verification.harness.paths import ANALYTIC
 from verification.harness.reference import value, values
-from verification.ladder.case import Array, Level, Quantity, Sample, cell_levels, maker
+from verification.ladder.case import Array, Level, Quantity, Sample, case_of, cell_levels
 
 SCENE = ANALYTIC / "channel.toml"
 LENGTH_M = 5.0
@@ -54,7 +54,7 @@ def step_levels(*courant: float, variant: str) -> tuple[Level, ...]:
 
 STEPS = (1.0, 0.5, 0.25)
 QUANTITIES = (Quantity("pressure along the fracture", "Pa", along), Quantity("pressure at the tip", "Pa", at_tip))
-without_inertia, with_inertia = (maker(SCENE, mechanics, QUANTITIES, 3) for mechanics in ("quasistatic", "explicit"))
+without_inertia, with_inertia = (case_of(SCENE, mechanics, QUANTITIES, 3) for mechanics in ("quasistatic", "explicit"))
 CASES = (
     without_inertia("channel", "ramped inlet, constant opening, closed end, order in space", cell_levels(*STEPS)),
     with_inertia("channel_explicit", "the same, a flow step with each step of the rock", cell_levels(*STEPS), smoke=2),

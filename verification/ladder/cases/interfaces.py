@@ -13,7 +13,7 @@ from verification.harness.given import crack_ends, first_failed_Pa, given, half_
 from verification.harness.load import Run
 from verification.harness.paths import ANALYTIC
 from verification.harness.reference import value
-from verification.ladder.case import Case, Level, Quantity, maker
+from verification.ladder.case import Case, Level, Quantity, case_of
 
 BONDED, SPRINGS, FRICTION = (ANALYTIC / f"near_{name}.toml" for name in ("bonded", "springs", "friction"))
 
@@ -133,7 +133,7 @@ def stiffness_settings(stiffness: float) -> tuple[str, ...]:
 # --- cases
 
 
-near_bonded, near_springs, near_friction = (maker(scene, runs=1) for scene in (BONDED, SPRINGS, FRICTION))
+near_bonded, near_springs, near_friction = (case_of(scene, smoke_levels=1) for scene in (BONDED, SPRINGS, FRICTION))
 
 
 def in_both(lies: str, distance_m: float, *cells: int, smoke: int = 1) -> tuple[Case, ...]:

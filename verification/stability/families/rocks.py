@@ -35,7 +35,8 @@ def poisson(name: str, keys: tuple[str, ...], how: str, ratios: tuple[float, ...
         return Point(f"{ratio:g}", 0.5 - ratio, CRACK, settings, smoke=ratio in (0.2, 0.4999), beyond=ratio > locking)
 
     return Family(
-        f"poisson{name}", f"Poisson's ratio to {ratios[-1]:g}, {how}", "K_I and the opening are those of the closed form, or the run says that its functions lock.",
+        f"poisson{name}", f"Poisson's ratio to {ratios[-1]:g}, {how}",
+        "K_I and the opening are those of the closed form, or the run says that its functions lock.",
         Parameter("0.5 less Poisson's ratio", log=True), tuple(map(point, ratios)), K_and_opening, beyond=(MARKED,), section=SECTION,
     )  # fmt: skip
 

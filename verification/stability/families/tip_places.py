@@ -61,7 +61,9 @@ def below_edge(run: Run) -> tuple[str, dict[str, Any]]:
     return "spring_interface", {"law": "free", "half_length_m": half_length(run), "distance_m": top, "pressure_Pa": NET_PA, **rock(run)}
 
 
-def towards(name: str, title: str, says: str, parameter: str, at: At, cells: tuple[float, ...], smoke: tuple[float, ...], check: Check, edge: float, why: str) -> Family:
+def towards(
+    name: str, title: str, says: str, parameter: str, at: At, cells: tuple[float, ...], smoke: tuple[float, ...], check: Check, edge: float, why: str
+) -> Family:
     """A tip at so many cells from something, flagged from an edge (cells) on down."""
     return Family(
         f"tip_near_{name}", title, says, Parameter(parameter, "cells", log=True), walked(at, cells, smoke), check, beyond=(MARKED,),
@@ -88,7 +90,8 @@ FAMILIES = (
     near_interface("stiff_soft", "bonded, soft rock beyond", bonded),
     near_interface("soft_stiff", "bonded, stiff rock beyond", bonded),
     near_interface("springs", "springs of E'/a", springs),
-    towards("edge", "A tip near a loaded edge of the block", "K is that of the integral equation of a crack normal to a free surface within 2 %, or it is flagged.",
+    towards("edge", "A tip near a loaded edge of the block",
+            "K is that of the integral equation of a crack normal to a free surface within 2 %, or it is flagged.",
             "distance of the tips from the edge", at_values(CRACK, lambda cells: (*AT_REST, *edge_setting(cells)), "{:.5g} cells"),
             (1.0, 1.5, 2.0, 3.0, 3.4, 3.6, 4.0, 5.0, 6.0, 8.0, 12.0), (2.0, 6.0), near_K(below_edge, 0.02), 3.5,
             "A ring of 2.5 cells and a cell that functions reach on: 3.5."),
