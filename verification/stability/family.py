@@ -135,12 +135,6 @@ class Parameter:
     log: bool = False
 
 
-def no_flag(run: Run) -> str:
-    """Nothing but the run's own list of what is suspect counts as a mark."""
-    del run
-    return ""
-
-
 def tip_is_near(run: Run) -> str:
     """The mark of a run that has a tip too near to something for its J and K: to what."""
     near = sorted({tip["near"] for tip in run.summary.raw["tips"] if tip["near"]})
@@ -166,7 +160,7 @@ class Family:
     edge: Edge | None = None
     section: str = ""
     check_name: str = "relative error"
-    flag: Callable[[Run], str] = no_flag
+    flag: Callable[[Run], str] = lambda _: ""
     ways: Mapping[str, Callable[[Point], Checked]] = field(default_factory=dict)
     before: tuple[str, ...] = (STABLE,)  # outcomes of points before the edge, which bisection takes as sound: with MARKED only for a reason
     remark: str = ""  # what the walk showed, in words, for the page
@@ -175,13 +169,6 @@ class Family:
     def about(self) -> str:
         """What is said below the heading of its section."""
         return sections().get(self.section, "")
-
-    def point(self, label: str) -> Point:
-        """The point of a label; raises KeyError."""
-        found = next((point for point in self.points if point.label == label), None)
-        if found is None:
-            raise KeyError(f"{self.name} has no point {label}")
-        return found
 
 
 class BadFamily(ValueError):

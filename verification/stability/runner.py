@@ -24,7 +24,7 @@ REASON_LENGTH = 400
 BAD_INPUT, NUMERICS_FAILED = 2, 3
 
 
-def folder_of(family: Family, point: Point, runs: Path = RUNS) -> Path:
+def folder_of(family: Family, point: Point | PointFound, runs: Path = RUNS) -> Path:
     """Where a point's run is."""
     return runs / family.name / folder_name(point.label)
 
@@ -91,7 +91,7 @@ def edge_of(family: Family, points: tuple[PointFound, ...], runs: Path = RUNS, t
         return None
     predicted = edge.predicted() if edge.predicted is not None else None
     if edge.read is not None:
-        made = {point.label: load(folder_of(family, family.point(point.label), runs)) for point in points if point.checked is not None}
+        made = {point.label: load(folder_of(family, point, runs)) for point in points if point.checked is not None}
         return EdgeFound(predicted, edge.read(made))
     at = edge.at
     assert at is not None

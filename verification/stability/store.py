@@ -51,17 +51,12 @@ class Record:
         return next((point for point in self.points if point.label == label), None)
 
 
-def file_of(family: str, folder: Path = RECORDS) -> Path:
-    """Where a family's record is."""
-    return folder / f"{family}.json"
-
-
 def read(family: str, folder: Path = RECORDS) -> Record | None:
     """A family's record; None where there is none. Raises ValueError for a file that cannot be understood."""
-    return store.read(Record, file_of(family, folder))
+    return store.read(Record, folder / f"{family}.json")
 
 
 def write(record: Record, folder: Path = RECORDS) -> Path:
     """Write a family's record, a point a line, what checks found to seven digits."""
     points = tuple(replace(point, checked=point.checked and point.checked.rounded()) for point in record.points)
-    return store.write(replace(record, points=points), file_of(record.family, folder), ("edge", "points"))
+    return store.write(replace(record, points=points), folder / f"{record.family}.json", ("edge", "points"))
