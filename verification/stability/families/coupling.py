@@ -7,7 +7,7 @@ from verification.harness.given import E_prime, given, path_key
 from verification.harness.load import Run
 from verification.stability.cracks import AT_REST, CRACK, MIDDLE_M, SETTLING, upright
 from verification.stability.family import Checked, Family, Parameter, Point, at_most, close
-from verification.stability.theory.background import J_integral, Model, Setup, solve
+from verification.stability.theory.background import J_integral, solve
 from verification.stability.theory.staggered import BULK_PA, compliance, conductances, growth
 
 # --- staggered
@@ -66,11 +66,10 @@ CLOSED = ("in_situ.vertical_Pa=3.0e6", "fluid.inlet={start_Pa=2.0e6,rate_Pa_s=0}
 
 def ring_of(point: Point, prestress: bool) -> float:
     """K by J of a ring of the model, over the mean of those with prestress."""
-    model = Model(Setup())
     P = 2.3e6
-    u = solve(model, P, True)
-    wanted = float(np.mean([J_integral(model, u, P, radius, True) for radius in (2.0, 3.0, 4.0)]))
-    return (J_integral(model, solve(model, P, prestress), P, point.value, prestress) / wanted) ** 0.5
+    u = solve(P, True)
+    wanted = float(np.mean([J_integral(u, P, radius, True) for radius in (2.0, 3.0, 4.0)]))
+    return (J_integral(solve(P, prestress), P, point.value, prestress) / wanted) ** 0.5
 
 
 def with_prestress(point: Point) -> Checked:

@@ -7,7 +7,7 @@ from verification.harness.given import crack_ends, given, half_length, path_key,
 from verification.harness.load import Run
 from verification.harness.reference import value
 from verification.ladder.cases.interfaces import Reference, bonded, springs
-from verification.stability.cracks import AT_REST, CRACK, HALF_LENGTH_M, MIDDLE_M, NET_PA, SETTLING, griffith_K, parted, upright
+from verification.stability.cracks import AT_REST, CRACK, MIDDLE_M, NET_PA, SETTLING, griffith_K, parted, upright
 from verification.stability.family import MARKED, At, Check, Checked, Edge, Family, Parameter, at_values, close, tip_is_near, walked
 
 SECTION = "Tips: within a cell, near an interface, near an edge"
