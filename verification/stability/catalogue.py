@@ -25,7 +25,7 @@ def check(family: Family) -> None:
         f"beyond must be any of {', '.join(SAFE)}": not family.beyond or set(family.beyond) - set(SAFE),
         f"before must be {STABLE}, or {MARKED} for a reason": not family.before or set(family.before) - {STABLE, MARKED},
         "an edge needs points at any value, or a reader": family.edge is not None and not (family.edge.at or family.edge.read),
-        f"sections.toml says nothing of {family.section!r}": family.section and not family.about,
+        f"words.toml says nothing of {family.section!r}": family.section and not family.about,
         "one to three points are to be run in ci/test": not 1 <= sum(point.smoke for point in family.points) <= 3,
     }
     for point in family.points:

@@ -34,9 +34,9 @@ LEAST_REFUSED = 0.9  # no check may hold for a value that is off by more than th
 
 
 @lru_cache(maxsize=None)
-def sections() -> dict[str, str]:
-    """What is said of each section, by its heading."""
-    return tomllib.loads((SCENES.parent / "sections.toml").read_text(encoding="utf-8"))
+def words() -> dict[str, dict[str, str]]:
+    """What the page says of sections, by their headings, and of families, by their names."""
+    return tomllib.loads((SCENES.parent / "words.toml").read_text(encoding="utf-8"))
 
 
 @dataclass(frozen=True)
@@ -145,7 +145,7 @@ def tip_is_near(run: Run) -> str:
 class Family:
     """A known failure, walked across. beyond: what strata does beyond the edge, any of SAFE; without an edge all points must be so.
 
-    section: families of the same section (of sections.toml) share a heading, what is said below it, and a figure. check_name: what is on
+    section: families of the same section (of words.toml) share a heading, what is said below it, and a figure. check_name: what is on
     the figure's vertical axis. flag: words for a completed run that is marked otherwise than by `suspect`. ways: other programs
     than strata by name, each giving what the check would.
     """
@@ -163,12 +163,16 @@ class Family:
     flag: Callable[[Run], str] = lambda _: ""
     ways: Mapping[str, Callable[[Point], Checked]] = field(default_factory=dict)
     before: tuple[str, ...] = (STABLE,)  # outcomes of points before the edge, which bisection takes as sound: with MARKED only for a reason
-    remark: str = ""  # what the walk showed, in words, for the page
 
     @property
     def about(self) -> str:
         """What is said below the heading of its section."""
-        return sections().get(self.section, "")
+        return words()["section"].get(self.section, "")
+
+    @property
+    def remark(self) -> str:
+        """What the walk showed."""
+        return words()["remark"].get(self.name, "")
 
 
 class BadFamily(ValueError):

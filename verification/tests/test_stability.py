@@ -8,6 +8,7 @@ import pytest
 from verification.harness.paths import solver
 from verification.stability import store
 from verification.stability.catalogue import families
+from verification.stability.family import words
 from verification.stability.judge import changes, problems, side
 from verification.stability.runner import walk
 
@@ -44,8 +45,9 @@ def test_smoke_points_are_on_both_sides() -> None:
 
 
 def test_no_record_is_left_over() -> None:
-    """Every record belongs to a family."""
-    assert {path.stem for path in store.RECORDS.glob("*.json")} - set(FAMILIES) == set()
+    """Every record belongs to a family, and so does what the page says of sections and families."""
+    assert {path.stem for path in store.RECORDS.glob("*.json")} | set(words()["remark"]) <= set(FAMILIES)
+    assert set(words()["section"]) == {family.section for family in FAMILIES.values()}
 
 
 def test_every_family_has_points_whose_check_holds() -> None:

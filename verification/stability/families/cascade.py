@@ -21,12 +21,6 @@ SWING_S = 1.8  # from the failure to the end of the runs, at least: more than a 
 TOLERANCE = 0.03
 DAMPED_RATIO = 1.2
 SECTION = "Sudden failure of a weak interface"
-REMARK = (
-    "Between the two edges a run with inertia breaks the foot and one without does not. Each is right in its own sense: a bond that lets go at once in rock"
-    " that damps nothing sends its load on as a wave, however slowly it was loaded; the quasi-static answer is that of rock which loses this energy as fast"
-    " as it is released. No monitor marks either: all energy is accounted for, and the kinetic share is that of any free vibration. A scene that means slow"
-    " loading of rock that damps is solved quasi-statically, or with damping_1_s beyond the edge of the walk over damping."
-)
 
 
 @lru_cache
@@ -151,7 +145,7 @@ def edge(source: str, predicted: Callable[[], float], read: Callable[[Mapping[st
 
 FAMILIES = (
     family("", "blocks alike, with inertia", "With inertia the foot fails too unless it is stronger by the swing of two like blocks.", STRENGTH,
-           walked(over_strength(), (1.05, 1.2, 1.3, 1.36, 1.375, 1.385, 1.4, 1.45, 1.7), smoke=(1.3, 1.45)), swung, remark=REMARK,
+           walked(over_strength(), (1.05, 1.2, 1.3, 1.36, 1.375, 1.385, 1.4, 1.45, 1.7), smoke=(1.3, 1.45)), swung,
            edge=edge(f"With inertia: {TWO_MODES} 5/2, or 3/2 for the light block.", lambda: most(chain(""), 0.0, SWING_S))),
     family("_light", "a light block on a heavy one, with inertia", "A light block tuned to a heavy one throws 2.6 times the load that was there onto the foot.",
            STRENGTH, walked(over_strength("light"), (1.1, 1.5, 2.0, 2.4, 2.54, 2.58, 2.62, 2.7, 3.0), smoke=(2.0,)), swung,

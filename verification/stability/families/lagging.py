@@ -56,8 +56,6 @@ LAG = Family(
         *(Point(f"model, steps held back by nothing, {every:g} s", every, CRACK, program="model", smoke=every == 2.0) for every in (0.5, 2.0)),
     ),
     tip_pressure, check_name="net pressure at the tip, relative difference", ways={"model": held_by_nothing}, section="Permeability while the fracture opens",
-    remark="The same holds where the fracture grows: Experiment 1 starts and ends within 0.01 % of the pressure that steps a third as long give, and at"
-           " ten times the study's viscosity starts at a net pressure 0.2 % above.",
 )  # fmt: skip
 
 # --- flow and rock together
@@ -94,7 +92,6 @@ TOGETHER = Family(
     "Runs under reynolds whose step control is off follow the crack within 8 % at steps by which a lagged scheme makes errors of 600 times their size.",
     Parameter("longest step", "s", log=True), walked(at_values(CRACK, coupled, "{:g} s"), (0.1, 1.0, 10.0, 100.0), smoke=(1.0,)), mean_opening, beyond=(STABLE,),
     check_name="growth of the mean opening, relative difference", section="Flow that conserves mass, with the rock",
-    remark="The model's lagged step lets errors grow at any step below 167 s, the more the shorter it is; there is no step short enough.",
 )  # fmt: skip
 
 FAMILIES = (LAG, TOGETHER)

@@ -16,7 +16,6 @@ MOST_DRIFT = 0.01  # of the energy in 1e5 steps: what the mean over half a thous
 HELD = Block("bspline2", 2, CELLS, True)
 
 
-
 def point(label: str, value: float, way: str, steps: float, rows: int, smoke: bool, *keys: str) -> Point:
     """A run of so many steps in the held block by a transfer (or total), with so many rows of history."""
     time_s = steps * STEP_S

@@ -75,15 +75,13 @@ def edge(source: str, point: At) -> Edge:
     return Edge(f"No theory: {source} is measured.", at=point, bracket=(0.5, 0.25), unsound_above=False, by_check=True)
 
 
-def place(
-    name: str, title: str, says: str, variant: str, check: Callable[[Run], Checked], check_name: str, *keys: str, remark: str = ""
-) -> Family:
+def place(name: str, title: str, says: str, variant: str, check: Callable[[Run], Checked], check_name: str, *keys: str) -> Family:
     """A family over the tip's place."""
     point = at(variant, *keys)
     return Family(
         name, title, says, Parameter("tip beyond the interface", "cells"),
         walked(point, PLACES, smoke=(0.0, 0.25, 3.0), beyond=lambda cells: unsound(cells, variant)), check, beyond=(MARKED,), before=(STABLE, MARKED),
-        flag=tip_is_near, section=SECTION, check_name=check_name, remark=remark,
+        flag=tip_is_near, section=SECTION, check_name=check_name,
         edge=edge("how near the interface a tip is told apart from one on it", point),
     )  # fmt: skip
 
@@ -101,16 +99,12 @@ FAMILIES = (
     place("cut_start", "First growth beyond a soft interface",
           "Half a cell and more beyond, K reaches K_Ic at the pressure of the reference within 5 %. On the interface, and where the tip"
           " comes to it from a cell below or farther, it is the pressure of an increment of two cells.",
-          "grows", leaves, "relative error of the pressure", "fracture.crossing_increment_m=2.0", "fracture.increment_m=1.0",
-          remark="From nearer below than half its length, here a cell, the increment goes past the interface at once, for a fifth of the"
-                 " pressure that it asks for from the interface: most of the energy is that of cutting the rock behind."),
+          "grows", leaves, "relative error of the pressure", "fracture.crossing_increment_m=2.0", "fracture.increment_m=1.0"),
     Family(
         "cut_increments", "A tip on the interface that goes on by a finite increment",
         "Half a cell and more at once: the pressure is that of the increment within a tenth. Less releases too much.",
         Parameter("increment", "cells", log=True), walked(BY_INCREMENT, (0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0), smoke=(0.25, 2.0)), leaves,
         beyond=(MARKED,), before=(STABLE, MARKED), flag=tip_is_near, section=SECTION, check_name="relative error of the pressure",
         edge=edge("how short an increment releases what it should", BY_INCREMENT),
-        remark="Marked is what ends nearer than 4 cells to the interface. A run that goes on past that says nothing of an increment of"
-               " less than half a cell.",
     ),
 )  # fmt: skip
