@@ -45,9 +45,6 @@ def gated(rows: list[Row]) -> dict[str, gates.Gates]:
     return now
 
 
-# Samples.
-
-
 def test_errors_of_samples() -> None:
     assert Sample.of(1.1, 1.0).error() == pytest.approx(0.1) and Sample.of(0.9, 1.0).error() == pytest.approx(-0.1)
     assert Sample.of(-0.9, -1.0).error() == pytest.approx(0.1), "signed as value less exact, by the size of the exact one"
@@ -64,9 +61,6 @@ def test_mutants_of_samples_are_far_off() -> None:
     field = Sample(np.array([3.0, 4.0]), np.array([3.0, 4.0])).mutants()
     assert field == {"zero": pytest.approx(1.0), "twice": pytest.approx(1.0), "flipped sign": pytest.approx(2.0)}
     assert Sample.of(1e-3, 0.0, scale=10.0).mutants() == {"off by its scale": pytest.approx(1.0001)}
-
-
-# Gates.
 
 
 @pytest.mark.parametrize("no_order", ["", "the reference's own error is as large"])
@@ -90,34 +84,21 @@ def test_gates_of_round_off_have_a_floor(error: float, allowed: float) -> None:
     assert gates.gate_of("round-off: exact on any mesh", error, None, MUTANTS).error == pytest.approx(allowed)
 
 
-@pytest.mark.parametrize(
-    ("no_order", "error", "order", "why"),
-    [
-        ("", math.nan, None, "error is nan"),
-        ("", 0.9, None, "so large that zero, twice would pass"),
-        ("", 0.68, None, "so large that zero would pass"),
-        ("", 1e-3, 0.3, "no convergence"),
-        ("", 1e-3, -0.6, "no convergence"),
-        ("", 1e-3, math.nan, "no convergence"),
-        ("", 1e-15, None, "is round-off"),
-        ("round-off", 4e-7, None, "no round-off"),
-    ],
-)
+@pytest.mark.parametrize(("no_order", "error", "order", "why"), [
+    ("", math.nan, None, "error is nan"), ("", 0.9, None, "so large that zero, twice would pass"), ("", 0.68, None, "so large that zero would pass"),
+    ("", 1e-3, 0.3, "no convergence"), ("", 1e-3, -0.6, "no convergence"), ("", 1e-3, math.nan, "no convergence"),
+    ("", 1e-15, None, "is round-off"), ("round-off", 4e-7, None, "no round-off"),
+])  # fmt: skip
 def test_what_no_gate_can_be_made_of(no_order: str, error: float, order: float | None, why: str) -> None:
     with pytest.raises(CannotAccept, match=why):
         gates.gate_of(no_order, error, order, MUTANTS)
 
 
-@pytest.mark.parametrize(
-    ("gate", "round_off", "why"),
-    [
-        (Gate(0.0151, 0.01), False, "more than 1.5 times"),
-        (Gate(0.015, 0.01, 0.69, 1.0), False, "below the measured"),
-        (Gate(0.015, 0.01, 0.7, None), False, "without"),
-        (Gate(1e-5, 1e-15), True, "no gate of round-off"),
-        (Gate(1e-12, 1e-15), False, "more than 1.5 times"),
-    ],
-)
+@pytest.mark.parametrize(("gate", "round_off", "why"), [
+    (Gate(0.0151, 0.01), False, "more than 1.5 times"), (Gate(0.015, 0.01, 0.69, 1.0), False, "below the measured"),
+    (Gate(0.015, 0.01, 0.7, None), False, "without"), (Gate(1e-5, 1e-15), True, "no gate of round-off"),
+    (Gate(1e-12, 1e-15), False, "more than 1.5 times"),
+])  # fmt: skip
 def test_gates_widened_by_hand_are_seen(gate: Gate, round_off: bool, why: str) -> None:
     assert why in gates.too_wide(gate, round_off)
     rows = ladder_of(gate.measured, no_order="round-off" if round_off else "")
@@ -148,9 +129,6 @@ def test_changed_gates_are_told_and_wider_ones_marked() -> None:
     assert gates.changes(now, now) == []
 
 
-# Verdicts.
-
-
 def test_what_was_accepted_passes_and_refuses_its_mutants() -> None:
     rows = judged(ladder_of(0.04, 0.021, 0.005), gated(ladder_of(0.04, 0.021, 0.005)))
     assert [row.verdict for row in rows] == ["pass"] * 3
@@ -159,18 +137,12 @@ def test_what_was_accepted_passes_and_refuses_its_mutants() -> None:
     assert found.words() == "3 comparisons: 3 pass; 5 gates, 11 mutants, all refused"
 
 
-@pytest.mark.parametrize(
-    ("errors", "why"),
-    [
-        ((0.04, 0.0201, 0.0076), "error 0.0076 above 0.0075"),
-        ((0.04, 0.0201, 0.00701), "order 1.52 below 1.71"),  # half an order lost
-        ((0.04, 0.0201, -0.005), "changes its sign"),
-        ((0.04, 0.0201, math.nan), "above"),
-    ],
-)
-def test_what_went_wrong_fails(errors: tuple[float, ...], why: str) -> None:
-    known = gated(ladder_of(0.04, 0.0201, 0.005))
-    rows = judged(ladder_of(*errors), known)
+@pytest.mark.parametrize(("finest", "why"), [
+    (0.0076, "error 0.0076 above 0.0075"), (0.00701, "order 1.52 below 1.71"),  # half an order lost
+    (-0.005, "changes its sign"), (math.nan, "above"),
+])  # fmt: skip
+def test_what_went_wrong_fails(finest: float, why: str) -> None:
+    rows = judged(ladder_of(0.04, 0.0201, finest), gated(ladder_of(0.04, 0.0201, 0.005)))
     assert rows[2].verdict == "FAIL" and why in "; ".join(rows[2].problems)
 
 
@@ -244,8 +216,6 @@ def test_a_failed_level_takes_the_order_with_it_and_keeps_its_gate() -> None:
     now, refused = accepted(rows, known)
     assert now == known and len(refused) == 2
 
-
-# From runs to verdicts.
 
 SCENE = 'title = "made up"\n[numerics]\ncell_m = 1.0\n'
 
@@ -413,19 +383,12 @@ def test_the_command_with_nothing_to_judge_is_no_pass(tmp_path: Path, ladder: Fa
         asked(tmp_path, "--jobs", "0")
 
 
-@pytest.mark.parametrize(
-    ("change", "why"),
-    [
-        ({"levels": ()}, "no levels"),
-        ({"levels": cell_levels(1.0, 2.0)}, "do not fall"),
-        ({"levels": (Level("a", 1.0), Level("a", 0.5))}, "same name"),
-        ({"quantities": ()}, "no levels or no quantities"),
-        ({"smoke": 3}, "3 smoke levels of 2"),
-        ({"smoke": 0}, "0 smoke levels"),
-        ({"scene": Path("nowhere.toml")}, "no scene"),
-        ({"quantities": (Quantity("mouth", "m", mouth, no_order_at={"4 m": "why"}),)}, "names no level: 4 m"),
-    ],
-)
+@pytest.mark.parametrize(("change", "why"), [
+    ({"levels": ()}, "no levels"), ({"levels": cell_levels(1.0, 2.0)}, "do not fall"), ({"levels": (Level("a", 1.0), Level("a", 0.5))}, "same name"),
+    ({"quantities": ()}, "no levels or no quantities"), ({"smoke": 3}, "3 smoke levels of 2"), ({"smoke": 0}, "0 smoke levels"),
+    ({"scene": Path("nowhere.toml")}, "no scene"),
+    ({"quantities": (Quantity("mouth", "m", mouth, no_order_at={"4 m": "why"}),)}, "names no level: 4 m"),
+])  # fmt: skip
 def test_cases_that_cannot_be_judged_are_refused(a_case: Case, change: dict[str, object], why: str) -> None:
     catalogue.check("fam", (a_case,))
     with pytest.raises(BadCase, match=why):

@@ -47,27 +47,14 @@ def test_a_sound_record_passes() -> None:
     assert problems(a_walk(), recorded()) == []
 
 
-@pytest.mark.parametrize(
-    ("record", "said"),
-    [
-        (recorded("ssfx"), "2: garbage"),
-        (recorded("sxff"), "0.9: garbage"),
-        (recorded("ssfs"), "2: stable beyond the edge"),
-        (recorded("ssfr"), "2: refused beyond the edge"),
-        (recorded("ssfm"), "2: marked beyond the edge"),
-        (recorded("sfff"), "0.9: failed before the edge"),
-        (recorded("smff"), "0.9: marked before the edge"),
-        (recorded(measured=1.05), "+5.0 % off"),
-        (recorded(measured=0.95), "-5.0 % off"),
-        (recorded(measured=0.0), "-100.0 % off"),
-        (recorded(measured=2.0), "+100.0 % off"),
-        (recorded(measured=-1.0), "-200.0 % off"),
-        (recorded(measured=math.nan), "nan"),
-        (recorded(measured=None), "not found"),
-        (recorded("ssf"), "2: not measured"),
-        (None, "never measured"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("record", "said"), [
+    (recorded("ssfx"), "2: garbage"), (recorded("sxff"), "0.9: garbage"), (recorded("ssfs"), "2: stable beyond the edge"),
+    (recorded("ssfr"), "2: refused beyond the edge"), (recorded("ssfm"), "2: marked beyond the edge"),
+    (recorded("sfff"), "0.9: failed before the edge"), (recorded("smff"), "0.9: marked before the edge"),
+    (recorded(measured=1.05), "+5.0 % off"), (recorded(measured=0.95), "-5.0 % off"), (recorded(measured=0.0), "-100.0 % off"),
+    (recorded(measured=2.0), "+100.0 % off"), (recorded(measured=-1.0), "-200.0 % off"), (recorded(measured=math.nan), "nan"),
+    (recorded(measured=None), "not found"), (recorded("ssf"), "2: not measured"), (None, "never measured"),
+])  # fmt: skip
 def test_what_is_not_as_declared_is_refused(record: Record | None, said: str) -> None:
     """Garbage anywhere, other outcomes than declared on either side, an edge 5 % off, an edge or a point that was not measured."""
     assert any(said in problem for problem in problems(a_walk(), record)), problems(a_walk(), record)
