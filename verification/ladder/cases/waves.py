@@ -1,6 +1,8 @@
 """Waves along a column of rock from a pulse of velocity: plane, through a border of rocks or a soft interface, in a thin bar."""
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from verification.harness.given import given, rock
@@ -18,21 +20,16 @@ VELOCITY_M_S = 0.1
 CELLS, COURANT = (0.25, 0.125, 0.0625), (0.5, 0.5, 0.5)
 
 
-def column(run: Run) -> dict[str, float | str]:
+def column(run: Run) -> dict[str, Any]:
     """The run's column as strata-reference takes it."""
     thickness = [float(layer["thickness_m"]) for layer in run.scene["strata"]["layers"][:-1]]
     thickness.append(given(run, "domain.height_m") - sum(thickness))
     rocks = [rock(run, layer, density=True) for layer in range(len(thickness))]
-    settings: dict[str, float | str] = {key: listed([one[key] for one in rocks]) for key in rocks[0]}
+    settings: dict[str, Any] = {key: [one[key] for one in rocks] for key in rocks[0]}
     interfaces = [name for name in run.scene["strata"].get("interfaces", []) if name != "perfect"]
     if interfaces:
         settings["spring_Pa_m"] = given(run, f"interface.{interfaces[0]}.normal_stiffness_Pa_m")
-    return settings | {"thickness_m": listed(thickness), "bottom": "held", "top": "free"}
-
-
-def listed(numbers: list[float]) -> str:
-    """Numbers as a list of strata-reference."""
-    return ",".join(repr(number) for number in numbers)
+    return settings | {"thickness_m": thickness, "bottom": "held", "top": "free"}
 
 
 def pulse(run: Run) -> dict[str, float | str]:
