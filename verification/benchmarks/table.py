@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from verification.benchmarks.figure import Figure
 from verification.benchmarks.judge import BAD, BAND, NEW, Line, Mark
 from verification.benchmarks.records import Record
+from verification.harness.table import aligned
 
 STEP = "particle-step"
 
@@ -55,14 +56,8 @@ HEADER = ["figure", "cost", "spread", "of peak", "of stream", "now/then", ""]
 
 
 def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """Columns under their headings, the first flush left."""
-    widths = [max(len(row[k]) for row in [header, *rows]) for k in range(len(header))]
-
-    def line(cells: Sequence[str]) -> str:
-        rest = [cell.rjust(width) for cell, width in zip(cells[1:-1], widths[1:-1])]
-        return "  ".join([cells[0].ljust(widths[0]), *rest, cells[-1]]).rstrip()
-
-    return [line(header), *(line(row) for row in rows)]
+    """Columns under their headings, the first and the last flush left."""
+    return aligned([header, *rows], range(1, len(header) - 1))
 
 
 def calibration_line(record: Record) -> str:

@@ -18,6 +18,8 @@ from verification.harness.observables import (
     nothing, path_length, pressure_at_height, resample, start_Pa,
 )  # fmt: skip
 
+NO_ARREST = "no arrest"  # the flag of a pause that is none
+
 # A pause over which the inlet rises by this is an arrest (the solver's own word for it), Pa.
 ARREST_PA = 0.05e6
 
@@ -90,7 +92,7 @@ def _of_pause(interface: int, number: Callable[[Pause, float], Measured]) -> Cal
         value = number(found, last_Pa)
         if min(found.to_Pa, last_Pa) - found.from_Pa >= ARREST_PA:
             return value
-        return Measured(value.low, value.high, value.note, (*value.flags, "no arrest"))
+        return Measured(value.low, value.high, value.note, (*value.flags, NO_ARREST))
 
     return measure
 
@@ -136,6 +138,12 @@ def quantities_of(content: dict[str, Any], heights_m: Sequence[float] = HEIGHTS_
 def _at(height_m: float) -> Callable[[Run], Measured]:
     """Pressure at a height."""
     return lambda run: pressure_at_height(run, height_m)
+
+
+def lack_words(measured: Measured, run: Run, unit: str) -> str:
+    """Why a run has no value of a quantity, with the bound that it leaves."""
+    bound = f", at least {measured.low:.6g} {unit}" if math.isfinite(measured.low) else ""
+    return f"{measured.note.removeprefix(run.name).strip()}{bound}"
 
 
 def turns(content: dict[str, Any]) -> bool:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from verification.harness.choose import twice
 from verification.harness.load import Run
 from verification.ladder.case import Level, Sample
 
@@ -113,30 +114,25 @@ class BadProblem(Exception):
 
 def checked(problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
     """The problems, if names are unique, sizes fall and limits name a method; raises BadProblem otherwise."""
-    _unique("problems", [problem.name for problem in problems])
-    _unique("quantities", [wanted.name for problem in problems for wanted in problem.wanted])
+    names = {"problems": [problem.name for problem in problems], "quantities": [wanted.name for problem in problems for wanted in problem.wanted]}
     for problem in problems:
-        _unique(f"{problem.name}: methods", [method.name for method in problem.methods])
+        names[f"{problem.name}: methods"] = own = [method.name for method in problem.methods]
         for method in problem.methods:
             where = f"{problem.name}/{method.name}"
-            _unique(f"{where}: levels", [level.label for level in method.levels])
+            names[f"{where}: levels"] = [level.label for level in method.levels]
             sizes = [level.size for level in method.levels]
             if not sizes or any(fine >= coarse for coarse, fine in zip(sizes, sizes[1:])):
                 raise BadProblem(f"{where}: sizes {sizes} do not fall")
             if isinstance(method.source, Path) and not method.source.is_file():
                 raise BadProblem(f"{where}: no scene {method.source}")
         for wanted in problem.wanted:
-            for name in filter(None, (wanted.limit_of, wanted.steps_of)):
-                if all(method.name != name for method in problem.methods):
-                    raise BadProblem(f"{problem.name}: {wanted.name} is to be the limit of {name}, which is no method")
+            lost = [name for name in (wanted.limit_of, wanted.steps_of) if name and name not in own]
+            if lost:
+                raise BadProblem(f"{problem.name}: {wanted.name} is to be the limit of {lost[0]}, which is no method")
+    for what, every in names.items():
+        if twice(every):
+            raise BadProblem(f"{what} of the same name: {', '.join(twice(every))}")
     return problems
-
-
-def _unique(what: str, names: list[str]) -> None:
-    """Raise BadProblem where a name stands twice."""
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise BadProblem(f"{what} of the same name: {', '.join(twice)}")
 
 
 def thinned(problem: Problem) -> Problem:

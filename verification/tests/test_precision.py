@@ -16,13 +16,12 @@ from verification.precision.__main__ import main
 from verification.precision.judge import (
     Panel, advice, cheapest, choice_for, judged, limit_of, nearest, panel_of, pareto, run_at,
 )  # fmt: skip
-from verification.precision.machine import Machine
 from verification.precision.problem import ELEMENTS, STRATA, BadProblem, Method, Problem, Setting, Wanted, checked
 from verification.precision.problems import PROBLEMS
 from verification.precision.store import FAILED, OK, REFUSED, Found, Point, Sheet
 
 SCENE = ANALYTIC / "static_quasistatic.toml"
-MACHINE = Machine("a processor", 2, "L1 1K", 8.0, "a system", "a compiler", "-O3", "0", "abc").as_json()
+MACHINE = {"processor": "a processor", "cores": 2, "caches": "L1 1K", "version": "0"}
 EXACT = 4.0
 
 
