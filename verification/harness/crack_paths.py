@@ -7,6 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from verification.harness.load import Array, LoadError, Run
+from verification.harness.observables import distances_to
 from verification.harness.reference import values
 
 INTERFACE_M = 5.0  # to the right of the first crack
@@ -73,12 +74,5 @@ def rise_at(path: Array, x_m: float) -> float:
 
 def farthest(path: Array, other: Array) -> float:
     """Largest distance of a path's points from a polyline (m), over the height and width that both have."""
-    last = np.hypot(*(other[-1] - other[0]))
-    return max(_distance(point, other) for point in path if np.hypot(*(point - path[0])) <= last)
-
-
-def _distance(point: Array, line: Array) -> float:
-    """Distance of a point from a polyline, m."""
-    start, along = line[:-1], np.diff(line, axis=0)
-    part = np.clip(np.sum((point - start) * along, axis=1) / np.sum(along**2, axis=1), 0.0, 1.0)
-    return float(np.min(np.hypot(*(point - start - part[:, None] * along).T)))
+    near = np.hypot(*(path - path[0]).T) <= np.hypot(*(other[-1] - other[0]))
+    return float(np.max(distances_to(path[near], other)))

@@ -1,7 +1,4 @@
-"""Runs one variant of a scene into a folder, unless that folder already holds the same run by the same solver.
-
-usage: python3 -m verification.harness.run SCENE --variant NAME --out DIR [--set KEY=VALUE]... [--force]
-"""
+"""Runs one variant of a scene into a folder, unless that folder already holds the same run by the same solver."""
 from __future__ import annotations
 
 import hashlib
@@ -10,7 +7,6 @@ import resource
 import shutil
 import signal
 import subprocess
-import sys
 import threading
 import time
 import tomllib
@@ -20,7 +16,6 @@ from pathlib import Path
 from typing import Any
 
 from verification.harness import store
-from verification.harness.command import command
 from verification.harness.paths import solver
 
 OUTCOME = "outcome.json"
@@ -197,22 +192,3 @@ def run(job: Job, binary: Path | None = None, force: bool = False, limit_s: floa
     outcome = Outcome(job.scene.stem, job.variant, status, exit_status, reason, wall_s, key, job.settings)
     store.write(outcome, job.out / OUTCOME)
     return outcome
-
-
-def main(arguments: list[str] | None = None) -> int:
-    """Run one job from the command line; exit status that of the solver."""
-    parser = command(Path(__file__).name, __doc__, "set")
-    parser.add_argument("scene", type=Path)
-    parser.add_argument("--variant", default="", help="a variant of the scene (default: the base scene)")
-    parser.add_argument("--out", type=Path, required=True, help="the run's folder")
-    parser.add_argument("--threads", type=int, default=1)
-    parser.add_argument("--force", action="store_true", help="run even if the folder holds the same run")
-    options = parser.parse_args(arguments)
-    outcome = run(Job(options.scene, options.variant, options.out, tuple(options.settings), options.threads), force=options.force)
-    how = "already done" if outcome.skipped else f"{outcome.wall_s:.1f} s"
-    print(f"{outcome.scene} {outcome.variant}: {outcome.status} ({how}) {outcome.reason}".rstrip())
-    return outcome.exit_status if outcome.exit_status >= 0 else 1
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -6,6 +6,7 @@ import threading
 from pathlib import Path
 from typing import Any
 
+from verification.harness import store
 from verification.harness.compare import Comparison, Expected, compare
 from verification.harness.load import Run, load
 from verification.harness.observables import path_length, resample
@@ -61,40 +62,32 @@ def settings_of(mechanics: str) -> tuple[str, ...]:
     return (f"numerics.mechanics={mechanics}", *SETTINGS)
 
 
-def arrest_values(found: Run) -> Values:
-    """Pressures (Pa) at which each arrest began and ended, named by the tip's height (m)."""
-    values: Values = {}
-    tolerance = PRESSURE_TOLERANCE_PA[found.summary.mechanics]
-    events = [event for event in found.summary.events if event.kind in ("arrest", "restart")]
-    for k, event in enumerate(events):
-        if event.kind != "arrest":
-            continue
-        after = events[k + 1] if k + 1 < len(events) else None
-        rise = (after.inlet_Pa if after else found.summary.inlet_Pa) - event.inlet_Pa
-        item = {"unit": "Pa", "tolerance": tolerance} | ({"optional": True} if rise < SURE_ARREST_PA else {})
-        height = f"{round(event.tip_y_m)}m"
-        values[f"arrest_at_{height}_Pa"] = {"value": round(event.inlet_Pa, 3), **item}
-        if after is not None:
-            values[f"restart_from_{height}_Pa"] = {"value": round(after.inlet_Pa, 3), **item}
-    return values
-
-
 def measured_values(found: Run) -> Values:
-    """Start, arrests, restarts, final height and points of the path, each with unit and tolerance."""
-    starts = [event for event in found.summary.events if event.kind == "start"]
-    values = arrest_values(found)
-    if starts:
-        tolerance = PRESSURE_TOLERANCE_PA[found.summary.mechanics]
-        values["start_Pa"] = {"value": round(starts[0].inlet_Pa, 3), "unit": "Pa", "tolerance": tolerance}
+    """Start, arrests and restarts (named by the tip's height), final height and points of the path, each with unit and tolerance."""
+    values: Values = {}
 
-    def put_length(name: str, value: float) -> None:
+    def pressure(name: str, value: float, sure: bool = True) -> None:
+        item = {"value": round(value, 3), "unit": "Pa", "tolerance": PRESSURE_TOLERANCE_PA[found.summary.mechanics]}
+        values[name] = item if sure else {**item, "optional": True}
+
+    def length(name: str, value: float) -> None:
         values[name] = {"value": round(value, 6), "unit": "m", "tolerance": LENGTH_TOLERANCE_M}
 
-    put_length("final_height_m", float(found.history["tip_y_m"].max()))
+    events = [event for event in found.summary.events if event.kind in ("arrest", "restart")]
+    for event, after in zip(events, [*events[1:], None]):
+        if event.kind != "arrest":
+            continue
+        sure = (after.inlet_Pa if after else found.summary.inlet_Pa) - event.inlet_Pa >= SURE_ARREST_PA
+        pressure(f"arrest_at_{round(event.tip_y_m)}m_Pa", event.inlet_Pa, sure)
+        if after is not None:
+            pressure(f"restart_from_{round(event.tip_y_m)}m_Pa", after.inlet_Pa, sure)
+    for event in [event for event in found.summary.events if event.kind == "start"][:1]:
+        pressure("start_Pa", event.inlet_Pa)
+    length("final_height_m", float(found.history["tip_y_m"].max()))
     quarter = path_length(found.path) / 4.0
     for k, (x, y) in enumerate(resample(found.path, quarter)[1:5] if quarter > 0.0 else [], 1):
-        put_length(f"path_{k}_x_m", float(x))
-        put_length(f"path_{k}_y_m", float(y))
+        length(f"path_{k}_x_m", float(x))
+        length(f"path_{k}_y_m", float(y))
     return values
 
 
@@ -127,10 +120,8 @@ def read_expected(mechanics: str, experiment: str) -> dict[str, Values]:
 
 def write_expected(mechanics: str, experiment: str, variants: dict[str, Values]) -> None:
     """Write the expected values of an experiment with the settings they belong to."""
-    content = {"experiment": experiment, "settings": list(settings_of(mechanics)), "variants": variants}
-    path = expected_file(mechanics, experiment)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    content = {"experiment": experiment, "settings": settings_of(mechanics), "variants": variants}
+    store.write(content, expected_file(mechanics, experiment))
 
 
 def measure_case(case: Case, stop: threading.Event | None = None) -> Values:

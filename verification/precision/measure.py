@@ -24,7 +24,7 @@ from verification.harness.paths import ROOT, reference_program, solver
 from verification.harness.run import Job, Timed, timed
 from verification.ladder.case import Level, Sample
 from verification.ladder.measure import summarised
-from verification.precision.problem import STRATA, Answer, Method, Problem, Wanted
+from verification.precision.problem import STRATA, Answer, Method, Problem
 from verification.precision.store import FAILED, OK, REFUSED, TOO_LONG, Found, Point
 
 RUNS = paths.RUNS / "precision"
@@ -85,12 +85,10 @@ def run_reference(method: Method, level: Level, limit_s: float) -> tuple[Answer,
     return {name: item["value"] for name, item in json.loads(said)["values"].items()}, times
 
 
-def found_by(wanted: Wanted, sample: Callable[[], Sample]) -> Found:
-    """A wanted number of a run; what keeps it from being measured is its failure."""
+def found_by(sample: Callable[[], Sample]) -> Found:
+    """A number of a run; what keeps it from being measured is its failure."""
     try:
         one = sample()
-        if wanted.limit_of:
-            return Found(float(one.values[0]))
         value, exact = summarised(one)
         error = one.error()
     except Exception as defect:  # a number that is not there must not cost the others theirs
@@ -111,13 +109,13 @@ def measured(problem: Problem, method: Method, level: Level, runs: Path = RUNS, 
         if method.program == STRATA:
             times = repeated(lambda: run_solver(job_of(method, level, folder), problem.limit_s), once)
             run = load(folder)
-            found = {one.name: found_by(one, lambda one=one: one.sample(run)) for one in problem.wanted}
+            found = {one.name: found_by(lambda one=one: one.sample(run)) for one in problem.wanted}
             about = run.summary
             point = replace(point, cells=about.cells, particles=about.particles, steps=about.steps, memory_MB=round(about.peak_memory_MB, 1))
         else:
             answer, _ = run_reference(method, level, problem.limit_s)
             times = repeated(lambda: run_reference(method, level, problem.limit_s)[1], once)
-            found = {one.name: found_by(one, lambda reads=one.answer: reads(answer)) for one in problem.wanted if one.answer is not None}
+            found = {one.name: found_by(lambda reads=one.answer: reads(answer)) for one in problem.wanted if one.answer is not None}
     except Failure as failure:
         return replace(point, status=failure.status, reason=str(failure), wall_s=(round(time.perf_counter() - start, 4),))
     except LoadError as failure:

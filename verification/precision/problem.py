@@ -77,9 +77,7 @@ class Method:
 class Wanted:
     """A number that a problem asks for: a panel of the chart.
 
-    sample: of a run (LoadError where there is none). answer: the same of what strata-reference says. Where the reference is the limit
-    of the sizes of a method (`limit_of`), samples hold values alone and errors are relative to limit - base; `steps_of` is that method with
-    steps of time twice as long.
+    sample: of a run (LoadError where there is none). answer: the same of what strata-reference says.
     """
 
     name: str  # unique over all problems, as in a file name
@@ -88,9 +86,6 @@ class Wanted:
     says: str  # what an error of 1 % is, and what the reference is
     sample: Callable[[Run], Sample]
     answer: Callable[[Answer], Sample] | None = None
-    limit_of: str = ""
-    steps_of: str = ""
-    base: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -113,10 +108,10 @@ class BadProblem(Exception):
 
 
 def checked(problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
-    """The problems, if names are unique, sizes fall and limits name a method; raises BadProblem otherwise."""
+    """The problems, if names are unique and sizes fall; raises BadProblem otherwise."""
     names = {"problems": [problem.name for problem in problems], "quantities": [wanted.name for problem in problems for wanted in problem.wanted]}
     for problem in problems:
-        names[f"{problem.name}: methods"] = own = [method.name for method in problem.methods]
+        names[f"{problem.name}: methods"] = [method.name for method in problem.methods]
         for method in problem.methods:
             where = f"{problem.name}/{method.name}"
             names[f"{where}: levels"] = [level.label for level in method.levels]
@@ -125,10 +120,6 @@ def checked(problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
                 raise BadProblem(f"{where}: sizes {sizes} do not fall")
             if isinstance(method.source, Path) and not method.source.is_file():
                 raise BadProblem(f"{where}: no scene {method.source}")
-        for wanted in problem.wanted:
-            lost = [name for name in (wanted.limit_of, wanted.steps_of) if name and name not in own]
-            if lost:
-                raise BadProblem(f"{problem.name}: {wanted.name} is to be the limit of {lost[0]}, which is no method")
     for what, every in names.items():
         if twice(every):
             raise BadProblem(f"{what} of the same name: {', '.join(twice(every))}")
@@ -137,7 +128,4 @@ def checked(problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
 
 def thinned(problem: Problem) -> Problem:
     """A problem with those methods and coarse levels alone that are enough to try the chart out."""
-    return replace(
-        problem, methods=tuple(replace(one, levels=one.levels[: one.quick]) for one in problem.methods if one.quick > 0),
-        wanted=tuple(one for one in problem.wanted if not one.limit_of),
-    )  # fmt: skip
+    return replace(problem, methods=tuple(replace(one, levels=one.levels[: one.quick]) for one in problem.methods if one.quick > 0))
