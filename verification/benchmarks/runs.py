@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from verification.benchmarks.figure import NONE, Figure
 from verification.harness.load import LoadError, Summary, read_summary
@@ -57,9 +58,10 @@ class Taken:
     summary: Summary | None
     problem: str = ""
 
-    def about(self) -> dict[str, int]:
-        """Size of the run."""
-        return {"particles": self.summary.particles, "steps": self.summary.steps} if self.summary is not None else {}
+
+def size_of(summary: Summary) -> dict[str, Any]:
+    """How large a run was."""
+    return {"particles": summary.particles, "steps": summary.steps}
 
 
 def take(setting: Setting, until: float = float("inf")) -> Taken:
@@ -168,8 +170,9 @@ def batch_figures(batch: Batch, rates: Rates, tell: Tell) -> list[Figure]:
     for runs in zip(*every):
         own = Figure(f"{batch.name}/{runs[0].setting.name}", "run", (), threads=JOBS, problem=next((run.problem for run in runs if run.problem), ""))
         if not own.problem:
-            seconds = tuple(run.summary.wall_s for run in runs if run.summary)
-            own = replace(own, values=seconds, about=runs[0].about(), peak_flop_s=peaks, stream_B_s=streams)
+            summaries = [run.summary for run in runs if run.summary is not None]
+            seconds, first = tuple(one.wall_s for one in summaries), summaries[0]
+            own = replace(own, values=seconds, about=size_of(first), peak_flop_s=peaks, stream_B_s=streams)
         figures.append(own)
     return figures
 
@@ -177,8 +180,8 @@ def batch_figures(batch: Batch, rates: Rates, tell: Tell) -> list[Figure]:
 # --- single runs
 
 
-def repeated(name: str, setting: Setting, repetitions: int, rates: Rates) -> tuple[Figure, Taken]:
-    """A run made so many times, after one that is not counted; its figure (seconds of the whole process) and the last of them.
+def repeated(name: str, setting: Setting, repetitions: int, rates: Rates, tell: Tell, about: Callable[[Summary], dict[str, Any]]) -> Figure:
+    """A run made so many times, after one that is not counted (seconds of the whole process), with what is told of the last of them.
 
     A run that is made once only, because it takes long, has none before it.
     """
@@ -188,10 +191,12 @@ def repeated(name: str, setting: Setting, repetitions: int, rates: Rates) -> tup
         taken.extend(take(setting) for _ in range(repetitions))
         return [one.seconds for one in taken[-repetitions:]]
 
-    if taken and taken[0].problem:
-        return Figure(name, "run", (), problem=taken[0].problem), taken[0]
-    figure = figure_beside(name, "run", again, rates)
-    return replace(figure, problem=taken[-1].problem), taken[-1]
+    failed = taken and taken[0].problem
+    figure = Figure(name, "run", ()) if failed else figure_beside(name, "run", again, rates)
+    last = taken[-1]
+    figure = replace(figure, problem=last.problem, about=about(last.summary) if last.summary is not None else {})
+    tell(f"{name}: {figure.problem or f'{figure.median:.3g} s'}")
+    return figure
 
 
 def crack_settings(quick: bool) -> dict[str, Setting]:
@@ -206,17 +211,13 @@ def crack_settings(quick: bool) -> dict[str, Setting]:
 def crack_figures(repetitions: int, quick: bool, rates: Rates, tell: Tell) -> list[Figure]:
     """Time of each setting, with the error of K_I against strata-reference's crack in a finite block."""
     exact = value("block_crack", "K_I", half_length_m=5.0, pressure_Pa=NET_PA, width_m=80.0, half_height_m=80.0)
-    figures = []
-    for name, setting in crack_settings(quick).items():
-        figure, last = repeated(name, setting, repetitions, rates)
-        if last.summary is not None:
-            found = last.summary.tips[0].K_I_Pa_sqrt_m
-            about = {"K_I": found, "reference": exact, "error": found / exact - 1.0, "particles": last.summary.particles,
-                     "solver_s": last.summary.wall_s}  # fmt: skip
-            figure = replace(figure, about=about)
-        tell(f"{name}: {figure.problem or f'{figure.median:.3f} s'}")
-        figures.append(figure)
-    return figures
+
+    def about(summary: Summary) -> dict[str, float]:
+        found = summary.tips[0].K_I_Pa_sqrt_m
+        error = found / exact - 1.0
+        return {"K_I": found, "reference": exact, "error": error, "particles": summary.particles, "solver_s": summary.wall_s}
+
+    return [repeated(name, setting, repetitions, rates, tell, about) for name, setting in crack_settings(quick).items()]
 
 
 def growth_figures(repetitions: int, quick: bool, rates: Rates, tell: Tell) -> list[Figure]:
@@ -225,9 +226,7 @@ def growth_figures(repetitions: int, quick: bool, rates: Rates, tell: Tell) -> l
     for cell in (4.0, 2.0) if quick else (2.0, 1.0, 0.5, 0.25):
         keys = ("numerics.mechanics=quasistatic", f"numerics.cell_m={cell:g}", f"numerics.far_cell_m={cell:g}", "fracture.increment_m=2")
         name, setting = f"whole/quasistatic/exp1_soft/cell{cell:g}m", Setting(EXPERIMENTS / "exp1_single_interface.toml", "soft", keys)
-        figure, last = repeated(name, setting, repetitions if cell >= 0.5 else 1, rates)
-        figures.append(replace(figure, about=last.about()))
-        tell(f"{name}: {figure.problem or f'{figure.median:.2f} s'}")
+        figures.append(repeated(name, setting, repetitions if cell >= 0.5 else 1, rates, tell, size_of))
     return figures
 
 

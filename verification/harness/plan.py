@@ -2,11 +2,9 @@
 from __future__ import annotations
 
 import argparse
-import math
 import sys
 import threading
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -16,64 +14,25 @@ from verification.harness.run import BAD_INPUT, Job, Outcome, done_before, key_o
 from verification.harness.scenes import content_of
 from verification.harness.side_by_side import Task, side_by_side
 
-# Particle-steps a second on one thread: explicit runs of the experiments did 3 to 12 million, quasi-static ones 1 to 5 million.
-SPEED = {"explicit": 8.0e6, "quasistatic": 2.0e6}
-
-# Steps of a quasi-static run an increment of growth: 7.5 in Experiment 1 with the study's flow, 5 to 20 elsewhere.
-STEPS_AN_INCREMENT = 8.0
+# By experience: a run of a block of 80 m with cells of 1 m takes 10 to 80 s with inertia, where steps shorten with the cells, and 1 to 7 s
+# without. Seconds a point of a uniform grid, with inertia those of cells of 1 m.
+SECONDS_A_POINT = {"explicit": 3.0e-3, "quasistatic": 2.6e-4}
 
 Made = tuple[Outcome, Run | None]  # how a run ended, and its data where it has any
 
 
-@dataclass(frozen=True)
-class Cost:
-    """An estimate: particles, steps, seconds on one thread."""
-
-    particles: float
-    steps: float
-    seconds: float
-
-
-def wave_speed(rock: dict[str, Any]) -> float:
-    """Speed of a P wave, m/s: sqrt(E (1 - nu)/((1 + nu)(1 - 2 nu) rho))."""
-    E, nu, rho = (float(rock.get(key, default)) for key, default in
-                  (("youngs_modulus_Pa", 1e10), ("poisson_ratio", 0.25), ("density_kg_m3", 2500.0)))  # fmt: skip
-    return math.sqrt(E * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu) * rho))
-
-
-def steps_of(content: dict[str, Any], mechanics: str) -> float:
-    """Steps of a run to its time or last pressure, by courant (explicit), or by experience of its increments (quasi-static)."""
-    numerics, stop, inlet = content["numerics"], content.get("stop", {}), content.get("fluid", {}).get("inlet", {})
-    if mechanics == "explicit":
-        longest = [float(stop["time_s"])] if "time_s" in stop else []
-        if "inlet_Pa" in stop and float(inlet.get("rate_Pa_s", 0.0)) > 0.0:
-            longest.append((float(stop["inlet_Pa"]) - float(inlet.get("start_Pa", 0.0))) / float(inlet["rate_Pa_s"]))
-        fastest = max(wave_speed(rock) for rock in content["rock"].values())
-        return min(longest, default=1.0) * fastest / (float(numerics.get("courant", 0.5)) * float(numerics["cell_m"]))
-    fracture = content.get("fracture", {})
-    tip = max((float(point[1]) for point in fracture.get("path_m", [])), default=0.0)
-    way = float(stop.get("tip_y_m", content["domain"]["height_m"])) - tip
-    return STEPS_AN_INCREMENT * max(way / float(fracture.get("increment_m", 1.0)), 1.0)
-
-
-def cost_of(content: dict[str, Any], mechanics: str) -> Cost:
-    """The cost of a scene (its keys as they will be used) on a uniform grid, which a graded one falls short of."""
+def about_s(content: dict[str, Any]) -> float:
+    """How long a scene (its keys as they will be used) takes on one thread, s, by the points of a uniform grid and their steps."""
     numerics, domain = content["numerics"], content["domain"]
-    cells = float(domain["width_m"]) * float(domain["height_m"]) / float(numerics["cell_m"]) ** 2
-    particles, steps = cells * float(numerics.get("particles_per_cell", 4)), steps_of(content, mechanics)
-    return Cost(particles, steps, particles * steps / SPEED[mechanics])
-
-
-def cost_to_make(job: Job) -> Cost:
-    """The cost of a job."""
-    content = content_of(job.scene, job.variant, job.settings)
-    return cost_of(content, str(content["numerics"]["mechanics"]))
+    cell, mechanics = float(numerics["cell_m"]), str(numerics.get("mechanics", "explicit"))
+    points = float(domain["width_m"]) * float(domain["height_m"]) / cell**2 * float(numerics.get("particles_per_cell", 4))
+    return SECONDS_A_POINT[mechanics] * points / (cell if mechanics == "explicit" else 1.0)
 
 
 def expected_s(job: Job) -> float:
     """How long a job will take on one thread, s: as long as the last time, or by what its scene says."""
     before = load_outcome(job.out)
-    return before.wall_s if before is not None and before.ok else cost_to_make(job).seconds
+    return before.wall_s if before is not None and before.ok else about_s(content_of(job.scene, job.variant, job.settings))
 
 
 def name_of(job: Job) -> str:
@@ -84,12 +43,11 @@ def name_of(job: Job) -> str:
 def affordable(jobs: Sequence[Job], options: argparse.Namespace) -> bool:
     """Print what the jobs that are still to be made will cost; whether they may be made, by options.limit (minutes) or options.yes."""
     binary = solver()
-    costs = [(job, cost_to_make(job)) for job in jobs if done_before(job, key_of(job, binary)) is None]
-    minutes = sum(cost.seconds for _, cost in costs) / 60.0 / max(options.jobs, 1)
+    costs = {job: expected_s(job) for job in jobs if done_before(job, key_of(job, binary)) is None}
+    minutes = sum(costs.values()) / 60.0 / max(options.jobs, 1)
     if costs:
-        print(f"{len(costs)} of {len(jobs)} runs to make, by estimate:")
-        for job, cost in costs:
-            print(f"  {name_of(job)}: {cost.particles:.3g} particles x {cost.steps:.3g} steps: {cost.seconds:.0f} s")
+        lines = [f"  {name_of(job)}: {seconds:.0f} s" for job, seconds in costs.items()]
+        print("\n".join([f"{len(costs)} of {len(jobs)} runs to make, by estimate:", *lines]))
         print(f"  together about {minutes:.1f} min with {options.jobs} at a time", flush=True)
     if minutes <= options.limit or options.yes:
         return True

@@ -20,7 +20,7 @@ from verification.benchmarks import machine
 from verification.harness.choose import beginnings
 from verification.harness.command import command
 from verification.harness.paths import reference_program, solver
-from verification.harness.plan import cost_of
+from verification.harness.plan import about_s
 from verification.harness.scenes import content_of
 from verification.ladder.case import Level
 from verification.precision import store
@@ -57,7 +57,7 @@ class Task:
         if self.method.setting.mechanics == "quasistatic":
             return self.problem.about_s * (self.method.levels[-1].size / self.level.size) ** 2
         content = content_of(self.method.source, self.level.variant, self.level.settings)
-        return min(cost_of(content, self.method.setting.mechanics).seconds, self.problem.limit_s)
+        return min(about_s(content), self.problem.limit_s)
 
     def expected_total_s(self, once: bool) -> float:
         """How long all runs of the point may take, s; one that failed before ends at its first."""
