@@ -10,9 +10,10 @@ from verification.ablation.ingredients import LEFT_OUT, Ingredient, ingredients_
 from verification.ablation.store import Table
 from verification.harness import paths
 from verification.harness.effects import followed
-from verification.harness.load import LoadError, Run, load
+from verification.harness.load import Run
+from verification.harness.plan import make
 from verification.harness.quantities import turns
-from verification.harness.run import Job, Outcome, run, timed
+from verification.harness.run import Job, Outcome, timed
 from verification.harness.scenes import content_of
 
 RUNS = paths.RUNS / "ablation"
@@ -30,11 +31,8 @@ class NoBase(Exception):
 
 def made(job: Job) -> tuple[Outcome, Run | None, float]:
     """Run a job anew: how it ended, its data if it has any, and its CPU time, s."""
-    outcome, (_, cpu) = timed(lambda: run(job, force=True, limit_s=LIMIT_S))
-    try:
-        return outcome, load(job.out), cpu
-    except LoadError:
-        return outcome, None, cpu
+    (outcome, found), (_, cpu) = timed(lambda: make(job, force=True, limit_s=LIMIT_S))
+    return outcome, found, cpu
 
 
 def table_of(
@@ -73,7 +71,7 @@ def _line(ingredient: Ingredient, job: Job, content: dict[str, Any], base: Run) 
     if ingredient.why_not:
         return tried(ingredient, "", "", ({}, {}), 0.0)
     outcome, found, cpu = made(job)
-    if found is None or outcome.word == "refused":
+    if found is None:
         return tried(ingredient, outcome.word if not outcome.ok else "failed", outcome.reason, ({}, {}), cpu)
     # Where the path may turn only the ways of both are compared, a straight one too.
     effects = effects_of(followed(content, base), turns(content), base, ingredient.view.of(found, base))

@@ -34,26 +34,21 @@ Tell = Callable[[str], None]
 # --- runs as a user makes them
 
 
-@dataclass(frozen=True)
-class Setting:
-    """A run to be made: a scene, its variant, further settings, threads."""
+def job_of(scene: Path, *settings: str, variant: str = "") -> Job:
+    """A run to be made, in a folder that is not kept."""
+    return Job(scene, variant, Path(), settings)
 
-    scene: Path
-    variant: str = ""
-    settings: tuple[str, ...] = ()
-    threads: int = 1
 
-    @property
-    def name(self) -> str:
-        """Scene and variant."""
-        return f"{self.scene.stem}/{self.variant or 'default'}"
+def name_of(job: Job) -> str:
+    """Scene and variant."""
+    return f"{job.scene.stem}/{job.variant or 'default'}"
 
 
 @dataclass(frozen=True)
 class Taken:
     """What a run took: seconds from start to end of the process; its summary, or why there is none."""
 
-    setting: Setting
+    job: Job
     seconds: float
     summary: Summary | None
     problem: str = ""
@@ -64,34 +59,34 @@ def size_of(summary: Summary) -> dict[str, Any]:
     return {"particles": summary.particles, "steps": summary.steps}
 
 
-def take(setting: Setting, until: float = float("inf")) -> Taken:
+def take(job: Job, until: float = float("inf")) -> Taken:
     """Make a run in a folder that is not kept; it is ended where time.monotonic() passes `until`."""
     left = until - time.monotonic()
     if left <= 0.0:
-        return Taken(setting, 0.0, None, "not begun: the time for these runs was over")
+        return Taken(job, 0.0, None, "not begun: the time for these runs was over")
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "run"
-        outcome = run(Job(setting.scene, setting.variant, out, setting.settings, setting.threads), limit_s=left if left < 1e9 else None)
+        outcome = run(replace(job, out=out), limit_s=left if left < float("inf") else None)
         if outcome.exit_status == TOO_LONG:
-            return Taken(setting, outcome.wall_s, None, "ended: the time for these runs was over")
+            return Taken(job, outcome.wall_s, None, "ended: the time for these runs was over")
         try:
             summary = read_summary(out / "summary.json")
         except LoadError:
-            return Taken(setting, outcome.wall_s, None, outcome.reason)
-    return Taken(setting, outcome.wall_s, summary, "" if outcome.ok else f"exit status {outcome.exit_status}: {summary.reason}")
+            return Taken(job, outcome.wall_s, None, outcome.reason)
+    return Taken(job, outcome.wall_s, summary, "" if outcome.ok else f"exit status {outcome.exit_status}: {summary.reason}")
 
 
-def take_all(settings: Sequence[Setting], jobs: int, limit_s: float, tell: Tell) -> tuple[float, list[Taken]]:
+def take_all(every: Sequence[Job], jobs: int, limit_s: float, tell: Tell) -> tuple[float, list[Taken]]:
     """Make runs side by side, for `limit_s` at most; seconds from the first's start to the last's end, and each run."""
     start = time.monotonic()
 
-    def one(setting: Setting) -> Taken:
-        taken = take(setting, start + limit_s)
-        tell(f"{setting.name}: {taken.problem or f'{taken.seconds:.2f} s'}")
+    def one(job: Job) -> Taken:
+        taken = take(job, start + limit_s)
+        tell(f"{name_of(job)}: {taken.problem or f'{taken.seconds:.2f} s'}")
         return taken
 
     with ThreadPoolExecutor(max_workers=jobs) as pool:
-        taken = list(pool.map(one, settings))
+        taken = list(pool.map(one, every))
     return time.monotonic() - start, taken
 
 
@@ -127,7 +122,7 @@ DEFAULT = (Batch("quasistatic", 1.0, 3, 120.0), Batch("explicit", 1.0, 1, 150.0)
 LONG = (Batch("quasistatic", 1.0, 5, 120.0), Batch("explicit", 1.0, 3, 3600.0), Batch("quasistatic", 0.25, 1, 1800.0))
 
 
-def settings_of(batch: Batch) -> list[Setting]:
+def jobs_of(batch: Batch) -> list[Job]:
     """The runs of a batch on the scenes' graded grids, those that take longest first.
 
     Below the scenes' cell size an interface that is weak fails as far as it is long (experiments/README.md, "What to expect"), so cells
@@ -139,7 +134,7 @@ def settings_of(batch: Batch) -> list[Setting]:
     for scene in sorted(EXPERIMENTS.glob(f"{batch.only}*.toml"), key=lambda scene: (scene.stem not in TURNING, scene.stem)):
         for variant in [name for name in variants_of(scene) if name in STUDY_VARIANTS]:
             fails = batch.cell_m < SHIPPED_M and "weak" in variant and scene.stem not in TURNING
-            runs.append(Setting(scene, variant, (*keys, *along) if fails else keys))
+            runs.append(job_of(scene, *keys, *(along if fails else ()), variant=variant))
     return runs
 
 
@@ -152,13 +147,13 @@ def batch_figures(batch: Batch, rates: Rates, tell: Tell) -> list[Figure]:
 
         def once() -> list[float]:
             nonlocal cpu_s
-            (seconds, taken), (_, cpu_s) = timed(lambda: take_all(settings_of(batch), JOBS, batch.limit_s, lambda words: tell(f"{batch.name}: {words}")))
+            (seconds, taken), (_, cpu_s) = timed(lambda: take_all(jobs_of(batch), JOBS, batch.limit_s, lambda words: tell(f"{batch.name}: {words}")))
             every.append(taken)
             return [seconds]
 
         wholes.append(figure_beside(batch.name, "all variants", once, rates, JOBS))
     last = every[-1]
-    problems = [f"{run.setting.name}: {run.problem}" for run in last if run.problem]
+    problems = [f"{name_of(run.job)}: {run.problem}" for run in last if run.problem]
     done = len(last) - len(problems)
     about = {"runs": len(last), "completed": done, "jobs": JOBS, "limit_s": batch.limit_s, "cpu_s": round(cpu_s, 2)}
     elapsed, peaks, streams = (tuple(getattr(one, name)[0] for one in wholes) for name in ("values", "peak_flop_s", "stream_B_s"))
@@ -168,7 +163,7 @@ def batch_figures(batch: Batch, rates: Rates, tell: Tell) -> list[Figure]:
         whole = replace(whole, values=(), peak_flop_s=(), stream_B_s=(), problem=problem)
     figures = [whole]
     for runs in zip(*every):
-        own = Figure(f"{batch.name}/{runs[0].setting.name}", "run", (), threads=JOBS, problem=next((run.problem for run in runs if run.problem), ""))
+        own = Figure(f"{batch.name}/{name_of(runs[0].job)}", "run", (), threads=JOBS, problem=next((run.problem for run in runs if run.problem), ""))
         if not own.problem:
             summaries = [run.summary for run in runs if run.summary is not None]
             seconds, first = tuple(one.wall_s for one in summaries), summaries[0]
@@ -180,15 +175,15 @@ def batch_figures(batch: Batch, rates: Rates, tell: Tell) -> list[Figure]:
 # --- single runs
 
 
-def repeated(name: str, setting: Setting, repetitions: int, rates: Rates, tell: Tell, about: Callable[[Summary], dict[str, Any]]) -> Figure:
+def repeated(name: str, job: Job, repetitions: int, rates: Rates, tell: Tell, about: Callable[[Summary], dict[str, Any]]) -> Figure:
     """A run made so many times, after one that is not counted (seconds of the whole process), with what is told of the last of them.
 
     A run that is made once only, because it takes long, has none before it.
     """
-    taken = [take(setting)] if repetitions > 1 else []
+    taken = [take(job)] if repetitions > 1 else []
 
     def again() -> list[float]:
-        taken.extend(take(setting) for _ in range(repetitions))
+        taken.extend(take(job) for _ in range(repetitions))
         return [one.seconds for one in taken[-repetitions:]]
 
     failed = taken and taken[0].problem
@@ -199,11 +194,11 @@ def repeated(name: str, setting: Setting, repetitions: int, rates: Rates, tell: 
     return figure
 
 
-def crack_settings(quick: bool) -> dict[str, Setting]:
+def crack_jobs(quick: bool) -> dict[str, Job]:
     """The pressurised crack in the block, as one equilibrium: uniform and graded grids."""
     sizes = {"uniform": (1.0,) if quick else (2.0, 1.0, 0.5), "graded": (0.5,) if quick else (1.0, 0.5, 0.25, 0.125)}
     return {
-        f"crack/{grid}/cell{cell:g}m": Setting(CRACK, "", (f"numerics.cell_m={cell:g}", *(["numerics.far_cell_m=8"] if grid == "graded" else [])))
+        f"crack/{grid}/cell{cell:g}m": job_of(CRACK, f"numerics.cell_m={cell:g}", *(["numerics.far_cell_m=8"] if grid == "graded" else []))
         for grid, cells in sizes.items() for cell in cells
     }  # fmt: skip
 
@@ -217,7 +212,7 @@ def crack_figures(repetitions: int, quick: bool, rates: Rates, tell: Tell) -> li
         error = found / exact - 1.0
         return {"K_I": found, "reference": exact, "error": error, "particles": summary.particles, "solver_s": summary.wall_s}
 
-    return [repeated(name, setting, repetitions, rates, tell, about) for name, setting in crack_settings(quick).items()]
+    return [repeated(name, job, repetitions, rates, tell, about) for name, job in crack_jobs(quick).items()]
 
 
 def growth_figures(repetitions: int, quick: bool, rates: Rates, tell: Tell) -> list[Figure]:
@@ -225,8 +220,8 @@ def growth_figures(repetitions: int, quick: bool, rates: Rates, tell: Tell) -> l
     figures = []
     for cell in (4.0, 2.0) if quick else (2.0, 1.0, 0.5, 0.25):
         keys = ("numerics.mechanics=quasistatic", f"numerics.cell_m={cell:g}", f"numerics.far_cell_m={cell:g}", "fracture.increment_m=2")
-        name, setting = f"whole/quasistatic/exp1_soft/cell{cell:g}m", Setting(EXPERIMENTS / "exp1_single_interface.toml", "soft", keys)
-        figures.append(repeated(name, setting, repetitions if cell >= 0.5 else 1, rates, tell, size_of))
+        name, job = f"whole/quasistatic/exp1_soft/cell{cell:g}m", job_of(EXPERIMENTS / "exp1_single_interface.toml", *keys, variant="soft")
+        figures.append(repeated(name, job, repetitions if cell >= 0.5 else 1, rates, tell, size_of))
     return figures
 
 
@@ -247,7 +242,7 @@ def memory_figures(quick: bool, tell: Tell) -> list[Figure]:
         for cells in (40, 80) if quick else MEMORY_CELLS:
             cell = 80.0 / cells
             few = f"{3 * 0.5 * cell / 2108.0:.6g}" if kind != "quasistatic" else "0"
-            taken.append(take(Setting(BLOCK, "", (*keys, f"numerics.cell_m={cell:g}", f"stop.time_s={few}", "output.fields_every_s=1"))))
+            taken.append(take(job_of(BLOCK, *keys, f"numerics.cell_m={cell:g}", f"stop.time_s={few}", "output.fields_every_s=1")))
         held = [(float(one.summary.particles), 1e6 * one.summary.peak_memory_MB) for one in taken if one.summary is not None]
         figures.append(memory_figure(f"memory/{kind}", held, next((one.problem for one in taken if one.problem), "")))
         tell(f"memory/{kind}: {figures[-1].problem or f'{figures[-1].median:.0f} B a point'}")

@@ -152,7 +152,7 @@ def budget_of(
     def tried(key: Key, label: str) -> Tried:
         outcome, run = made[key]
         short = "" if outcome.ok else "up to where the run failed"
-        effects = effects_of(quantities, with_path, base, run, short) if run is not None and outcome.word != "refused" else {}
+        effects = effects_of(quantities, with_path, base, run, short) if run is not None else {}
         return Tried(label, jobs[key].settings, outcome.word, outcome.reason, effects)
 
     lines = [Line(factor.id, factor.label, factor.group, tuple(tried((factor.id, one.id), one.label) for one in factor.alternatives), factor.why_not)

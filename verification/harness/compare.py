@@ -69,10 +69,3 @@ def require(*comparisons: Comparison) -> None:
     failed = [str(comparison) for comparison in comparisons if not comparison.passed]
     if failed:
         raise AssertionError("\n".join(failed))
-
-
-def observed_order(coarse_error: float, fine_error: float, ratio: float = 2.0) -> float:
-    """Order of convergence from two errors on meshes whose sizes differ by a ratio."""
-    if coarse_error == 0.0 or fine_error == 0.0:
-        return math.inf
-    return math.log(abs(coarse_error / fine_error)) / math.log(ratio)

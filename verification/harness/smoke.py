@@ -8,10 +8,11 @@ from typing import Any
 
 from verification.harness import store
 from verification.harness.compare import Comparison, Expected, compare
-from verification.harness.load import Run, load
+from verification.harness.load import Run
 from verification.harness.observables import path_length, resample
 from verification.harness.paths import EXPERIMENTS, RUNS
-from verification.harness.run import Job, run
+from verification.harness.plan import make
+from verification.harness.run import Job
 from verification.harness.scenes import MECHANICS, mechanics_of
 
 EXPECTED = EXPERIMENTS / "expected"
@@ -128,10 +129,9 @@ def measure_case(case: Case, stop: threading.Event | None = None) -> Values:
     """Run a case, unless it is there, and measure it; raises RuntimeError for a run that failed or was made in another mechanics."""
     mechanics, experiment, variant = case
     folder = SMOKE_RUNS.joinpath(*case)
-    outcome = run(Job(EXPERIMENTS / f"{experiment}.toml", variant, folder, settings_of(mechanics)), stop=stop)
-    if not outcome.ok:
+    outcome, found = make(Job(EXPERIMENTS / f"{experiment}.toml", variant, folder, settings_of(mechanics)), stop)
+    if found is None or not outcome.ok:
         raise RuntimeError(f"{'/'.join(case)}: {outcome.reason}")
-    found = load(folder)
     if found.summary.mechanics != mechanics:
         raise RuntimeError(f"{'/'.join(case)}: the solver ran {found.summary.mechanics}")
     return measured_values(found)

@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from verification.harness.compare import Expected, compare, observed_order, require, within
+from verification.harness.compare import Expected, compare, require, within
 
 
 def test_right_value_passes() -> None:
@@ -32,8 +32,3 @@ def test_expectations_that_zero_or_twice_would_pass_are_refused(value: float, to
 def test_all_failures_are_named_at_once() -> None:
     with pytest.raises(AssertionError, match="(?s)first.*second"):
         require(compare("first", 2.0, within(1.0, 0.1)), compare("good", 1.0, within(1.0, 0.1)), compare("second", 0.0, within(1.0, 0.1)))
-
-
-def test_observed_order() -> None:
-    assert observed_order(4.0, 1.0) == pytest.approx(2.0)
-    assert observed_order(1.0, 1.0) == pytest.approx(0.0)
