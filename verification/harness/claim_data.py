@@ -14,11 +14,8 @@ NOT_REPRODUCED = "not reproduced"
 ONLY_UNDER_A_VARIANT = "only under a variant"
 NOT_EVALUATED = "not evaluated"
 
-# An arrest or plateau that rests on J where an interface is too near for it to be trusted, and what becomes of the flag
-# where a quasi-static run decides the same case by energy.
+# The flag of an arrest or plateau that rests on J where an interface is too near for it to be trusted.
 BY_J = "J at interface"
-CONFIRMED = "J at interface, as energy decides"
-CONTRADICTED = "J at interface, energy decides otherwise"
 
 
 @dataclass(frozen=True)

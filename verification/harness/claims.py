@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -19,8 +19,7 @@ from typing import Any
 
 from verification.harness.choices import Choice, read_points
 from verification.harness.claim_data import (
-    BY_J, CONFIRMED, CONTRADICTED, NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, Case, CaseResult, ClaimResult,
-    Reading, read_claims, write_claims,
+    NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, Case, CaseResult, ClaimResult, Reading, read_claims, write_claims,
 )  # fmt: skip
 from verification.harness.command import command
 from verification.harness.load import OF_SPEEDS, LoadError, Run, load
@@ -115,11 +114,6 @@ def verdict_of(cases: Sequence[CaseResult], readings: Sequence[Reading]) -> str:
     return NOT_EVALUATED if holds is None and not all(case.evaluated for case in cases) else NOT_REPRODUCED
 
 
-def flags_of(cases: Iterable[CaseResult]) -> list[str]:
-    """The flags of all cases, each once."""
-    return list(dict.fromkeys(flag for case in cases for flag in case.flags))
-
-
 # --- readings
 
 
@@ -179,7 +173,7 @@ def evaluate(
     asked = [case_of(content, claim["observable"], where) for content in claim["case"]]
     cases = tuple(evaluate_case(case, experiment, runs) for case in asked)
     readings = readings_of(claim, asked, experiment, runs, choices, experiments)
-    verdict, holds, flags = verdict_of(cases, readings), all_hold(cases), flags_of(cases)
+    verdict, holds, flags = verdict_of(cases, readings), all_hold(cases), list(dict.fromkeys(flag for case in cases for flag in case.flags))
     if verdict == NOT_REPRODUCED and holds is None:
         flags.append("undecided: a run ended before it could show this")
     if verdict == REPRODUCED:
@@ -203,12 +197,8 @@ def evaluate_all(experiments: Path, runs_folder: Path, mechanics: str = MECHANIC
 def evaluate_each(experiments: Path, root: Path) -> list[ClaimResult]:
     """Evaluate the claims in each mechanics that has runs below root/MECHANICS/ (in the first where none has)."""
     present = [mechanics for mechanics in MECHANICS if (root / mechanics).is_dir()] or [MECHANICS[0]]
-    results = {mechanics: evaluate_all(experiments, root / mechanics, mechanics) for mechanics in present}
-    if set(MECHANICS) <= set(results):
-        by_energy = {result.id: result for result in results["quasistatic"]}
-        results["explicit"] = [confirmed(result, by_energy[result.id]) for result in results["explicit"]]
     finer = finer_of(experiments, root) or read_claims(experiments / FINER_RECORD)
-    return [result for mechanics in present for result in results[mechanics]] + finer
+    return [result for mechanics in present for result in evaluate_all(experiments, root / mechanics, mechanics)] + finer
 
 
 def finer_of(experiments: Path, root: Path) -> list[ClaimResult]:
@@ -228,22 +218,6 @@ def record_finer(experiments: Path, root: Path) -> Path:
     results = [replace(result, flags=(words, *result.flags)) for result in finer_of(experiments, root)]
     write_claims(results, experiments / FINER_RECORD)
     return experiments / FINER_RECORD
-
-
-def confirmed(result: ClaimResult, by_energy: ClaimResult) -> ClaimResult:
-    """A claim whose cases that rest on J at an interface say whether the other mechanics decides them alike by energy."""
-    cases = tuple(_confirmed(case, other) for case, other in zip(result.cases, by_energy.cases))
-    flags = flags_of(cases)
-    rest = [flag for flag in result.flags if flag not in flags and flag != BY_J]
-    return replace(result, cases=cases, flags=(*flags, *rest))
-
-
-def _confirmed(case: CaseResult, other: CaseResult) -> CaseResult:
-    """One case with its flag replaced where the other decides by energy."""
-    if BY_J not in case.flags or not other.evaluated or BY_J in other.flags or other.holds is None or case.holds is None:
-        return case
-    word = CONFIRMED if case.holds == other.holds else CONTRADICTED
-    return replace(case, flags=tuple(word if flag == BY_J else flag for flag in case.flags))
 
 
 def main(arguments: list[str] | None = None) -> int:

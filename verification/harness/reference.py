@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import json
 import subprocess
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -37,9 +38,14 @@ def _answer(name: str, settings: tuple[str, ...]) -> dict[str, Any]:
     return json.loads(done.stdout)
 
 
-def _ask(name: str, settings: dict[str, Setting]) -> dict[str, Any]:
-    """The same for settings as numbers, which go with all their digits, lists and words."""
-    return _answer(name, tuple(f"{key}={given!r}" if isinstance(given, (float, list)) else f"{key}={given}" for key, given in settings.items()))
+def settings_of(settings: Mapping[str, Any]) -> tuple[str, ...]:
+    """Settings as the program takes them, numbers with all their digits."""
+    return tuple(f"{key}={given!r}" if isinstance(given, (float, list)) else f"{key}={given}" for key, given in settings.items())
+
+
+def _ask(name: str, settings: Mapping[str, Setting]) -> dict[str, Any]:
+    """The same for settings by their names."""
+    return _answer(name, settings_of(settings))
 
 
 def reference(name: str, **settings: Setting) -> dict[str, Value]:
