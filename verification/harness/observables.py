@@ -86,12 +86,17 @@ def grew(run: Run) -> bool:
     return len(run.path) > len(run.scene["fracture"]["path_m"])
 
 
-def pressure_at_height(run: Run, height_m: float) -> Measured:
-    """Inlet pressure at which the tip first is at a height, Pa; at least the last one where it never gets there."""
+def when_at(run: Run, values: Array, height_m: float) -> Measured:
+    """What of values along the history belongs to the tip's first being at a height; at least the last one where it never gets there."""
     reached = np.flatnonzero(run.history["tip_y_m"] >= height_m - SLACK_M)
     if reached.size:
-        return exactly(run.history["inlet_Pa"][reached[0]])
-    return Measured(float(run.history["inlet_Pa"][-1]), math.inf, f"{run.name} does not reach {height_m:g} m")
+        return exactly(values[reached[0]])
+    return Measured(float(values[-1]), math.inf, f"{run.name} does not reach {height_m:g} m")
+
+
+def pressure_at_height(run: Run, height_m: float) -> Measured:
+    """Inlet pressure at which the tip first is at a height, Pa."""
+    return when_at(run, run.history["inlet_Pa"], height_m)
 
 
 def interface_height(run: Run, number: int) -> float:
@@ -108,28 +113,12 @@ def height_of(run: Run, given: Any) -> float:
     return float(given)
 
 
-def arrests_at(run: Run, height_m: float) -> list[Measured]:
-    """Rise of the inlet pressure, Pa, over each arrest at an interface at a height (m).
+def is_at(event: Event, run: Run, height_m: float) -> bool:
+    """Whether an event is at an interface at a height (m).
 
     It counts from 1.5 increments below, where growth would meet the interface, to 4 cells above: an interface that gives way
     attracts the tip and arrests it after the crossing, and up to 4 cells away K and J are not independent of it.
     """
-    events = [event for event in run.summary.events if event.kind in ("arrest", "restart")]
-    found = []
-    for k, event in enumerate(events):
-        if event.kind != "arrest" or not is_at(event, run, height_m):
-            continue
-        after = next((later for later in events[k + 1 :] if later.kind == "restart"), None)
-        if after is not None:
-            found.append(exactly(after.inlet_Pa - event.inlet_Pa))
-        else:
-            note = f"{run.name} does not grow on from {event.tip_y_m:g} m"
-            found.append(Measured(run.summary.inlet_Pa - event.inlet_Pa, math.inf, note))
-    return found
-
-
-def is_at(event: Event, run: Run, height_m: float) -> bool:
-    """Whether an event is at an interface at a height (m): from 1.5 increments below to 4 cells above."""
     lowest = height_m - 1.5 * run.increment_m - SLACK_M
     return lowest <= event.tip_y_m <= height_m + 4.0 * float(run.scene["numerics"]["cell_m"]) + SLACK_M
 
@@ -178,14 +167,17 @@ def plateau_Pa(run: Run, parameters: Parameters = NONE) -> Measured:
     height = interface_height(run, int(parameters["interface"]))
     if np.max(run.history["tip_y_m"]) < height - 1.5 * run.increment_m - SLACK_M:
         return nothing(f"{run.name} does not reach the interface at {height:g} m")
-    found = arrests_at(run, height)
-    if not found:
-        return exactly(0.0)
-    # By the run's own word it rests on a J that is not to be trusted there.
-    by_J = run.decides_by_J or any(one.kind == "arrest" and one.by == "J" and one.at_interface and is_at(one, run, height) for one in run.summary.events)
-    flags = (BY_J,) if by_J else ()
-    note = "; ".join(filter(None, (one.note for one in found)))
-    return Measured(sum(one.low for one in found), sum(one.high for one in found), note, flags)
+    events = [event for event in run.summary.events if event.kind in ("arrest", "restart")]
+    arrested = [(event, events[k + 1 :]) for k, event in enumerate(events) if event.kind == "arrest" and is_at(event, run, height)]
+    # By the run's own word one may rest on a J that is not to be trusted there.
+    by_J = arrested and (run.decides_by_J or any(event.by == "J" and event.at_interface for event, _ in arrested))
+    low, high, note = 0.0, 0.0, ""
+    for event, later in arrested:
+        after = next((one.inlet_Pa for one in later if one.kind == "restart"), None)
+        low += (run.summary.inlet_Pa if after is None else after) - event.inlet_Pa
+        high += (math.inf if after is None else after) - event.inlet_Pa
+        note = f"{run.name} does not grow on from {event.tip_y_m:g} m" if after is None else note
+    return Measured(low, high, note, (BY_J,) if by_J else ())
 
 
 def arrests(run: Run, parameters: Parameters = NONE) -> Measured:
@@ -244,11 +236,7 @@ def interface_failure_excess_Pa(run: Run, parameters: Parameters) -> Measured:
 
 def interface_energy(run: Run, height_m: float) -> Measured:
     """Energy in interfaces (stored in springs, spent on sliding and failure) when the tip is at a height, J/m."""
-    energy = run.history["interface_strain_J"] + run.history["friction_J"] + run.history["failure_J"]
-    reached = np.flatnonzero(run.history["tip_y_m"] >= height_m - SLACK_M)
-    if reached.size:
-        return exactly(energy[reached[0]])
-    return Measured(float(energy[-1]), math.inf, f"{run.name} does not reach {height_m:g} m")
+    return when_at(run, run.history["interface_strain_J"] + run.history["friction_J"] + run.history["failure_J"], height_m)
 
 
 # --- observables of two runs

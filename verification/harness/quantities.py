@@ -71,7 +71,7 @@ def pauses(run: Run) -> list[Pause]:
 def pause_at(run: Run, interface: int) -> Pause | Measured:
     """The longest pause at an interface (counted from 1 below), or why there is none.
 
-    It counts from 1.5 increments below, where growth would meet the interface, to 4 m above, as in observables.arrests_at.
+    It counts from 1.5 increments below, where growth would meet the interface, to 4 m above, as in observables.is_at.
     """
     height = interface_height(run, interface)
     low, high = height - 1.5 * run.increment_m - SLACK_M, height + ABOVE_M + SLACK_M

@@ -62,8 +62,8 @@ class Outcome:
 
     @property
     def word(self) -> str:
-        """How it ended: "completed", "failed", or "refused" for bad input."""
-        return "refused" if self.exit_status == BAD_INPUT else self.status
+        """How it ended: "completed", "failed", "refused" for bad input, or "too long"."""
+        return {BAD_INPUT: "refused", TOO_LONG: "too long"}.get(self.exit_status, self.status)
 
 
 def without_claims(scene_text: str, variant: str) -> dict[str, Any]:

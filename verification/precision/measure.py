@@ -72,7 +72,7 @@ def run_solver(job: Job, limit_s: float) -> Timed:
     """One run of the solver, its wall and CPU time; raises Failure for one without a result."""
     outcome, (_, cpu) = timed(lambda: harness.run(job, force=True, limit_s=limit_s))
     if not outcome.ok:
-        raise Failure({harness.BAD_INPUT: REFUSED, harness.TOO_LONG: TOO_LONG}.get(outcome.exit_status, FAILED), outcome.reason)
+        raise Failure(outcome.word, outcome.reason)
     return outcome.wall_s, cpu
 
 

@@ -23,7 +23,8 @@ Answer = Mapping[str, Any]  # the values of strata-reference by their names, SI:
 class Setting:
     """How the solver goes about a problem: the keys of a scene's [numerics], and what `further` sets besides.
 
-    graded: cells far away so many times as large, 0 for a uniform grid. beyond_m: rock beyond a block that is then small. kernels: empty for the solver's default.
+    graded: cells far away so many times as large, 0 for a uniform grid. beyond_m: rock beyond a block that is then small. kernels: empty for
+    the solver's default.
     """
 
     mechanics: str = "quasistatic"
