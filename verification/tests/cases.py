@@ -1,12 +1,12 @@
 """Runs that tests share: made once for the same scene and solver, also when several tests ask at the same time."""
 from __future__ import annotations
 
+import fcntl
 import hashlib
 from pathlib import Path
 
-from verification.harness import paths
-from verification.harness.choose import claimed
 from verification.harness.load import Run, load
+from verification.harness import paths
 from verification.harness.run import Job, Outcome, run
 
 RUNS = paths.RUNS / "tests"
@@ -21,7 +21,9 @@ def folder_of(scene: Path, variant: str, settings: tuple[str, ...]) -> Path:
 def make(scene: Path, variant: str = "", settings: tuple[str, ...] = ()) -> tuple[Outcome, Path]:
     """Make a run unless it is there; its outcome and folder."""
     folder = folder_of(scene, variant, settings)
-    with claimed(folder):
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with folder.with_suffix(".lock").open("w", encoding="utf-8") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
         return run(Job(scene, variant, folder, settings)), folder
 
 
