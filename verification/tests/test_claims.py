@@ -41,21 +41,16 @@ def test_right_zero_twice_and_flipped(tmp_path: Path, plateau: float, verdict: s
     assert result.flags == (("J at interface",) if plateau > 0 else ())
 
 
-def test_a_reading_that_holds_makes_it_only_under_a_variant(tmp_path: Path) -> None:
-    write(tmp_path, "weak", 0.0)
-    write(tmp_path, "other", 0.2)
-    reading = {"name": "another reading", "case": [{"variant": "other", "interface": 1, "at_least": 0.05 * MPA}]}
+@pytest.mark.parametrize("own, other, verdict, flag", [(0.0, 0.2, ONLY_UNDER_A_VARIANT, ()), (0.2, 0.0, REPRODUCED, ("does not hold under: another",))])
+def test_a_reading_rescues_what_does_not_hold_and_flags_what_does(
+    tmp_path: Path, own: float, other: float, verdict: str, flag: tuple[str, ...]
+) -> None:
+    write(tmp_path, "weak", own)
+    write(tmp_path, "other", other)
+    reading = {"name": "another", "case": [{"variant": "other", "interface": 1, "at_least": 0.05 * MPA}]}
     result = evaluate({**CLAIM, "reading": [reading]}, "exp", Runs(tmp_path))
-    assert result.verdict == ONLY_UNDER_A_VARIANT
-    assert [one.name for one in result.readings if one.holds] == ["another reading"]
-
-
-def test_a_reading_that_fails_flags_what_is_reproduced(tmp_path: Path) -> None:
-    write(tmp_path, "weak", 0.2)
-    write(tmp_path, "other", 0.0)
-    reading = {"name": "another reading", "case": [{"variant": "other", "interface": 1, "at_least": 0.05 * MPA}]}
-    result = evaluate({**CLAIM, "reading": [reading]}, "exp", Runs(tmp_path))
-    assert result.verdict == REPRODUCED and "does not hold under: another reading" in result.flags
+    assert result.verdict == verdict and result.flags[1:] == flag
+    assert [one.name for one in result.readings if one.holds] == ["another"] * (other > 0.0)
 
 
 def test_a_claim_that_rests_on_a_suspect_run_says_so(tmp_path: Path) -> None:
