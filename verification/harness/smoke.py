@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from verification.harness import store
-from verification.harness.compare import Comparison, Expected, compare
 from verification.harness.load import Run
 from verification.harness.observables import path_length, resample
 from verification.harness.paths import EXPERIMENTS, RUNS
@@ -92,20 +91,22 @@ def measured_values(found: Run) -> Values:
     return values
 
 
-def compare_values(found: Values, expected: Values) -> list[Comparison]:
-    """Compare value by value; one that is there on one side only fails, but for arrests too short to be sure of."""
-    comparisons = []
-    for name in sorted(expected.keys() | found.keys()):
-        if not (name in expected and name in found) and {**expected, **found}[name].get("optional"):
+def differences(found: Values, expected: Values) -> list[str]:
+    """What is not as expected, a line a value; of arrests too short to be sure of, one that is there on one side only is none.
+
+    Raises ValueError for an expectation so loose that zero or twice the value would pass.
+    """
+    lines = []
+    for name, item in sorted((expected | found).items()):
+        if not (name in expected and name in found):
+            lines += [] if item.get("optional") else [f"{name}: {'not expected' if name in found else 'not there'}"]
             continue
-        if name not in expected:
-            unasked = Expected(0.0, 0.0, found[name]["unit"], scale=1.0)
-            comparisons.append(Comparison(f"{name} (not expected)", float("nan"), unasked))
-            continue
-        item = expected[name]
-        allowed = Expected(item["value"], item["tolerance"], item["unit"])
-        comparisons.append(compare(name, found[name]["value"] if name in found else None, allowed))
-    return comparisons
+        value, wanted, tolerance = found[name]["value"], expected[name]["value"], expected[name]["tolerance"]
+        if not 0.0 <= tolerance < abs(wanted):
+            raise ValueError(f"{name}: a tolerance of {tolerance} would let zero or twice {wanted} pass")
+        if not abs(value - wanted) <= tolerance:
+            lines.append(f"{name}: {value:.6g} against {wanted:.6g} {item['unit']}, allowed {tolerance:.3g}")
+    return lines
 
 
 def expected_file(mechanics: str, experiment: str) -> Path:
