@@ -41,7 +41,9 @@ def test_right_zero_twice_and_flipped(tmp_path: Path, plateau: float, verdict: s
     assert result.flags == (("J at interface",) if plateau > 0 else ())
 
 
-@pytest.mark.parametrize("own, other, verdict, flag", [(0.0, 0.2, ONLY_UNDER_A_VARIANT, ()), (0.2, 0.0, REPRODUCED, ("does not hold under: another",))])
+@pytest.mark.parametrize(
+    "own, other, verdict, flag", [(0.0, 0.2, ONLY_UNDER_A_VARIANT, ()), (0.2, 0.0, REPRODUCED, ("does not hold under: another",))]
+)
 def test_a_reading_rescues_what_does_not_hold_and_flags_what_does(
     tmp_path: Path, own: float, other: float, verdict: str, flag: tuple[str, ...]
 ) -> None:
@@ -260,7 +262,8 @@ def test_cells_of_half_the_size_have_verdicts_of_their_own_run_or_recorded(tmp_p
     write(runs / "set" / "0.5m" / "quasistatic", "weak", 0.2, mechanics="quasistatic")
     at_1_m, at_half = evaluate_each(folder, runs)
     write(runs / "explicit", "weak", 0.2)
-    assert [(result.mechanics, result.flags) for result in evaluate_each(folder, runs)[:2]] == [("explicit", ("J at interface",)), ("quasistatic", ())]
+    both = [(result.mechanics, result.flags) for result in evaluate_each(folder, runs)[:2]]
+    assert both == [("explicit", ("J at interface",)), ("quasistatic", ())]
     shutil.rmtree(runs / "explicit")
     assert (at_1_m.verdict, at_half.verdict, at_half.mechanics) == (NOT_REPRODUCED, REPRODUCED, "quasistatic 0.5 m")
     record_finer(folder, runs)
