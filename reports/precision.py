@@ -291,12 +291,6 @@ def table_of(panels: Sequence[Panel]) -> list[dict[str, object]]:
 def reference_words(panel: Panel) -> str:
     """What the reference of a panel is, and how well it is known."""
     said = f"Errors are {panel.wanted.says}."
-    if panel.limit is not None:
-        size = abs(panel.limit.value - panel.wanted.base)
-        said += (
-            f" Limit: {number(panel.limit.value, 7)} {panel.wanted.unit} ± {number(panel.limit.uncertainty, 2)} ({panel.limit.says}),"
-            f" that is {percent(panel.limit.uncertainty / size)}: nothing can be said to be nearer."
-        )
-    elif panel.uncertainty > 0.0 and not math.isnan(panel.uncertainty):
+    if panel.uncertainty > 0.0 and not math.isnan(panel.uncertainty):
         said += f" The reference is known to {percent(panel.uncertainty)}."
     return said

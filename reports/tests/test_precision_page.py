@@ -27,10 +27,7 @@ def made_up(problem: Problem, error: float = 0.02) -> Sheet:
         status = {1: FAILED, 2: REFUSED}.get(k, OK)
         for level in method.levels:
             off = error * (1.0 + k) * level.size
-            found = {}
-            for one in problem.wanted:
-                value = one.base + (1.0e6 if one.limit_of else 4.0) * (1.0 + off)
-                found[one.name] = Found(value) if one.limit_of else Found(value, 4.0, off)
+            found = {one.name: Found(4.0 * (1.0 + off), 4.0, off) for one in problem.wanted}
             points.append(Point(method.name, level.label, level.size, "key", status, "" if status == OK else "it broke",
                                 (1.0 / level.size + k,) * 3, (1.0 / level.size,) * 3, "2026-01-01 00:00:00", particles=1000,
                                 found=found if status == OK else {}))  # fmt: skip

@@ -9,16 +9,15 @@ scene's own mechanics (explicit). Tables are printed, and kept in verification/a
 """
 from __future__ import annotations
 
-import argparse
 import sys
-from pathlib import Path
 
 from verification.ablation import store
 from verification.ablation.effects import missing, needs, not_needed
 from verification.ablation.measure import EVERYTHING, INTERFACES, OWN, RUNS, NoBase, table_of
-from verification.harness.paths import EXPERIMENTS, solver
-from verification.harness.refine import chosen, scene_of
-from verification.harness.scenes import STUDY_VARIANTS, scenes_of, variants_of
+from verification.harness.choose import beginnings
+from verification.harness.command import command
+from verification.harness.paths import EXPERIMENTS, need_solver
+from verification.harness.scenes import chosen, scene_of, scenes_of
 
 # Variants of which everything is left out in turn; of the first what they go without is tried, too.
 THOROUGH = ("perfect",)
@@ -27,22 +26,17 @@ WHOLE = ("soft", "weak_soft", "soft_weak")
 
 def main(arguments: list[str] | None = None) -> int:
     """Measure, print and keep the tables; 0, 3 where a scene's own run failed, 2 for bad input."""
-    parser = argparse.ArgumentParser(prog="ci/ablate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command("ci/ablate", __doc__, "variants", "set", "out", "runs", out=store.RECORDS, runs=RUNS)
     parser.add_argument("experiments", nargs="*", help="beginnings of names, or scene files (default: all)")
-    parser.add_argument("--variants", default="", help="names, comma-separated: all their ingredients")
     parser.add_argument("--ingredients", default="", help="ids, comma-separated (default: all)")
-    parser.add_argument("--set", dest="settings", action="append", default=[], metavar="KEY=VALUE", help="a scene key, in all runs")
-    parser.add_argument("--out", type=Path, default=store.RECORDS, help="folder for the tables")
-    parser.add_argument("--runs", type=Path, default=RUNS, help="folder for the runs")
     options = parser.parse_args(arguments)
-    if not solver().is_file():
-        parser.error(f"there is no solver at {solver()}: build it first (ci/reproduce and ci/test do)")
-    only = [name for name in options.ingredients.split(",") if name]
+    only = beginnings(options.ingredients)
     keep = not only and (not options.settings or options.out != store.RECORDS)
     good = True
     try:
+        need_solver()
         for scene in [scene_of(name) for name in options.experiments] or scenes_of(EXPERIMENTS):
-            for variant in variants(scene, options.variants):
+            for variant in chosen(scene, options.variants):
                 try:
                     table = table_of(scene, variant, extent(variant, options.variants), options.settings, only, options.runs.resolve(), print)
                 except NoBase as failure:
@@ -55,13 +49,6 @@ def main(arguments: list[str] | None = None) -> int:
     except ValueError as error:
         parser.error(str(error))
     return 0 if good else 3
-
-
-def variants(scene: Path, names: str) -> list[str]:
-    """The variants that were asked for, or those of the study."""
-    if names:
-        return chosen(scene, names)
-    return [name for name in variants_of(scene) if name in STUDY_VARIANTS] or [""]
 
 
 def extent(variant: str, asked: str) -> str:

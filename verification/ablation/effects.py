@@ -10,10 +10,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from verification.ablation.ingredients import MODELLED, RESOLVED, Ingredient
-from verification.harness.budget import Effect
+from verification.harness import effects
+from verification.harness.effects import Effect
 from verification.harness.load import Run
 from verification.harness.observables import path_length
-from verification.harness.quantities import Quantity, path_gap
+from verification.harness.quantities import NO_ARREST, Quantity
 
 # A scene is to be right to this share.
 WANTED = 0.01
@@ -78,51 +79,42 @@ def scale_of(quantity: Quantity, base: Run) -> float:
 def effects_of(quantities: Sequence[Quantity], with_path: bool, base: Run, run: Run) -> tuple[dict[str, Effect], dict[str, float]]:
     """Effects of a run, as it is read, against the base, and the same as shares where they are known.
 
-    A quantity that is an arrest in the base and is none in the run (flagged "no arrest") is lost: what is at the place is no pause.
+    An arrest of the base that is none in the run is lost: what is at the place is no pause.
     """
-    effects: dict[str, Effect] = {}
-    shares: dict[str, float] = {}
-    for quantity in quantities:
-        own, measured = quantity.measure(base), quantity.measure(run)
-        if not measured.exact or "no arrest" in measured.flags and "no arrest" not in own.flags:
-            effects[quantity.name] = Effect(None, measured.note.removeprefix(run.name).strip() or "no arrest")
-            continue
-        effects[quantity.name] = Effect(measured.low - own.low, ", ".join(measured.flags))
-        shares[quantity.name] = abs(measured.low - own.low) / scale_of(quantity, base)
-    if with_path:
-        gap = path_gap(run, base)
-        effects["path_m"] = Effect(None, "does not grow") if gap is None else Effect(gap[1])
-        if gap is not None:
-            shares["path_m"] = gap[1] / path_length(base.path)
-    return effects, shares
+    found = effects.effects_of(quantities, with_path, base, run)
+    found = {name: Effect(None, NO_ARREST) if NO_ARREST in effect.note else effect for name, effect in found.items()}
+    scales = {one.name: (lambda one=one: scale_of(one, base)) for one in quantities} | {"path_m": lambda: path_length(base.path)}
+    return found, {name: abs(effect.value) / scales[name]() for name, effect in found.items() if effect.value is not None}
 
 
 def tried(ingredient: Ingredient, status: str, reason: str, found: tuple[dict[str, Effect], dict[str, float]], cpu_s: float) -> Tried:
-    """An ingredient with what came of leaving it out."""
-    effects, shares = found
-    if any(not math.isfinite(share) for share in shares.values()):
-        raise ValueError(f"{ingredient.id}: shares {shares} are not finite")
-    return Tried(ingredient.id, ingredient.label, ingredient.group, ingredient.done, ingredient.settings, status,
-                 reason or ingredient.why_not, effects, shares, cpu_s)  # fmt: skip
+    """An ingredient with what came of leaving it out; raises ValueError for a share that is no number."""
+    if any(not math.isfinite(share) for share in found[1].values()):
+        raise ValueError(f"{ingredient.id}: shares {found[1]} are not finite")
+    own = (ingredient.id, ingredient.label, ingredient.group, ingredient.done, ingredient.settings)
+    return Tried(*own, status, reason or ingredient.why_not, *found, cpu_s)
+
+
+def _of_scene(lines: Sequence[Tried], own: bool) -> list[Tried]:
+    """What a scene has (own), or goes without."""
+    return [line for line in lines if (line.group in (MODELLED, RESOLVED)) == own]
 
 
 def not_needed(lines: Sequence[Tried], base_s: float) -> list[Tried]:
     """What the scene models or resolves at a cost (its own run takes base_s) although 1 % does not ask for it: each wants a reason."""
-    return [line for line in lines
-            if line.group in (MODELLED, RESOLVED) and line.verdict == SPARED and line.cpu_s < (1.0 - NO_SAVING) * base_s]  # fmt: skip
+    return [line for line in _of_scene(lines, True) if line.verdict == SPARED and line.cpu_s < (1.0 - NO_SAVING) * base_s]
 
 
 def free(lines: Sequence[Tried], base_s: float) -> list[Tried]:
     """What 1 % does not ask for but costs nothing, or saves time as symmetry does: no reason is wanted."""
-    return [line for line in lines
-            if line.group in (MODELLED, RESOLVED) and line.verdict == SPARED and line not in not_needed(lines, base_s)]  # fmt: skip
+    return [line for line in _of_scene(lines, True) if line.verdict == SPARED and not line.cpu_s < (1.0 - NO_SAVING) * base_s]
 
 
 def needs(lines: Sequence[Tried]) -> list[Tried]:
     """What the scene needs for 1 %."""
-    return [line for line in lines if line.group in (MODELLED, RESOLVED) and line.verdict in (NEEDED, CHANGES)]
+    return [line for line in _of_scene(lines, True) if line.verdict in (NEEDED, CHANGES)]
 
 
 def missing(lines: Sequence[Tried]) -> list[Tried]:
     """What the scene goes without although that moves it by 1 % or more."""
-    return [line for line in lines if line.group not in (MODELLED, RESOLVED) and line.verdict in (NEEDED, CHANGES)]
+    return [line for line in _of_scene(lines, False) if line.verdict in (NEEDED, CHANGES)]

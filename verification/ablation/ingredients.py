@@ -58,7 +58,7 @@ class Ingredient:
     id: str
     label: str
     group: str
-    done: str
+    done: str = ""
     settings: tuple[str, ...] = ()
     view: View = View()
     why_not: str = ""
@@ -66,41 +66,30 @@ class Ingredient:
 
 def ingredients_of(content: dict[str, Any]) -> list[Ingredient]:
     """All ingredients of an explicit scene, its keys with a variant's in place."""
+    numerics, fracture = content["numerics"], content["fracture"]
+    damped, flows = float(numerics.get("damping_1_s", 0.0)) > 0.0, content["fluid"].get("law", "paper") != "uniform"
+    straight, endless = fracture.get("direction", "straight") == "straight", float(content["domain"].get("beyond_m", 0.0)) > 0.0
     return [
-        _inertia(),
-        _damping(content),
-        _flow(content),
+        _part("inertia", "inertia", "", "quasi-static", "numerics.mechanics=quasistatic"),
+        _part("damping", "damping", "" if damped else "the scene has none", "none", "numerics.damping_1_s=0.0"),
+        _part("flow", "flow", "" if flows else "the scene has none", "the inlet's pressure everywhere", "fluid.law=uniform"),
         *_interfaces(content),
         _layering(content),
-        _edges(content),
+        _part("edges", "edges of the block", "the rock goes on beyond them" if endless else "", f"rock goes on for {BEYOND_M:g} m",
+              f"domain.beyond_m={BEYOND_M!r}"),
         _prestress(content),
-        _face_contact(),
+        _part("face_contact", "contact of the fracture's faces", "", "its faces pass through each other", "fracture.faces=free"),
         _soft_contact(content),
-        _direction(content),
+        _part("direction", "direction of growth", "the path is straight" if straight else "", "straight ahead", "fracture.direction=straight"),
         _symmetry(content),
         *_resolution(content),
         *_left_out(content),
-    ]
+    ]  # fmt: skip
 
 
-def _inertia() -> Ingredient:
-    """Without inertia, and growth by the same criterion."""
-    settings = ("numerics.mechanics=quasistatic", "fracture.crossing=J")
-    return Ingredient("inertia", "inertia", MODELLED, "quasi-static, growth by J as before", settings)
-
-
-def _damping(content: dict[str, Any]) -> Ingredient:
-    """Waves that nothing but the edges lets out."""
-    if float(content["numerics"].get("damping_1_s", 0.0)) == 0.0:
-        return Ingredient("damping", "damping", MODELLED, "", why_not="the scene has none")
-    return Ingredient("damping", "damping", MODELLED, "none", ("numerics.damping_1_s=0.0",))
-
-
-def _flow(content: dict[str, Any]) -> Ingredient:
-    """The inlet's pressure everywhere."""
-    if content["fluid"].get("law", "paper") == "uniform":
-        return Ingredient("flow", "flow", MODELLED, "", why_not="the scene has none")
-    return Ingredient("flow", "flow", MODELLED, "the inlet's pressure everywhere", ("fluid.law=uniform",))
+def _part(id_: str, label: str, why_not: str, done: str, *settings: str, view: View = View(), group: str = MODELLED) -> Ingredient:
+    """An ingredient that is left out by settings, or why it does not apply."""
+    return Ingredient(id_, label, group, why_not=why_not) if why_not else Ingredient(id_, label, group, done, settings, view)
 
 
 def _interfaces(content: dict[str, Any]) -> list[Ingredient]:
@@ -108,97 +97,60 @@ def _interfaces(content: dict[str, Any]) -> list[Ingredient]:
     names = list(content["strata"].get("interfaces", []))
     acting = [k for k, name in enumerate(names) if name != "perfect"]
     if not acting:
-        return [Ingredient("interface", "interfaces", MODELLED, "", why_not="all are perfect")]
-    found = []
-    for k in acting:
-        others = [*names[:k], "perfect", *names[k + 1 :]]
-        label = f"interface {k + 1} ({names[k]})" if len(acting) > 1 else f"interface ({names[k]})"
-        found.append(Ingredient(f"interface_{k + 1}", label, MODELLED, "perfect", (f"strata.interfaces={toml(others)}",)))
-    return found
-
-
-def _place_of_start(content: dict[str, Any]) -> int:
-    """The layer in which the fracture starts."""
-    strata = content["strata"]
-    x, y = content["fracture"]["path_m"][-1]
-    at, top = (float(x) if strata.get("along", "y") == "x" else float(y)), 0.0
-    for k, layer in enumerate(strata["layers"]):
-        top += float(layer.get("thickness_m", np.inf))
-        if at < top:
-            return k
-    raise ValueError("the fracture starts in no layer")
+        return [_part("interface", "interfaces", "all are perfect", "")]
+    return [
+        _part(f"interface_{k + 1}", f"interface {k + 1} ({names[k]})" if len(acting) > 1 else f"interface ({names[k]})", "", "perfect",
+              f"strata.interfaces={toml([*names[:k], 'perfect', *names[k + 1 :]])}")
+        for k in acting
+    ]  # fmt: skip
 
 
 def _layering(content: dict[str, Any]) -> Ingredient:
     """One rock, that in which the fracture starts."""
-    layers = [dict(layer) for layer in content["strata"]["layers"]]
-    if len({layer["rock"] for layer in layers}) == 1:
-        return Ingredient("layering", "layers of rock", MODELLED, "", why_not="the rock is one")
-    rock = layers[_place_of_start(content)]["rock"]
-    one = [{**layer, "rock": rock} for layer in layers]
-    return Ingredient("layering", "layers of rock", MODELLED, f"{rock} rock everywhere", (f"strata.layers={toml(one)}",))
-
-
-def _edges(content: dict[str, Any]) -> Ingredient:
-    """Rock without end beyond the edges."""
-    if float(content["domain"].get("beyond_m", 0.0)) > 0.0:
-        return Ingredient("edges", "edges of the block", MODELLED, "", why_not="the rock goes on beyond them")
-    return Ingredient("edges", "edges of the block", MODELLED, f"rock goes on for {BEYOND_M:g} m", (f"domain.beyond_m={BEYOND_M!r}",))
+    strata = content["strata"]
+    layers, start = [dict(layer) for layer in strata["layers"]], content["fracture"]["path_m"][-1][0 if strata.get("along", "y") == "x" else 1]
+    tops = np.cumsum([float(layer.get("thickness_m", np.inf)) for layer in layers])
+    rock = layers[int(np.searchsorted(tops, float(start), side="right"))]["rock"]
+    why_not = "the rock is one" if len({layer["rock"] for layer in layers}) == 1 else ""
+    one = toml([{**layer, "rock": rock} for layer in layers])
+    return _part("layering", "layers of rock", why_not, f"{rock} rock everywhere", f"strata.layers={one}")
 
 
 def _prestress(content: dict[str, Any]) -> Ingredient:
     """No stress in the rock, and pressures that are net: less the stress that closes the fracture."""
-    in_situ, inlet, stop = content.get("in_situ", {}), content["fluid"]["inlet"], content["stop"]
+    in_situ, stop = content.get("in_situ", {}), content["stop"]
     closing = float(in_situ.get("horizontal_Pa", 0.0))
-    if closing == 0.0 and float(in_situ.get("vertical_Pa", 0.0)) == 0.0:
-        return Ingredient("prestress", "in-situ stress", MODELLED, "", why_not="there is none")
-    settings = ["in_situ.vertical_Pa=0.0", "in_situ.horizontal_Pa=0.0", f"fluid.inlet.start_Pa={float(inlet['start_Pa']) - closing!r}"]
-    if "inlet_Pa" in stop:
-        settings.append(f"stop.inlet_Pa={float(stop['inlet_Pa']) - closing!r}")
-    return Ingredient("prestress", "in-situ stress", MODELLED, "none, pressures net of it", tuple(settings), View(add_Pa=closing))
-
-
-def _face_contact() -> Ingredient:
-    """Faces of the fracture that pass through each other."""
-    done = "its faces pass through each other"
-    return Ingredient("face_contact", "contact of the fracture's faces", MODELLED, done, ("fracture.faces=free",))
+    why_not = "there is none" if closing == 0.0 and float(in_situ.get("vertical_Pa", 0.0)) == 0.0 else ""
+    settings = ["in_situ.vertical_Pa=0.0", "in_situ.horizontal_Pa=0.0"]
+    settings.append(f"fluid.inlet.start_Pa={float(content['fluid']['inlet']['start_Pa']) - closing!r}")
+    settings += [f"stop.inlet_Pa={float(stop['inlet_Pa']) - closing!r}"] if "inlet_Pa" in stop else []
+    return _part("prestress", "in-situ stress", why_not, "none, pressures net of it", *settings, view=View(add_Pa=closing))
 
 
 def _soft_contact(content: dict[str, Any]) -> Ingredient:
     """Springs in compression too, on every soft interface that is used."""
-    label = "contact on the soft interface"
     used = set(content["strata"].get("interfaces", []))
     soft = [name for name, law in content.get("interface", {}).items()
             if name in used and law["law"] == "soft" and law.get("compression", "contact") == "contact"]  # fmt: skip
-    if not soft:
-        return Ingredient("soft_contact", label, MODELLED, "", why_not="no soft interface")
-    return Ingredient("soft_contact", label, MODELLED, "springs there too", tuple(f"interface.{n}.compression=spring" for n in soft))
-
-
-def _direction(content: dict[str, Any]) -> Ingredient:
-    """Straight on, whatever the tip meets."""
-    if content["fracture"].get("direction", "straight") == "straight":
-        return Ingredient("direction", "direction of growth", MODELLED, "", why_not="the path is straight")
-    return Ingredient("direction", "direction of growth", MODELLED, "straight ahead", ("fracture.direction=straight",))
+    settings = [f"interface.{name}.compression=spring" for name in soft]
+    return _part("soft_contact", "contact on the soft interface", "" if soft else "no soft interface", "springs there too", *settings)
 
 
 def _symmetry(content: dict[str, Any]) -> Ingredient:
     """Both halves of the block, mirrored at the symmetry line."""
-    label, domain, strata = "symmetry", content["domain"], content["strata"]
-    if domain.get("bottom", "symmetry") != "symmetry":
-        return Ingredient("symmetry", label, MODELLED, "", why_not="the scene has none")
+    domain, strata, numerics, stop = (content[name] for name in ("domain", "strata", "numerics", "stop"))
     height = float(domain["height_m"])
     (x, _), (x_tip, y_tip) = content["fracture"]["path_m"][0], content["fracture"]["path_m"][-1]
     path = [[x_tip, height - y_tip], [x, height], [x_tip, height + y_tip]]
     settings = ["domain.bottom=traction", f"domain.height_m={2.0 * height!r}", f"fracture.path_m={toml(path)}"]
-    if "tip_y_m" in content["stop"]:
-        settings.append(f"stop.tip_y_m={height + float(content['stop']['tip_y_m'])!r}")
-    if "fine_top_m" in content["numerics"]:
-        fine = float(content["numerics"]["fine_top_m"])
+    settings += [f"stop.tip_y_m={height + float(stop['tip_y_m'])!r}"] if "tip_y_m" in stop else []
+    if "fine_top_m" in numerics:
+        fine = float(numerics["fine_top_m"])
         settings += [f"numerics.fine_top_m={height + fine!r}", f"numerics.fine_bottom_m={height - fine!r}"]
     if strata.get("along", "y") == "y":
         settings += [f"{key}={toml(value)}" for key, value in mirrored(strata, height).items()]
-    return Ingredient("symmetry", label, MODELLED, "both halves of the block", tuple(settings), View(fold_m=height))
+    why_not = "" if domain.get("bottom", "symmetry") == "symmetry" else "the scene has none"
+    return _part("symmetry", "symmetry", why_not, "both halves of the block", *settings, view=View(fold_m=height))
 
 
 def mirrored(strata: dict[str, Any], height_m: float) -> dict[str, Any]:
@@ -215,37 +167,32 @@ def _resolution(content: dict[str, Any]) -> list[Ingredient]:
     """What is resolved, coarser."""
     numerics = content["numerics"]
     cell, courant = float(numerics["cell_m"]), float(numerics.get("courant", 0.5))
-    return [
-        Ingredient("cells", f"cells of {cell:g} m", RESOLVED, f"{2.0 * cell:g} m", (f"numerics.cell_m={2.0 * cell!r}",)),
-        *([] if is_graded(content) else [_far_cells(content, cell)]),
-        Ingredient("step", f"Courant number {courant:g}", RESOLVED, f"{2.0 * courant:g}", (f"numerics.courant={2.0 * courant!r}",)),
-        Ingredient("looks", "looks at the tips every 4 steps", RESOLVED, "every 8", ("numerics.tip_steps=8",)),
-        Ingredient("ring", "J rings of up to 4 cells", RESOLVED, "3 cells", ("numerics.ring_cells=3.0",)),
-        Ingredient("shape", "quadratic shape functions", RESOLVED, "linear", ("numerics.shape=linear",)),
+    ends = any(key in numerics for key in ("fine_left_m", "fine_right_m", "fine_bottom_m", "fine_top_m"))
+    meets = content["fracture"].get("direction", "straight") != "straight" and not ends
+    far = ("far_cells", "fine cells far away", "the path may turn into coarse cells" if meets else "", f"{GRADED * cell:g} m there",
+           f"numerics.far_cell_m={GRADED * cell!r}")  # fmt: skip
+    coarser = [
+        ("cells", f"cells of {cell:g} m", "", f"{2.0 * cell:g} m", f"numerics.cell_m={2.0 * cell!r}"),
+        *([] if is_graded(content) else [far]),
+        ("step", f"Courant number {courant:g}", "", f"{2.0 * courant:g}", f"numerics.courant={2.0 * courant!r}"),
+        ("looks", "looks at the tips every 4 steps", "", "every 8", "numerics.tip_steps=8"),
+        ("ring", "J rings of up to 4 cells", "", "3 cells", "numerics.ring_cells=3.0"),
+        ("shape", "quadratic shape functions", "", "linear", "numerics.shape=linear"),
     ]
-
-
-def _far_cells(content: dict[str, Any], cell: float) -> Ingredient:
-    """Fine cells far away, of a uniform grid."""
-    label = "fine cells far away"
-    ends = any(key in content["numerics"] for key in ("fine_left_m", "fine_right_m", "fine_bottom_m", "fine_top_m"))
-    if content["fracture"].get("direction", "straight") != "straight" and not ends:
-        return Ingredient("far_cells", label, RESOLVED, "", why_not="the path may turn into coarse cells")
-    return Ingredient("far_cells", label, RESOLVED, f"{GRADED * cell:g} m there", (f"numerics.far_cell_m={GRADED * cell!r}",))
+    return [_part(*one, group=RESOLVED) for one in coarser]
 
 
 def _left_out(content: dict[str, Any]) -> list[Ingredient]:
     """What the scene goes without: finer cells, such ones far away, more points, points that move."""
     numerics = content["numerics"]
-    cell, points = float(numerics["cell_m"]), int(numerics.get("particles_per_cell", 4))
-    found = [Ingredient("finer", f"cells of {cell / 2.0:g} m", LEFT_OUT, "modelled", (f"numerics.cell_m={cell / 2.0!r}",))]
-    if is_graded(content):
-        found.append(Ingredient("far_cells", "fine cells far away", LEFT_OUT, "modelled", (f"numerics.far_cell_m={cell!r}",)))
-    if points < 16:
-        found.append(Ingredient("points", "16 points a cell", LEFT_OUT, "modelled", ("numerics.particles_per_cell=16",)))
-    if numerics.get("kinematics", "updated") == "total":
-        found.append(Ingredient("moving", "points that move", LEFT_OUT, "modelled", ("numerics.kinematics=updated",)))
-    return found
+    cell = float(numerics["cell_m"])
+    lacks = [
+        (True, "finer", f"cells of {cell / 2.0:g} m", f"numerics.cell_m={cell / 2.0!r}"),
+        (is_graded(content), "far_cells", "fine cells far away", f"numerics.far_cell_m={cell!r}"),
+        (int(numerics.get("particles_per_cell", 4)) < 16, "points", "16 points a cell", "numerics.particles_per_cell=16"),
+        (numerics.get("kinematics", "updated") == "total", "moving", "points that move", "numerics.kinematics=updated"),
+    ]
+    return [_part(id_, label, "", "modelled", setting, group=LEFT_OUT) for lacking, id_, label, setting in lacks if lacking]
 
 
 def named(found: Sequence[Ingredient], names: Sequence[str]) -> list[Ingredient]:

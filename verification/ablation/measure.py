@@ -3,17 +3,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
-from verification.harness import paths
 from verification.ablation.effects import Tried, effects_of, tried
 from verification.ablation.ingredients import LEFT_OUT, Ingredient, ingredients_of, named
 from verification.ablation.store import Table
-from verification.harness.budget import followed
-from verification.harness.load import LoadError, Run, load
+from verification.harness import paths
+from verification.harness.effects import followed
+from verification.harness.load import Run
+from verification.harness.plan import make
 from verification.harness.quantities import turns
-from verification.harness.refine import REFUSED, content_of
-from verification.harness.run import Job, Outcome, run
-from verification.precision.measure import timed
+from verification.harness.run import Job, Outcome, timed
+from verification.harness.scenes import content_of
 
 RUNS = paths.RUNS / "ablation"
 LIMIT_S = 900.0  # a run that takes longer says nothing
@@ -30,11 +31,8 @@ class NoBase(Exception):
 
 def made(job: Job) -> tuple[Outcome, Run | None, float]:
     """Run a job anew: how it ended, its data if it has any, and its CPU time, s."""
-    outcome, (_, cpu) = timed(lambda: run(job, force=True, limit_s=LIMIT_S))
-    try:
-        return outcome, load(job.out), cpu
-    except LoadError:
-        return outcome, None, cpu
+    (outcome, found), (_, cpu) = timed(lambda: make(job, force=True, limit_s=LIMIT_S))
+    return outcome, found, cpu
 
 
 def table_of(
@@ -46,17 +44,15 @@ def table_of(
     Raises NoBase where the scene's own run fails, ValueError for a name that is no ingredient.
     """
     content = content_of(scene, variant, settings)
-    chosen = named(ingredients_of(content), only)
-    if extent == OWN:
-        chosen = [one for one in chosen if one.group != LEFT_OUT]
-    if extent == INTERFACES:
-        chosen = [one for one in chosen if one.id.startswith("interface")]
-    folder = runs / scene.stem / (variant or "base")
+    wanted: dict[str, Callable[[Ingredient], bool]] = {
+        EVERYTHING: lambda _: True, OWN: lambda one: one.group != LEFT_OUT, INTERFACES: lambda one: one.id.startswith("interface"),
+    }  # fmt: skip
+    chosen = [one for one in named(ingredients_of(content), only) if wanted[extent](one)]
 
-    def job(name: str, further: Sequence[str]) -> Job:
-        return Job(scene, variant, folder / name, (*settings, *further))
+    def job(name: str, further: Sequence[str] = ()) -> Job:
+        return Job(scene, variant, runs / scene.stem / (variant or "base") / name, (*settings, *further))
 
-    outcome, base, cpu = made(job("base", ()))
+    outcome, base, cpu = made(job("base"))
     say(f"{scene.stem} {variant}: {outcome.status}, {cpu:.2f} s {outcome.reason}".rstrip())
     if base is None or not outcome.ok:
         raise NoBase(f"{scene.stem} {variant}: {outcome.reason}")
@@ -70,14 +66,13 @@ def table_of(
     return Table(scene.stem, variant, "some" if only else extent, base.summary.version, cpu, tuple(names), values, tuple(lines))
 
 
-def _line(ingredient: Ingredient, job: Job, content: dict[str, object], base: Run) -> Tried:
+def _line(ingredient: Ingredient, job: Job, content: dict[str, Any], base: Run) -> Tried:
     """One ingredient left out."""
     if ingredient.why_not:
         return tried(ingredient, "", "", ({}, {}), 0.0)
     outcome, found, cpu = made(job)
-    if found is None or outcome.exit_status == REFUSED:
-        status = "refused" if outcome.exit_status == REFUSED else "failed"
-        return tried(ingredient, status, outcome.reason, ({}, {}), cpu)
+    if found is None:
+        return tried(ingredient, outcome.word if not outcome.ok else "failed", outcome.reason, ({}, {}), cpu)
     # Where the path may turn only the ways of both are compared, a straight one too.
     effects = effects_of(followed(content, base), turns(content), base, ingredient.view.of(found, base))
     return tried(ingredient, outcome.status, outcome.reason, effects, cpu)
@@ -90,4 +85,3 @@ def _said(line: Tried, base_s: float) -> str:
     largest = "-" if line.largest is None else f"{100.0 * line.largest:.2f} %"
     lost = f", without {', '.join(line.lost)}" if line.lost else ""
     return f"  {line.label}: {line.done}: {largest}{lost}, {line.cpu_s / base_s:.2f} of the time: {line.verdict} {line.reason}".rstrip()
-

@@ -14,7 +14,7 @@ Reasons = dict[str, dict[str, str]]  # by experiment ("all": every one) and ingr
 
 
 def reasons(path: Path = REASONS) -> Reasons:
-    """Why scenes keep what 1 % does not ask for: by experiment ("all": every one) and ingredient."""
+    """All reasons that are given."""
     return tomllib.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
 
 

@@ -1,13 +1,11 @@
-"""The tables as they are kept: a JSON file an experiment, in verification/ablation/records/."""
+"""The tables as they are kept: a JSON file a variant of an experiment, in verification/ablation/records/."""
 from __future__ import annotations
 
-import json
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from verification.ablation.effects import Tried
-from verification.harness.budget import Effect
+from verification.harness import store
 from verification.harness.paths import ROOT
 
 RECORDS = ROOT / "verification" / "ablation" / "records"
@@ -27,36 +25,19 @@ class Table:
     lines: tuple[Tried, ...]
 
 
-class BadRecord(Exception):
-    """A kept table cannot be read; the message says which and why."""
-
-
 def write(table: Table, folder: Path = RECORDS) -> Path:
     """Keep a table; the file of an experiment's variant."""
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / f"{table.experiment}.{table.variant}.json"
-    path.write_text(json.dumps(asdict(table), indent=1) + "\n", encoding="utf-8")
-    return path
+    return store.write(table, folder / f"{table.experiment}.{table.variant}.json")
 
 
 def read(path: Path) -> Table:
-    """A kept table; raises BadRecord."""
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-        lines = tuple(_line(line) for line in content.pop("lines"))
-        quantities = tuple((name, label, unit) for name, label, unit in content.pop("quantities"))
-        return Table(**content, quantities=quantities, lines=lines)
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise BadRecord(f"{path}: {type(error).__name__}: {error}") from error
-
-
-def _line(content: dict[str, Any]) -> Tried:
-    """A line from its JSON."""
-    effects = {name: Effect(**effect) for name, effect in content.pop("effects").items()}
-    settings = tuple(content.pop("settings"))
-    return Tried(**content, effects=effects, settings=settings)
+    """A kept table; raises ValueError for a file that is none."""
+    found = store.read(Table, path)
+    if found is None:
+        raise ValueError(f"there is no {path}")
+    return found
 
 
 def read_all(folder: Path = RECORDS) -> list[Table]:
-    """All kept tables by their names; raises BadRecord."""
+    """All kept tables by their names; raises ValueError."""
     return [read(path) for path in sorted(folder.glob("*.json"))]

@@ -6,8 +6,9 @@ import datetime
 import re
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from verification.benchmarks import kernels, runs
@@ -46,18 +47,13 @@ def parse(arguments: Sequence[str] | None) -> argparse.Namespace:
     return parser.parse_args(arguments)
 
 
-class Progress:
-    """Tells what is being timed, with the seconds since the start."""
-
-    def __init__(self) -> None:
-        self.start = time.monotonic()
-
-    def __call__(self, words: str) -> None:
-        """One line."""
-        print(f"[{time.monotonic() - self.start:5.0f} s] {words}", file=sys.stderr, flush=True)
+def progress() -> Callable[[str], None]:
+    """What tells a line with the seconds since now."""
+    start = time.monotonic()
+    return lambda words: print(f"[{time.monotonic() - start:5.0f} s] {words}", file=sys.stderr, flush=True)
 
 
-def kernel_figures(options: argparse.Namespace, tell: Progress) -> tuple[list[Figure], dict[str, str]]:
+def kernel_figures(options: argparse.Namespace, tell: runs.Tell) -> tuple[list[Figure], dict[str, str]]:
     """Figures of strata_bench, and its context."""
     chosen = [name for name in kernels.names() if not name.startswith("calibration/") and re.search(options.only, name)]
     if options.quick:
@@ -67,15 +63,11 @@ def kernel_figures(options: argparse.Namespace, tell: Progress) -> tuple[list[Fi
     return kernels.measure(chosen, 2 if options.quick else REPETITIONS, tell)
 
 
-def run_figures(options: argparse.Namespace, tell: Progress) -> list[Figure]:
+def run_figures(options: argparse.Namespace, tell: runs.Tell) -> list[Figure]:
     """Figures of whole runs."""
     quick, repetitions = options.quick, 2 if options.quick else REPETITIONS
     batches = runs.QUICK if quick else runs.LONG if options.long else runs.DEFAULT
-
-    def both() -> tuple[float, float]:
-        """Rates of as many threads as a batch has runs side by side."""
-        return kernels.rates(runs.JOBS)
-
+    both = partial(kernels.rates, runs.JOBS)  # of as many threads as a batch has runs side by side
     parts = [
         ("crack/", lambda: runs.crack_figures(repetitions, quick, kernels.rates, tell)),
         ("whole/", lambda: runs.growth_figures(repetitions, quick, kernels.rates, tell)),
@@ -85,7 +77,7 @@ def run_figures(options: argparse.Namespace, tell: Progress) -> list[Figure]:
     return [figure for name, make in parts if re.search(options.only, name) for figure in make()]
 
 
-def take_record(options: argparse.Namespace, tell: Progress) -> Record:
+def take_record(options: argparse.Namespace, tell: runs.Tell) -> Record:
     """Measure what was asked for."""
     average = options.load if options.load is not None else float(Path("/proc/loadavg").read_text().split()[0])
     busy = busy_processors()
@@ -100,22 +92,13 @@ def take_record(options: argparse.Namespace, tell: Progress) -> Record:
     return Record(this_machine(), this_build(context), Load(average, busy, busy_processors()), date, tuple(figures), part)
 
 
-def judge(record: Record) -> tuple[list[Line], Record | None, str]:
-    """Against the last record of this machine; why there is no comparison."""
-    try:
-        then = last_record(record.machine)
-        return (compare(record, then) if then else []), then, ""
-    except (OtherMachine, BadRecord) as error:
-        return [], None, str(error)
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Measure, print, compare, record; 0 where nothing is slower, 1 where something is, 2 wrong use, 4 not recorded."""
     options = parse(arguments)
     if options.quick and (options.record or options.long):
         print("ci/bench: --quick goes with neither --record nor --long", file=sys.stderr)
         return WRONG_USE
-    tell = Progress()
+    tell = progress()
     try:
         re.compile(options.only)
         if options.list:
@@ -130,7 +113,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return WRONG_USE
     found = marks(record)
     record = replace(record, marks=as_plain(found))
-    lines, then, why = judge(record)
+    lines: list[Line] = []
+    then, why = None, ""
+    try:
+        then = last_record(record.machine)
+        lines = compare(record, then) if then else []
+    except (OtherMachine, BadRecord) as error:
+        why = str(error)
     print("\n".join(report(record, lines, then, found)))
     options.out.parent.mkdir(parents=True, exist_ok=True)
     options.out.write_text(as_json(record) + "\n", encoding="utf-8")
@@ -140,19 +129,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     noisy = record.load.noisy
     if noisy:
         print(f"ci/bench: {noisy}: these are no results, and nothing is judged by them", file=sys.stderr)
-    kept = keep(record, options) if options.record else OK
+    kept, reasons = OK, why_not_recorded(record)
+    if options.record and reasons and not options.force:
+        print(f"ci/bench: not recorded: {'; '.join(reasons)}", file=sys.stderr)
+        kept = NOT_RECORDED
+    elif options.record:
+        print(f"recorded: {append(record)}")
     worse = any(line.verdict in BAD and (not noisy or line.verdict != SLOWER) for line in lines)
     return WORSE if worse or broken(record) else kept
-
-
-def keep(record: Record, options: argparse.Namespace) -> int:
-    """Record what may be recorded, or say why not; with --force the machine may be busy and figures may be a part."""
-    reasons = why_not_recorded(record)
-    if reasons and not options.force:
-        print(f"ci/bench: not recorded: {'; '.join(reasons)}", file=sys.stderr)
-        return NOT_RECORDED
-    print(f"recorded: {append(record)}")
-    return OK
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
 from verification.benchmarks.figure import NONE, Figure, exponent
@@ -92,20 +92,6 @@ def as_plain(found: Sequence[Mark]) -> tuple[dict[str, object], ...]:
     return tuple({**asdict(mark), "reached": mark.reached} for mark in found)
 
 
-def _rate(record: Record, name: str) -> float:
-    """Millions of particle-steps a second."""
-    figure = record.figure(name)
-    return 1e-6 / figure.median if figure is not None and figure.values and figure.median > 0.0 else math.nan
-
-
-def _apart(record: Record, name: str) -> str:
-    """How far apart a figure's processors were."""
-    figure = record.figure(name)
-    if figure is None or not math.isfinite(figure.distance):
-        return ""
-    return f"processors {1e9 * figure.distance:.0f} ns apart and back"
-
-
 def sizes(record: Record, kinematics: str) -> list[tuple[float, float]]:
     """Points of the explicit block at one thread, and seconds a whole step, in order of size."""
     found = {}
@@ -117,17 +103,6 @@ def sizes(record: Record, kinematics: str) -> list[tuple[float, float]]:
     return sorted(found.items())
 
 
-def whole_sizes(record: Record) -> list[tuple[float, float]]:
-    """Points and seconds of the whole run without inertia at several cell sizes, in order of size."""
-    return sorted((float(figure.about["particles"]), figure.median) for figure in record.figures
-                  if figure.name.startswith("whole/quasistatic/") and figure.values)  # fmt: skip
-
-
-def slope(found: Sequence[tuple[float, float]]) -> float:
-    """The exponent of cost against points."""
-    return exponent([points for points, _ in found], [cost for _, cost in found])
-
-
 def best_crack(record: Record, error: float) -> Figure | None:
     """The fastest setting whose K_I of the crack in the block is within a relative error."""
     good = [figure for figure in record.figures if figure.name.startswith("crack/") and figure.values
@@ -135,48 +110,54 @@ def best_crack(record: Record, error: float) -> Figure | None:
     return min(good, key=lambda figure: figure.median, default=None)
 
 
+def _rate(figure: Figure | None) -> float:
+    """Millions of particle-steps a second."""
+    return 1e-6 / figure.median if figure is not None and figure.values and figure.median > 0.0 else math.nan
+
+
+def _speed(record: Record, name: str, what: str, wanted: float) -> list[Mark]:
+    """The mark on a figure's particle-steps, with how far apart its processors were."""
+    figure = record.figure(name)
+    if figure is None:
+        return []
+    apart = f"processors {1e9 * figure.distance:.0f} ns apart and back" if math.isfinite(figure.distance) else ""
+    return [Mark(what, wanted, _rate(figure), "million/s", True, apart)]
+
+
+def _exponent(what: str, wanted: float, found: Sequence[tuple[float, float]]) -> list[Mark]:
+    """The mark on the exponent of cost against points."""
+    if len(found) < 3:
+        return []
+    reach = f"{found[0][0]:.3g} to {found[-1][0]:.3g} points"
+    return [Mark(what, wanted, exponent(*zip(*found)), "", False, reach)]
+
+
+def _batch(record: Record, name: str, limit_s: float) -> list[Mark]:
+    """The mark on the time of a batch of experiments."""
+    figure = record.figure(f"experiments/{name}")
+    return [] if figure is None else [Mark(f"all experiments, {name}", limit_s, figure.median, "s", note=figure.problem)]
+
+
 def marks(record: Record) -> list[Mark]:
     """All marks of which the record has what they are about."""
     block = "bspline2/flip/fast/points4"
-    best = best_crack(record, 1e-3)
-    rate, total, step = "particle-steps of `updated`", "particle-steps of `total`, equivalent", "step/updated/{}/threads{}"
-    at = [step.format(f"{block}/cells80", threads) for threads in (1, 2)]
-    small, large = sizes(record, "updated"), sizes(record, "total")
-    beyond = [f"scaling/updated/{block}/cells320/threads{threads}" for threads in (1, 2)]  # the caches
-    drop = _rate(record, beyond[0]) / _rate(record, at[0])
-    every: list[tuple[bool, Callable[[], Mark]]] = [
-        (record.figure(at[0]) is not None, lambda: Mark(f"{rate}, 1 thread", 60.0, _rate(record, at[0]), "million/s", True)),
-        (record.figure(at[1]) is not None, lambda: Mark(f"{rate}, 2 threads", 110.0, _rate(record, at[1]), "million/s", True,
-                                                            _apart(record, at[1]))),
-        (record.figure(beyond[0]) is not None,
-         lambda: Mark("at 320 x 320 cells, 80 % of the mark, 1 thread", 48.0, _rate(record, beyond[0]), "million/s", True)),
-        (record.figure(beyond[1]) is not None,
-         lambda: Mark("at 320 x 320 cells, 80 % of the mark, 2 threads", 88.0, _rate(record, beyond[1]), "million/s", True,
-                      _apart(record, beyond[1]))),
-        (math.isfinite(drop), lambda: Mark("at 320 x 320 cells, of what is found at 80 x 80", 0.8, drop, "", True)),
-        (record.figure(at[0].replace("updated", "total")) is not None,
-         lambda: Mark(f"{total}, 1 thread", 300.0, _rate(record, at[0].replace("updated", "total")), "million/s", True)),
-        (len(small) > 2, lambda: Mark("exponent of a step's cost, `updated`", 1.05, slope(small), "", False, _reach(small))),
-        (len(large) > 2, lambda: Mark("exponent of a step's cost, `total`", 1.05, slope(large), "", False, _reach(large))),
-        (len(whole_sizes(record)) > 2, lambda: Mark("exponent of a run without inertia", 1.5, slope(whole_sizes(record)), "",
-                                                    False, _reach(whole_sizes(record)))),
-        (any(figure.name.startswith("crack/") for figure in record.figures),
-         lambda: Mark("K_I of the crack in the block to 0.1 %", 0.1, best.median if best else math.nan, "s",
-                      note=best.name if best else "")),
+    rate, total = "particle-steps of `updated`", "particle-steps of `total`, equivalent"
+    step, beyond = f"step/{{}}/{block}/cells80/threads{{}}", f"scaling/updated/{block}/cells320/threads"  # beyond the caches
+    drop = _rate(record.figure(f"{beyond}1")) / _rate(record.figure(step.format("updated", 1)))
+    whole = sorted((float(figure.about["particles"]), figure.median) for figure in record.figures
+                   if figure.name.startswith("whole/quasistatic/") and figure.values)  # fmt: skip
+    best, cracks = best_crack(record, 1e-3), any(figure.name.startswith("crack/") for figure in record.figures)
+    found = best.median if best else math.nan
+    return [
+        *_speed(record, step.format("updated", 1), f"{rate}, 1 thread", 60.0),
+        *_speed(record, step.format("updated", 2), f"{rate}, 2 threads", 110.0),
+        *_speed(record, f"{beyond}1", "at 320 x 320 cells, 80 % of the mark, 1 thread", 48.0),
+        *_speed(record, f"{beyond}2", "at 320 x 320 cells, 80 % of the mark, 2 threads", 88.0),
+        *([Mark("at 320 x 320 cells, of what is found at 80 x 80", 0.8, drop, "", True)] if math.isfinite(drop) else []),
+        *_speed(record, step.format("total", 1), f"{total}, 1 thread", 300.0),
+        *_exponent("exponent of a step's cost, `updated`", 1.05, sizes(record, "updated")),
+        *_exponent("exponent of a step's cost, `total`", 1.05, sizes(record, "total")),
+        *_exponent("exponent of a run without inertia", 1.5, whole),
+        *([Mark("K_I of the crack in the block to 0.1 %", 0.1, found, "s", note=best.name if best else "")] if cracks else []),
+        *_batch(record, "quasistatic/cell1m", 10.0), *_batch(record, "explicit/cell1m", 120.0), *_batch(record, "quasistatic/cell0.25m", 300.0),
     ]  # fmt: skip
-    for name, limit in (("quasistatic/cell1m", 10.0), ("explicit/cell1m", 120.0), ("quasistatic/cell0.25m", 300.0)):
-        figure = record.figure(f"experiments/{name}")
-        if figure is not None:
-            every.append((True, _batch_mark(figure, limit)))
-    return [make() for there, make in every if there]
-
-
-def _reach(found: Sequence[tuple[float, float]]) -> str:
-    """From how many points to how many."""
-    return f"{found[0][0]:.3g} to {found[-1][0]:.3g} points"
-
-
-def _batch_mark(figure: Figure, limit_s: float) -> Callable[[], Mark]:
-    """The mark on a batch of experiments."""
-    what = f"all experiments, {figure.name.removeprefix('experiments/')}"
-    return lambda: Mark(what, limit_s, figure.median, "s", note=figure.problem)

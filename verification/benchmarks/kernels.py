@@ -25,24 +25,16 @@ PER = {
 # Stages that do not pass over all particles: their unit is a call.
 CALLS = ("stage/momentum", "stage/surfaces", "stage/measure_tips")
 
+SCALE = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+
 
 class NoBenchmark(Exception):
     """strata_bench could not be run, or said nothing that can be read; the message is its own."""
 
 
-def bench_program() -> Path:
+def bench_program() -> str:
     """The program with the kernels: $STRATA_BENCH, or that of the release build."""
-    return Path(os.environ.get("STRATA_BENCH", ROOT / "build" / "release" / "strata_bench"))
-
-
-def names() -> list[str]:
-    """All benchmarks there are, as strata_bench lists them."""
-    command = [str(bench_program()), "--benchmark_list_tests=true"]
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, check=True)
-    except (OSError, subprocess.CalledProcessError) as error:
-        raise NoBenchmark(f"{command[0]}: {error}") from error
-    return [_plain(line) for line in done.stdout.splitlines() if line.strip()]
+    return os.environ.get("STRATA_BENCH", str(ROOT / "build" / "release" / "strata_bench"))
 
 
 def _plain(name: str) -> str:
@@ -50,22 +42,26 @@ def _plain(name: str) -> str:
     return "/".join(part for part in name.split("/") if not part.startswith(("iterations:", "repeats:")) and part != "manual_time")
 
 
-def measure(
-    chosen: Iterable[str], repetitions: int, tell: Callable[[str], None]
-) -> tuple[list[Figure], dict[str, Any]]:
+def names() -> list[str]:
+    """All benchmarks there are, as strata_bench lists them."""
+    try:
+        done = subprocess.run([bench_program(), "--benchmark_list_tests=true"], capture_output=True, text=True, check=True)
+    except (OSError, subprocess.CalledProcessError) as error:
+        raise NoBenchmark(f"{bench_program()}: {error}") from error
+    return [_plain(line) for line in done.stdout.splitlines() if line.strip()]
+
+
+def measure(chosen: Iterable[str], repetitions: int, tell: Callable[[str], None]) -> tuple[list[Figure], dict[str, Any]]:
     """Run benchmarks by their names so many times each; the figures, and the context that strata_bench gives (compiler, flags)."""
     pattern = "^(" + "|".join(re.escape(name) for name in chosen) + ")(/iterations:[0-9]+)?(/manual_time)?$"
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "figures.json"
-        command = [
-            str(bench_program()), f"--benchmark_filter={pattern}", f"--benchmark_repetitions={repetitions}",
-            "--benchmark_display_aggregates_only=true", f"--benchmark_out={out}", "--benchmark_out_format=json",
-        ]  # fmt: skip
-        status = _follow(command, tell)
+        status = _follow([bench_program(), f"--benchmark_filter={pattern}", f"--benchmark_repetitions={repetitions}",
+                          "--benchmark_display_aggregates_only=true", f"--benchmark_out={out}", "--benchmark_out_format=json"], tell)  # fmt: skip
         try:
             content = json.loads(out.read_text(encoding="utf-8"))
         except (OSError, ValueError) as error:
-            raise NoBenchmark(f"{command[0]}: exit {status}, {error}") from error
+            raise NoBenchmark(f"{bench_program()}: exit {status}, {error}") from error
     return parse(content), content.get("context", {})
 
 
@@ -73,13 +69,11 @@ def _follow(command: list[str], tell: Callable[[str], None]) -> int:
     """Run a command, tell the name of each benchmark once as its lines come; its exit status."""
     environment = {**os.environ, "OMP_PROC_BIND": "true", "OMP_PLACES": "cores"}
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=environment) as process:
-        assert process.stdout is not None
         last = ""
-        for line in process.stdout:
+        for line in process.stdout or ():
             name = _plain(re.sub("_(mean|median|stddev|cv)$", "", line.split(" ")[0]))
             if "/" in name and name != last:
-                tell(name)
-                last = name
+                tell(last := name)
         return process.wait()
 
 
@@ -92,30 +86,23 @@ def parse(content: dict[str, Any]) -> list[Figure]:
     return [figure_of(name, entries) for name, entries in runs.items()]
 
 
-SCALE = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
-
-
 def figure_of(name: str, entries: list[dict[str, Any]]) -> Figure:
     """One figure from its repetitions: seconds a unit of work."""
     failed = [str(entry.get("error_message", "an error")) for entry in entries if entry.get("error_occurred")]
-    a_call = name.startswith(CALLS)
+    a_call, one = name.startswith(CALLS), entries[0]
     per = "call" if a_call else PER.get(name.split("/")[0], "unit")
     if failed:
         return Figure(name, per, (), problem=failed[0])
-    about: dict[str, Any] = dict(pair.partition("=")[::2] for pair in entries[0].get("label", "").split())
-    for key in ("flop_a_unit", "byte_a_unit", "particles", "places"):
-        if entries[0].get(key):
-            about[key] = float(entries[0][key])
+    about: dict[str, Any] = dict(pair.partition("=")[::2] for pair in one.get("label", "").split())
+    about |= {key: float(one[key]) for key in ("flop_a_unit", "byte_a_unit", "particles", "places") if one.get(key)}
     if about.get("kinematics") == "total":
         about["equivalent"] = "flop of the form with particles, which this one need not do"
     large = about.get("particles", 0.0) * about.get("byte_a_unit", 0.0) > LARGE_B
-    seconds = tuple(
-        float(e["real_time"]) * SCALE[e.get("time_unit", "ns")] / (1.0 if a_call else float(e["units"])) for e in entries)
-    return Figure(
-        name, per, seconds, threads=int(entries[0]["threads_used"]), bound=MEMORY if large else CORE,
-        peak_flop_s=tuple(float(e["peak_flop_s"]) for e in entries), stream_B_s=tuple(float(e["stream_B_s"]) for e in entries),
-        round_trip_s=tuple(float(e["round_trip_s"]) for e in entries) if int(entries[0]["threads_used"]) > 1 else (), about=about,
-    )  # fmt: skip
+    seconds = tuple(float(e["real_time"]) * SCALE[e.get("time_unit", "ns")] / (1.0 if a_call else float(e["units"])) for e in entries)
+    peak, stream, trip = (tuple(float(e[key]) for e in entries) for key in ("peak_flop_s", "stream_B_s", "round_trip_s"))
+    threads = int(one["threads_used"])
+    return Figure(name, per, seconds, threads=threads, bound=MEMORY if large else CORE, peak_flop_s=peak, stream_B_s=stream,
+                  round_trip_s=trip if threads > 1 else (), about=about)  # fmt: skip
 
 
 def rates(threads: int = 1) -> tuple[float, float]:

@@ -1,12 +1,15 @@
-"""The machine that benchmarks run on, how busy it is, and what was built."""
+"""The machine that measures: what it is, how busy it is, and what was built on it."""
 from __future__ import annotations
 
 import os
+import platform
 import re
 import subprocess
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from verification.harness.paths import ROOT, solver
 
@@ -14,6 +17,7 @@ from verification.harness.paths import ROOT, solver
 # others just before the first benchmark, both in processors.
 LARGEST_LOAD = 0.5
 LARGEST_BUSY = 0.15
+WAIT_S = 90.0  # how long the chart waits for an idle machine
 
 
 @dataclass(frozen=True)
@@ -60,25 +64,15 @@ class Load:
 
 def parse_cpu(cpuinfo: str) -> str:
     """The processor's name with family, model and stepping, from the text of /proc/cpuinfo."""
-    found = {}
-    for line in cpuinfo.split("\n\n")[0].splitlines():
-        name, _, value = line.partition(":")
-        found[name.strip()] = value.strip()
+    found = {name.strip(): value.strip() for name, _, value in (line.partition(":") for line in cpuinfo.split("\n\n")[0].splitlines())}
     numbers = [found[name] for name in ("cpu family", "model", "stepping") if found.get(name)]
     return " ".join([found.get("model name", "unknown processor"), *numbers])
 
 
 def caches_of(folder: Path = Path("/sys/devices/system/cpu/cpu0/cache")) -> str:
     """Data and unified caches of the first processor, such as "L1 32K L2 1024K L3 32768K"."""
-    found = []
-    for index in sorted(folder.glob("index*")):
-        try:
-            level, kind, size = ((index / name).read_text().strip() for name in ("level", "type", "size"))
-        except OSError:
-            continue
-        if kind != "Instruction":
-            found.append(f"L{level} {size}")
-    return " ".join(found)
+    found = [[first(r"(.*)", index / name) for name in ("level", "type", "size")] for index in sorted(folder.glob("index*"))]
+    return " ".join(f"L{level} {size}" for level, kind, size in found if level and kind != "Instruction")
 
 
 def this_machine() -> Machine:
@@ -101,7 +95,30 @@ def _idle_and_total(stat: str) -> tuple[int, int]:
     return ticks[3] + ticks[4], sum(ticks)
 
 
-def _said(command: list[str]) -> str:
+def others_running() -> int:
+    """Threads that run or want to, besides the one that asks."""
+    return max(int(first(r"^procs_running (\d+)", Path("/proc/stat")) or 1) - 1, 0)
+
+
+def becomes_idle(wait_s: float = WAIT_S) -> bool:
+    """Wait until nothing else is at work; False where that takes more than wait_s."""
+    start = time.monotonic()
+    while busy_processors() > LARGEST_BUSY or os.getloadavg()[0] > LARGEST_LOAD:
+        if time.monotonic() - start > wait_s:
+            return False
+    return True
+
+
+def first(pattern: str, file: Path) -> str:
+    """The first match of a pattern's group in a file; nothing where there is none."""
+    try:
+        found = re.search(pattern, file.read_text(encoding="utf-8", errors="replace"), re.MULTILINE)
+    except OSError:
+        return ""
+    return found.group(1).strip() if found else ""
+
+
+def _said(*command: str) -> str:
     """What a command says, empty where it cannot."""
     try:
         return subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT).stdout.strip()
@@ -109,11 +126,29 @@ def _said(command: list[str]) -> str:
         return ""
 
 
-def this_build(context: dict[str, str] | None = None) -> Build:
+def this_build(context: Mapping[str, str] | None = None) -> Build:
     """Version and commit of the solver; compiler and flags as strata_bench says them in its context."""
-    commit = _said(["git", "rev-parse", "--short=12", "HEAD"])
-    changed = _said(["git", "status", "--porcelain", "--untracked-files=no", "--", "solver", "CMakeLists.txt"])
+    commit = _said("git", "rev-parse", "--short=12", "HEAD")
+    changed = _said("git", "status", "--porcelain", "--untracked-files=no", "--", "solver", "CMakeLists.txt")
     context = context or {}
     flags = " ".join(word for word in context.get("flags", "").split() if not word.startswith("-W"))
-    return Build(_said([str(solver()), "--version"]), commit + ("+" if changed else ""), context.get("compiler", ""),
-                 flags)  # fmt: skip
+    return Build(_said(str(solver()), "--version"), commit + ("+" if changed else ""), context.get("compiler", ""), flags)
+
+
+def described() -> dict[str, Any]:
+    """This machine as data: hardware, memory, system, compiler with its flags, version and revision of the solver."""
+    machine, cache = this_machine(), solver().parent / "CMakeCache.txt"
+    compiler, kind = (first(rf"^{key}:[A-Z]+=(.*)$", cache) for key in ("CMAKE_CXX_COMPILER", "CMAKE_BUILD_TYPE"))
+    flags = " ".join(first(rf"^{key}:[A-Z]+=(.*)$", cache) for key in ("CMAKE_CXX_FLAGS", f"CMAKE_CXX_FLAGS_{kind.upper()}"))
+    build = this_build({"compiler": (_said(compiler or "c++", "--version") or compiler).split("\n")[0], "flags": flags})
+    memory = int(first(r"^MemTotal:\s*(\d+)", Path("/proc/meminfo")) or 0) / 1048576
+    return {
+        "processor": machine.cpu, "cores": machine.cores, "caches": machine.caches, "memory_GB": round(memory, 1),
+        "system": f"{platform.system()} {platform.release()}", "compiler": build.compiler, "flags": build.flags, "version": build.version,
+        "revision": build.commit,
+    }  # fmt: skip
+
+
+def made_here(known: Mapping[str, Any], here: Mapping[str, Any]) -> bool:
+    """Whether measurements come from this hardware; those of which that cannot be told do not."""
+    return all(known.get(key) == here[key] for key in ("processor", "cores", "caches"))

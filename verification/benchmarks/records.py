@@ -2,13 +2,13 @@
 from __future__ import annotations
 
 import json
-import math
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
 from verification.benchmarks.figure import Figure
 from verification.benchmarks.machine import Build, Load, Machine
+from verification.harness.store import built, plain
 
 RECORDS = Path(__file__).parent / "records"
 FORMAT = 1
@@ -45,53 +45,30 @@ def file_of(machine: Machine, folder: Path = RECORDS) -> Path:
     return folder / f"{machine.key}.jsonl"
 
 
-def _short(value: Any) -> Any:
-    """Numbers to a few digits, in lists and tables too; those that are not finite, which JSON has not, as null."""
-    if isinstance(value, float):
-        return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None
-    if isinstance(value, (list, tuple)):
-        return [_short(item) for item in value]
-    if isinstance(value, dict):
-        return {key: _short(item) for key, item in value.items()}
-    return value
-
-
 def as_json(record: Record) -> str:
     """A record as one line; with each figure what is made of its repetitions, for other readers."""
-    content = asdict(record)
+    content = plain(record, DIGITS)
     for kept, figure in zip(content["figures"], record.figures):
-        kept |= {"median": figure.median, "spread": figure.spread, "calibrated": figure.calibrated,
-                 "share_of_peak": figure.share_of_peak}  # fmt: skip
-    return json.dumps({"format": FORMAT, **_short(content)}, allow_nan=False)
+        kept |= plain({name: getattr(figure, name) for name in ("median", "spread", "calibrated", "share_of_peak")}, DIGITS)
+    return json.dumps({"format": FORMAT, **content}, allow_nan=False)
 
 
 def from_json(line: str, where: str = "record") -> Record:
     """A record from its line."""
+    own = {item.name for item in fields(Figure)}
     try:
         content = json.loads(line)
-        if content["format"] != FORMAT:
-            raise BadRecord(f"{where}: format {content['format']}, not {FORMAT}")
-        return Record(
-            Machine(**content["machine"]), Build(**content["build"]), Load(**content["load"]), str(content["date"]),
-            tuple(_figure(item) for item in content["figures"]), bool(content["part"]), tuple(content["marks"]),
-        )  # fmt: skip
+        if content.pop("format") != FORMAT:
+            raise BadRecord(f"{where}: format {json.loads(line)['format']}, not {FORMAT}")
+        content["figures"] = [{key: value for key, value in figure.items() if key in own} for figure in content["figures"]]
+        return built(Record, content)
     except (ValueError, KeyError, TypeError) as error:
         raise BadRecord(f"{where}: {type(error).__name__}: {error}") from error
 
 
-def _figure(content: dict[str, Any]) -> Figure:
-    """A figure from its table."""
-    lists = {key: tuple(float(value) for value in content[key]) for key in ("values", "peak_flop_s", "stream_B_s")}
-    lists["round_trip_s"] = tuple(float(value) for value in content.get("round_trip_s", ()))  # no records before 0.13.0 have it
-    plain = {key: content[key] for key in ("name", "per", "unit", "threads", "bound", "about", "problem")}
-    return Figure(**plain, **lists)
-
-
 def load_records(path: Path) -> list[Record]:
     """All records of a file, the oldest first; none where there is no file."""
-    if not path.is_file():
-        return []
-    lines = path.read_text(encoding="utf-8").splitlines()
+    lines = path.read_text(encoding="utf-8").splitlines() if path.is_file() else []
     return [from_json(line, f"{path}:{number}") for number, line in enumerate(lines, 1) if line.strip()]
 
 
@@ -119,12 +96,9 @@ def broken(record: Record) -> list[str]:
 
 def why_not_recorded(record: Record) -> list[str]:
     """What speaks against keeping a record: a busy machine, a part only, figures that are none."""
-    reasons = [record.load.noisy] if record.load.noisy else []
-    if record.part:
-        reasons.append("only a part of the figures was taken")
-    if broken(record):
-        reasons.append(f"these are no figures: {', '.join(broken(record)[:5])}")
-    return reasons
+    reasons = [record.load.noisy, "only a part of the figures was taken" if record.part else "",
+               f"these are no figures: {', '.join(broken(record)[:5])}" if broken(record) else ""]  # fmt: skip
+    return [reason for reason in reasons if reason]
 
 
 def append(record: Record, folder: Path = RECORDS) -> Path:
@@ -134,4 +108,3 @@ def append(record: Record, folder: Path = RECORDS) -> Path:
     with path.open("a", encoding="utf-8") as stream:
         stream.write(as_json(record) + "\n")
     return path
-

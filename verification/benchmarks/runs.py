@@ -2,24 +2,24 @@
 from __future__ import annotations
 
 import os
+import tempfile
+import time
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
 
 from verification.benchmarks.figure import NONE, Figure
-from verification.benchmarks.process import Setting, Taken, take, take_all
+from verification.harness.load import LoadError, Summary, read_summary
 from verification.harness.paths import ANALYTIC, EXPERIMENTS, ROOT
 from verification.harness.reference import value
+from verification.harness.run import TOO_LONG, Job, run, timed
+from verification.harness.scenes import STUDY_VARIANTS, variants_of
 
 BLOCK = ROOT / "verification" / "benchmarks" / "block.toml"
 CRACK = ANALYTIC / "static_quasistatic.toml"
 NET_PA = 0.3e6  # of static_quasistatic.toml: pressure above the closing stress
-
-# The study's interfaces; Experiment 3 has two of them.
-VARIANTS: dict[str, tuple[str, ...]] = {
-    **{name: ("perfect", "friction", "weak", "soft") for name in (
-        "exp1_single_interface", "exp2_soft_above", "exp4_soft_between", "exp5_parallel_interface", "exp6_stress_reversal")},
-    "exp3_two_interfaces": ("perfect", "weak_soft", "soft_weak"),
-}  # fmt: skip
 
 SHIPPED_M = 1.0  # cells of the experiments, m
 TURNING = ("exp5_parallel_interface", "exp6_stress_reversal")  # paths that turn: the scenes say where fine cells end
@@ -29,6 +29,76 @@ JOBS = min(2, os.cpu_count() or 1)
 
 Rates = Callable[[], tuple[float, float]]
 Tell = Callable[[str], None]
+
+
+# --- runs as a user makes them
+
+
+def job_of(scene: Path, *settings: str, variant: str = "") -> Job:
+    """A run to be made, in a folder that is not kept."""
+    return Job(scene, variant, Path(), settings)
+
+
+def name_of(job: Job) -> str:
+    """Scene and variant."""
+    return f"{job.scene.stem}/{job.variant or 'default'}"
+
+
+@dataclass(frozen=True)
+class Taken:
+    """What a run took: seconds from start to end of the process; its summary, or why there is none."""
+
+    job: Job
+    seconds: float
+    summary: Summary | None
+    problem: str = ""
+
+
+def size_of(summary: Summary) -> dict[str, Any]:
+    """How large a run was."""
+    return {"particles": summary.particles, "steps": summary.steps}
+
+
+def take(job: Job, until: float = float("inf")) -> Taken:
+    """Make a run in a folder that is not kept; it is ended where time.monotonic() passes `until`."""
+    left = until - time.monotonic()
+    if left <= 0.0:
+        return Taken(job, 0.0, None, "not begun: the time for these runs was over")
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "run"
+        outcome = run(replace(job, out=out), limit_s=left if left < float("inf") else None)
+        if outcome.exit_status == TOO_LONG:
+            return Taken(job, outcome.wall_s, None, "ended: the time for these runs was over")
+        try:
+            summary = read_summary(out / "summary.json")
+        except LoadError:
+            return Taken(job, outcome.wall_s, None, outcome.reason)
+    return Taken(job, outcome.wall_s, summary, "" if outcome.ok else f"exit status {outcome.exit_status}: {summary.reason}")
+
+
+def take_all(every: Sequence[Job], jobs: int, limit_s: float, tell: Tell) -> tuple[float, list[Taken]]:
+    """Make runs side by side, for `limit_s` at most; seconds from the first's start to the last's end, and each run."""
+    start = time.monotonic()
+
+    def one(job: Job) -> Taken:
+        taken = take(job, start + limit_s)
+        tell(f"{name_of(job)}: {taken.problem or f'{taken.seconds:.2f} s'}")
+        return taken
+
+    with ThreadPoolExecutor(max_workers=jobs) as pool:
+        taken = list(pool.map(one, every))
+    return time.monotonic() - start, taken
+
+
+def figure_beside(name: str, per: str, work: Callable[[], list[float]], rates: Rates, threads: int = 1) -> Figure:
+    """What work finds, each with the mean of the machine's rates before and after it all: flop/s and B/s."""
+    before = rates()
+    found = work()
+    peak, stream = (0.5 * (a + b) for a, b in zip(before, rates()))
+    return Figure(name, per, tuple(found), threads=threads, peak_flop_s=(peak,) * len(found), stream_B_s=(stream,) * len(found))
+
+
+# --- all experiments
 
 
 @dataclass(frozen=True)
@@ -52,7 +122,7 @@ DEFAULT = (Batch("quasistatic", 1.0, 3, 120.0), Batch("explicit", 1.0, 1, 150.0)
 LONG = (Batch("quasistatic", 1.0, 5, 120.0), Batch("explicit", 1.0, 3, 3600.0), Batch("quasistatic", 0.25, 1, 1800.0))
 
 
-def settings_of(batch: Batch) -> list[Setting]:
+def jobs_of(batch: Batch) -> list[Job]:
     """The runs of a batch on the scenes' graded grids, those that take longest first.
 
     Below the scenes' cell size an interface that is weak fails as far as it is long (experiments/README.md, "What to expect"), so cells
@@ -61,114 +131,88 @@ def settings_of(batch: Batch) -> list[Setting]:
     keys = (f"numerics.mechanics={batch.mechanics}", f"numerics.cell_m={batch.cell_m:g}")
     along = ("numerics.fine_left_m=0", "numerics.fine_right_m=80")
     runs = []
-    for name, variants in VARIANTS.items():
-        for variant in variants if name.startswith(batch.only) else ():
-            fails = batch.cell_m < SHIPPED_M and "weak" in variant and name not in TURNING
-            runs.append(Setting(EXPERIMENTS / f"{name}.toml", variant, (*keys, *along) if fails else keys))
-    return sorted(runs, key=lambda run: run.scene.stem not in TURNING)
-
-
-def beside(work: Callable[[], list[float]], rates: Rates) -> tuple[list[float], float, float]:
-    """What work finds, with the mean of the machine's rates before and after it: flop/s and B/s."""
-    before = rates()
-    found = work()
-    after = rates()
-    return found, 0.5 * (before[0] + after[0]), 0.5 * (before[1] + after[1])
+    for scene in sorted(EXPERIMENTS.glob(f"{batch.only}*.toml"), key=lambda scene: (scene.stem not in TURNING, scene.stem)):
+        for variant in [name for name in variants_of(scene) if name in STUDY_VARIANTS]:
+            fails = batch.cell_m < SHIPPED_M and "weak" in variant and scene.stem not in TURNING
+            runs.append(job_of(scene, *keys, *(along if fails else ()), variant=variant))
+    return runs
 
 
 def batch_figures(batch: Batch, rates: Rates, tell: Tell) -> list[Figure]:
-    """The time from the first run's start to the last one's end, JOBS at a time, and each run's own."""
+    """The time from the first run's start to the last one's end, JOBS at a time, and each run's own (the solver's seconds)."""
     every: list[list[Taken]] = []
-    elapsed: list[float] = []
-    peaks: list[float] = []
-    streams: list[float] = []
-    for repetition in range(batch.repetitions):
+    wholes: list[Figure] = []
+    cpu_s = 0.0
+    while len(every) < batch.repetitions and not any(run.problem for runs in every for run in runs):
 
         def once() -> list[float]:
-            seconds, taken = take_all(settings_of(batch), JOBS, batch.limit_s, lambda words: tell(f"{batch.name}: {words}"))
+            nonlocal cpu_s
+            (seconds, taken), (_, cpu_s) = timed(lambda: take_all(jobs_of(batch), JOBS, batch.limit_s, lambda words: tell(f"{batch.name}: {words}")))
             every.append(taken)
             return [seconds]
 
-        found, peak, stream = beside(once, rates)
-        elapsed += found
-        peaks.append(peak)
-        streams.append(stream)
-        if any(run.problem for run in every[-1]):
-            break
-    problems = [f"{run.setting.name}: {run.problem}" for run in every[-1] if run.problem]
-    done = len(every[-1]) - len(problems)
-    about = {"runs": len(every[-1]), "completed": done, "jobs": JOBS, "limit_s": batch.limit_s,
-             "cpu_s": round(sum(run.cpu_s for run in every[-1]), 2)}  # fmt: skip
-    problem = f"{done} of {len(every[-1])} runs came to their end in {elapsed[-1]:.0f} s; {problems[0]}" if problems else ""
-    whole = Figure(batch.name, "all variants", () if problem else tuple(elapsed), threads=JOBS, about=about, problem=problem,
-                   peak_flop_s=() if problem else tuple(peaks), stream_B_s=() if problem else tuple(streams))  # fmt: skip
-    return [whole, *_each(batch, every, peaks, streams)]
-
-
-def _each(batch: Batch, every: Sequence[list[Taken]], peaks: list[float], streams: list[float]) -> list[Figure]:
-    """A figure a run: the solver's own seconds."""
-    figures = []
+        wholes.append(figure_beside(batch.name, "all variants", once, rates, JOBS))
+    last = every[-1]
+    problems = [f"{name_of(run.job)}: {run.problem}" for run in last if run.problem]
+    done = len(last) - len(problems)
+    about = {"runs": len(last), "completed": done, "jobs": JOBS, "limit_s": batch.limit_s, "cpu_s": round(cpu_s, 2)}
+    elapsed, peaks, streams = (tuple(getattr(one, name)[0] for one in wholes) for name in ("values", "peak_flop_s", "stream_B_s"))
+    whole = replace(wholes[0], about=about, values=elapsed, peak_flop_s=peaks, stream_B_s=streams)
+    if problems:
+        problem = f"{done} of {len(last)} runs came to their end in {elapsed[-1]:.0f} s; {problems[0]}"
+        whole = replace(whole, values=(), peak_flop_s=(), stream_B_s=(), problem=problem)
+    figures = [whole]
     for runs in zip(*every):
-        good = [run for run in runs if run.summary is not None and not run.problem]
-        complete = len(good) == len(every)
-        about = {"particles": good[0].summary.particles, "steps": good[0].summary.steps} if complete and good[0].summary else {}
-        seconds = tuple(run.summary.wall_s for run in good if run.summary)
-        name, problem = f"{batch.name}/{runs[0].setting.name}", next((run.problem for run in runs if run.problem), "")
-        if complete:
-            rates = {"peak_flop_s": tuple(peaks), "stream_B_s": tuple(streams)}
-            figures.append(Figure(name, "run", seconds, threads=JOBS, about=about, **rates))
-        else:
-            figures.append(Figure(name, "run", (), threads=JOBS, problem=problem))
+        own = Figure(f"{batch.name}/{name_of(runs[0].job)}", "run", (), threads=JOBS, problem=next((run.problem for run in runs if run.problem), ""))
+        if not own.problem:
+            summaries = [run.summary for run in runs if run.summary is not None]
+            seconds, first = tuple(one.wall_s for one in summaries), summaries[0]
+            own = replace(own, values=seconds, about=size_of(first), peak_flop_s=peaks, stream_B_s=streams)
+        figures.append(own)
     return figures
 
 
-def repeated(name: str, per: str, setting: Setting, repetitions: int, rates: Rates) -> tuple[Figure, Taken]:
-    """A run made so many times, after one that is not counted; its figure (seconds of the whole process) and the last of them.
+# --- single runs
+
+
+def repeated(name: str, job: Job, repetitions: int, rates: Rates, tell: Tell, about: Callable[[Summary], dict[str, Any]]) -> Figure:
+    """A run made so many times, after one that is not counted (seconds of the whole process), with what is told of the last of them.
 
     A run that is made once only, because it takes long, has none before it.
     """
-    last = take(setting) if repetitions > 1 else Taken(setting, 0.0, 0.0, None)
+    taken = [take(job)] if repetitions > 1 else []
 
     def again() -> list[float]:
-        nonlocal last
-        seconds = []
-        for _ in range(repetitions):
-            last = take(setting)
-            seconds.append(last.seconds)
-        return seconds
+        taken.extend(take(job) for _ in range(repetitions))
+        return [one.seconds for one in taken[-repetitions:]]
 
-    if last.problem:
-        return Figure(name, per, (), problem=last.problem), last
-    found, peak, stream = beside(again, rates)
-    count = len(found)
-    return Figure(name, per, tuple(found), peak_flop_s=(peak,) * count, stream_B_s=(stream,) * count, problem=last.problem), last
+    failed = taken and taken[0].problem
+    figure = Figure(name, "run", ()) if failed else figure_beside(name, "run", again, rates)
+    last = taken[-1]
+    figure = replace(figure, problem=last.problem, about=about(last.summary) if last.summary is not None else {})
+    tell(f"{name}: {figure.problem or f'{figure.median:.3g} s'}")
+    return figure
 
 
-def crack_settings(quick: bool) -> dict[str, Setting]:
+def crack_jobs(quick: bool) -> dict[str, Job]:
     """The pressurised crack in the block, as one equilibrium: uniform and graded grids."""
-    uniform = (1.0,) if quick else (2.0, 1.0, 0.5)
-    graded = (0.5,) if quick else (1.0, 0.5, 0.25, 0.125)
-    found = {f"crack/uniform/cell{cell:g}m": Setting(CRACK, "", (f"numerics.cell_m={cell:g}",)) for cell in uniform}
-    for cell in graded:
-        keys = (f"numerics.cell_m={cell:g}", "numerics.far_cell_m=8")
-        found[f"crack/graded/cell{cell:g}m"] = Setting(CRACK, "", keys)
-    return found
+    sizes = {"uniform": (1.0,) if quick else (2.0, 1.0, 0.5), "graded": (0.5,) if quick else (1.0, 0.5, 0.25, 0.125)}
+    return {
+        f"crack/{grid}/cell{cell:g}m": job_of(CRACK, f"numerics.cell_m={cell:g}", *(["numerics.far_cell_m=8"] if grid == "graded" else []))
+        for grid, cells in sizes.items() for cell in cells
+    }  # fmt: skip
 
 
 def crack_figures(repetitions: int, quick: bool, rates: Rates, tell: Tell) -> list[Figure]:
     """Time of each setting, with the error of K_I against strata-reference's crack in a finite block."""
     exact = value("block_crack", "K_I", half_length_m=5.0, pressure_Pa=NET_PA, width_m=80.0, half_height_m=80.0)
-    figures = []
-    for name, setting in crack_settings(quick).items():
-        figure, last = repeated(name, "run", setting, repetitions, rates)
-        if last.summary is not None:
-            found = last.summary.tips[0].K_I_Pa_sqrt_m
-            about = {"K_I": found, "reference": exact, "error": found / exact - 1.0, "particles": last.summary.particles,
-                     "solver_s": last.summary.wall_s}  # fmt: skip
-            figure = replace(figure, about=about)
-        tell(f"{name}: {figure.problem or f'{figure.median:.3f} s'}")
-        figures.append(figure)
-    return figures
+
+    def about(summary: Summary) -> dict[str, float]:
+        found = summary.tips[0].K_I_Pa_sqrt_m
+        error = found / exact - 1.0
+        return {"K_I": found, "reference": exact, "error": error, "particles": summary.particles, "solver_s": summary.wall_s}
+
+    return [repeated(name, job, repetitions, rates, tell, about) for name, job in crack_jobs(quick).items()]
 
 
 def growth_figures(repetitions: int, quick: bool, rates: Rates, tell: Tell) -> list[Figure]:
@@ -176,13 +220,8 @@ def growth_figures(repetitions: int, quick: bool, rates: Rates, tell: Tell) -> l
     figures = []
     for cell in (4.0, 2.0) if quick else (2.0, 1.0, 0.5, 0.25):
         keys = ("numerics.mechanics=quasistatic", f"numerics.cell_m={cell:g}", f"numerics.far_cell_m={cell:g}", "fracture.increment_m=2")
-        name = f"whole/quasistatic/exp1_soft/cell{cell:g}m"
-        reps = repetitions if cell >= 0.5 else 1
-        figure, last = repeated(name, "run", Setting(EXPERIMENTS / "exp1_single_interface.toml", "soft", keys), reps, rates)
-        if last.summary is not None:
-            figure = replace(figure, about={"particles": last.summary.particles, "steps": last.summary.steps})
-        tell(f"{name}: {figure.problem or f'{figure.median:.2f} s'}")
-        figures.append(figure)
+        name, job = f"whole/quasistatic/exp1_soft/cell{cell:g}m", job_of(EXPERIMENTS / "exp1_single_interface.toml", *keys, variant="soft")
+        figures.append(repeated(name, job, repetitions if cell >= 0.5 else 1, rates, tell, size_of))
     return figures
 
 
@@ -199,17 +238,13 @@ def memory_figures(quick: bool, tell: Tell) -> list[Figure]:
     """The most memory that a run of few steps holds, by the points that it has more than a smaller one (B a point)."""
     figures = []
     for kind, keys in MEMORY_KINDS.items():
-        held: list[tuple[float, float]] = []
-        problem = ""
+        taken = []
         for cells in (40, 80) if quick else MEMORY_CELLS:
             cell = 80.0 / cells
             few = f"{3 * 0.5 * cell / 2108.0:.6g}" if kind != "quasistatic" else "0"
-            settings = (*keys, f"numerics.cell_m={cell:g}", f"stop.time_s={few}", "output.fields_every_s=1")
-            taken = take(Setting(BLOCK, "", settings))
-            problem = problem or taken.problem
-            if taken.summary is not None:
-                held.append((float(taken.summary.particles), 1e6 * taken.summary.peak_memory_MB))
-        figures.append(memory_figure(f"memory/{kind}", held, problem))
+            taken.append(take(job_of(BLOCK, *keys, f"numerics.cell_m={cell:g}", f"stop.time_s={few}", "output.fields_every_s=1")))
+        held = [(float(one.summary.particles), 1e6 * one.summary.peak_memory_MB) for one in taken if one.summary is not None]
+        figures.append(memory_figure(f"memory/{kind}", held, next((one.problem for one in taken if one.problem), "")))
         tell(f"memory/{kind}: {figures[-1].problem or f'{figures[-1].median:.0f} B a point'}")
     return figures
 
@@ -221,4 +256,3 @@ def memory_figure(name: str, held: Sequence[tuple[float, float]], problem: str =
     (few, small), (many, large) = held[0], held[-1]
     about = {"points": many, "held_MB": large / 1e6}
     return Figure(name, "point", ((large - small) / (many - few),), unit="B", bound=NONE, about=about)
-

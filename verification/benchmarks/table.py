@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from verification.benchmarks.figure import Figure
 from verification.benchmarks.judge import BAD, BAND, NEW, Line, Mark
 from verification.benchmarks.records import Record
+from verification.harness.table import aligned
 
 STEP = "particle-step"
 
@@ -55,33 +56,25 @@ HEADER = ["figure", "cost", "spread", "of peak", "of stream", "now/then", ""]
 
 
 def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """Columns under their headings, the first flush left."""
-    widths = [max(len(row[k]) for row in [header, *rows]) for k in range(len(header))]
-
-    def line(cells: Sequence[str]) -> str:
-        rest = [cell.rjust(width) for cell, width in zip(cells[1:-1], widths[1:-1])]
-        return "  ".join([cells[0].ljust(widths[0]), *rest, cells[-1]]).rstrip()
-
-    return [line(header), *(line(row) for row in rows)]
+    """Columns under their headings, the first and the last flush left."""
+    return aligned([header, *rows], range(1, len(header) - 1))
 
 
 def calibration_line(record: Record) -> str:
     """What the machine itself gave, over all figures."""
+
+    def ranged(figures: Sequence[Figure], rate: str, unit: str, size: float, digits: int = 1) -> list[str]:
+        values = sorted(value / size for figure in figures for value in getattr(figure, rate))
+        words = [f"{value:.{digits}f}" for value in (values[len(values) // 2], values[0], values[-1])] if values else []
+        return [f"{words[0]} {unit} ({words[1]} to {words[2]})"] if words else []
+
     parts = []
     for threads in sorted({figure.threads for figure in record.figures if figure.peak_flop_s}):
         own = [figure for figure in record.figures if figure.threads == threads]
-        peak = sorted(value for figure in own for value in figure.peak_flop_s)
-        stream = sorted(value for figure in own for value in figure.stream_B_s)
-        parts.append(f"{threads} thread{'s' if threads > 1 else ''}: {peak[len(peak) // 2] / 1e9:.1f} GFlop/s "
-                     f"({peak[0] / 1e9:.1f} to {peak[-1] / 1e9:.1f}), {stream[len(stream) // 2] / 1e9:.1f} GB/s "
-                     f"({stream[0] / 1e9:.1f} to {stream[-1] / 1e9:.1f})" + _trips(own))  # fmt: skip
+        rates = [*ranged(own, "peak_flop_s", "GFlop/s", 1e9), *ranged(own, "stream_B_s", "GB/s", 1e9)]
+        rates += ranged([figure for figure in own if threads > 1], "round_trip_s", "ns between processors and back", 1e-9, 0)
+        parts.append(f"{threads} thread{'s' if threads > 1 else ''}: {', '.join(rates)}")
     return "calibration beside the figures, median (range): " + "; ".join(parts)
-
-
-def _trips(figures: Sequence[Figure]) -> str:
-    """What a line of memory took from one processor to the other and back."""
-    trips = sorted(1e9 * value for figure in figures for value in figure.round_trip_s if figure.threads > 1)
-    return f", {trips[len(trips) // 2]:.0f} ns between processors and back ({trips[0]:.0f} to {trips[-1]:.0f})" if trips else ""
 
 
 def mark_row(mark: Mark) -> list[str]:

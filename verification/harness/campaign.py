@@ -7,130 +7,76 @@ for the same scene and solver is not run again; a run that was interrupted goes 
 """
 from __future__ import annotations
 
-import argparse
 import subprocess
 import sys
-import threading
 import time
-from dataclasses import dataclass
-from functools import partial
+from collections.abc import Sequence
 from pathlib import Path
 
 from verification.harness import claims
-from verification.harness.cost import cost_of
-from verification.harness.load import LoadError, load
+from verification.harness.choose import beginnings, choose
+from verification.harness.command import command
 from verification.harness.paths import EXPERIMENTS, ROOT, RUNS, solver
-from verification.harness.refine import content_of
-from verification.harness.run import Job, Outcome, done_before, key_of, load_outcome, run
+from verification.harness.plan import Made, make_all, name_of
+from verification.harness.run import Job, done_before, key_of
 from verification.harness.scenes import MECHANICS, mechanics_of, scenes_of, variants_of
-from verification.harness.side_by_side import Task, duration, side_by_side
+from verification.harness.side_by_side import duration
 
 PAGE = ROOT / "reports" / "make_page.py"  # reads what is there and is not imported here
 
 
-@dataclass(frozen=True)
-class Campaign:
-    """All runs of the experiments whose names begin with one of `only` (all where empty), in each mechanics, below one folder."""
-
-    runs: Path
-    only: tuple[str, ...] = ()
-    settings: tuple[str, ...] = ()
-    mechanics: tuple[str, ...] = MECHANICS
-    experiments: Path = EXPERIMENTS
-
-    def scenes(self) -> list[Path]:
-        """The scene files of the campaign."""
-        return [path for path in scenes_of(self.experiments) if not self.only or path.stem.startswith(self.only)]
-
-    def jobs(self) -> list[Job]:
-        """All jobs of the campaign, but for variants that the mechanics cannot run."""
-        return [
-            self.job(mechanics, scene, variant)
-            for mechanics in self.mechanics
-            for scene in self.scenes()
-            for variant in variants_of(scene)
-            if mechanics in mechanics_of(scene, variant)
-        ]
-
-    def name(self, job: Job) -> str:
-        """A job's mechanics, experiment and variant."""
-        return str(job.out.relative_to(self.runs))
-
-    def job(self, mechanics: str, scene: Path, variant: str) -> Job:
-        """One job of the campaign."""
-        settings = (f"numerics.mechanics={mechanics}", *self.settings)
-        return Job(scene, variant, self.runs / mechanics / scene.stem / variant, settings)
+def jobs_of(runs: Path, scenes: Sequence[Path], settings: Sequence[str] = (), mechanics: Sequence[str] = MECHANICS) -> list[Job]:
+    """All runs of scenes in each mechanics, below one folder, but for variants that the mechanics cannot run."""
+    return [
+        Job(scene, variant, runs / one / scene.stem / variant, (f"numerics.mechanics={one}", *settings))
+        for one in mechanics for scene in scenes for variant in variants_of(scene) if one in mechanics_of(scene, variant)
+    ]  # fmt: skip
 
 
-def expected_s(job: Job) -> float:
-    """How long a run will take on one thread: as long as the last time, or by what its scene says, s."""
-    before = load_outcome(job.out)
-    if before is not None and before.ok:
-        return before.wall_s
-    content = content_of(job.scene, job.variant, job.settings)
-    return cost_of(content, str(content["numerics"]["mechanics"])).seconds
-
-
-def result_line(job: Job, outcome: Outcome) -> str:
+def result_line(made: Made) -> str:
     """A run's result in a few words."""
+    outcome, found = made
     if not outcome.ok:
         return f"FAILED: {outcome.reason}"
-    try:
-        found = load(job.out)
-    except LoadError as error:
-        return f"completed, but {error}"
+    if found is None:
+        return "completed, but it cannot be read"
     start = next((event.inlet_Pa for event in found.summary.events if event.kind == "start"), None)
     begun = f"starts at {start / 1e6:.3f} MPa" if start is not None else "never starts"
     top = float(found.history["tip_y_m"].max())
     return f"{begun}, tip at {top:.1f} m at {found.summary.inlet_Pa / 1e6:.3f} MPa ({outcome.wall_s:.1f} s)"
 
 
-def made(job: Job, stop: threading.Event) -> Outcome:
-    """Make a run; a folder that cannot be used fails it alone."""
-    try:
-        return run(job, stop=stop)
-    except OSError as error:
-        return Outcome(job.scene.stem, job.variant, "failed", 2, str(error), 0.0, "")
-
-
-def make_runs(campaign: Campaign, at_a_time: int) -> int:
+def make_runs(jobs: Sequence[Job], at_a_time: int) -> int:
     """Make all runs with a line each; 3 where some did not complete, which are named at the end."""
     binary = solver()
-    before = {job: done_before(job, key_of(job, binary)) for job in campaign.jobs()}
-    rest = [job for job, outcome in before.items() if outcome is None]
-    print(f"{len(rest)} runs to make, {len(before) - len(rest)} done before for the same scene and solver", flush=True)
-    tasks = [
-        Task(campaign.name(job), partial(made, job), partial(result_line, job), expected_s(job)) for job in rest
-    ]
-    outcomes = before | dict(zip(rest, side_by_side(tasks, at_a_time)))
-    failed = [f"failed: {campaign.name(job)}: {outcome.reason}" for job, outcome in outcomes.items() if not outcome.ok]
+    outcomes = {job: done_before(job, key_of(job, binary)) for job in jobs}
+    rest = [job for job, outcome in outcomes.items() if outcome is None]
+    print(f"{len(rest)} runs to make, {len(jobs) - len(rest)} done before for the same scene and solver", flush=True)
+    outcomes |= {job: outcome for job, (outcome, _) in zip(rest, make_all(rest, at_a_time, result_line))}
+    failed = [f"failed: {name_of(job)}: {outcome.reason}" for job, outcome in outcomes.items() if outcome is not None and not outcome.ok]
     print("\n".join(failed), end="\n" if failed else "")
     return 3 if failed else 0
 
 
 def main(arguments: list[str] | None = None) -> int:
     """The campaign from the command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command(Path(__file__).name, __doc__, "mechanics", "set", "jobs", "list", "runs", "out", runs=RUNS, out=ROOT / "reports" / "out")
     parser.add_argument("--experiments", type=Path, default=EXPERIMENTS)
-    parser.add_argument("--runs", type=Path, default=RUNS)
-    parser.add_argument("--out", type=Path, default=ROOT / "reports" / "out", help="folder for the page")
     parser.add_argument("--only", default="", help="beginnings of names of experiments, comma-separated")
-    parser.add_argument("--mechanics", default="both", choices=(*MECHANICS, "both"))
-    parser.add_argument("--set", dest="settings", action="append", default=[], metavar="KEY=VALUE", help="a scene key, in all runs")
-    parser.add_argument("--jobs", type=int, default=2, help="runs at a time, each on one thread")
-    parser.add_argument("--list", action="store_true", help="name the runs, make none")
     options = parser.parse_args(arguments)
-    only = tuple(filter(None, options.only.split(",")))
     mechanics = MECHANICS if options.mechanics == "both" else (options.mechanics,)
-    campaign = Campaign(options.runs.resolve(), only, tuple(options.settings), mechanics, options.experiments)
-    if not campaign.scenes():
-        parser.error(f"no experiment begins with {options.only}; there are {', '.join(path.stem for path in scenes_of(options.experiments))}")
+    runs = options.runs.resolve()
+    try:
+        scenes = choose({path.stem: path for path in scenes_of(options.experiments)}, beginnings(options.only), "experiment begins with")
+    except ValueError as error:
+        parser.error(str(error))
+    jobs = jobs_of(runs, list(scenes.values()), options.settings, mechanics)
     if options.list:
-        print("\n".join(campaign.name(job) for job in campaign.jobs()))
+        print("\n".join(map(name_of, jobs)))
         return 0
     start = time.monotonic()
-    status = make_runs(campaign, options.jobs)
-    folders = ["--experiments", str(options.experiments), "--runs", str(campaign.runs)]
+    status = make_runs(jobs, options.jobs)
+    folders = ["--experiments", str(options.experiments), "--runs", str(runs)]
     claims.main(folders)
     if subprocess.run([sys.executable, str(PAGE), *folders, "--out", str(options.out)], check=False).returncode != 0:
         return 1

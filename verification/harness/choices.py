@@ -5,6 +5,7 @@ import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from verification.harness.choose import twice
 from verification.harness.scenes import scenes_of, variants_of
 
 FILE = Path("choices") / "points.toml"  # below the folder of the scenes
@@ -43,29 +44,19 @@ def read_points(experiments: Path) -> list[Point]:
     path = experiments / FILE
     if not path.is_file():
         return []
-    points = [
-        Point(
-            str(item["id"]),
-            str(item["open"]),
-            str(item["default"]),
-            tuple(Choice(str(one["id"]), f"{item['open']}: {one['name']}", str(one["name"]), one["runs"]) for one in item["choice"]),
-        )
-        for item in tomllib.loads(path.read_text(encoding="utf-8"))["point"]
-    ]
-    _check(points, experiments)
-    return points
-
-
-def _check(points: list[Point], experiments: Path) -> None:
-    """Every variant that a choice names exists, and no id is used twice."""
+    points = []
+    for item in tomllib.loads(path.read_text(encoding="utf-8"))["point"]:
+        choices = [Choice(one["id"], f"{item['open']}: {one['name']}", one["name"], one["runs"]) for one in item["choice"]]
+        points.append(Point(item["id"], item["open"], item["default"], tuple(choices)))
     known = {scene.stem: set(variants_of(scene)) for scene in scenes_of(experiments)}
-    choices = [choice for point in points for choice in point.choices]
-    if len({choice.id for choice in choices}) < len(choices):
+    every = [choice for point in points for choice in point.choices]
+    if twice(choice.id for choice in every):
         raise BadChoice("two choices have the same id")
-    for choice in choices:
+    for choice in every:
         for experiment, pairs in choice.runs.items():
             if experiment not in known:
                 raise BadChoice(f"choice {choice.id}: there is no experiment {experiment}")
-            strangers = ({*pairs, *pairs.values()}) - known[experiment]
+            strangers = {*pairs, *pairs.values()} - known[experiment]
             if strangers:
                 raise BadChoice(f"choice {choice.id}: {experiment} has no variant {', '.join(sorted(strangers))}")
+    return points

@@ -2,20 +2,20 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, field, fields
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
+
+from verification.harness import store
 
 REPRODUCED = "reproduced"
 NOT_REPRODUCED = "not reproduced"
 ONLY_UNDER_A_VARIANT = "only under a variant"
 NOT_EVALUATED = "not evaluated"
 
-# An arrest or plateau that rests on J where an interface is too near for it to be trusted, and what becomes of the flag
-# where a quasi-static run decides the same case by energy.
+# The flag of an arrest or plateau that rests on J where an interface is too near for it to be trusted.
 BY_J = "J at interface"
-CONFIRMED = "J at interface, as energy decides"
-CONTRADICTED = "J at interface, energy decides otherwise"
 
 
 @dataclass(frozen=True)
@@ -78,44 +78,37 @@ class ClaimResult:
     flags: tuple[str, ...]
 
 
+Plain = dict[str, Any]
+
+
+def _with_cases(claims: list[Plain], changed: Callable[[Plain], Plain]) -> list[Plain]:
+    """Claims with every case of theirs and of their readings changed."""
+
+    def each(holder: Plain) -> Plain:
+        return {**holder, "cases": [changed(case) for case in holder["cases"]]}
+
+    return [each({**claim, "readings": [each(reading) for reading in claim["readings"]]}) for claim in claims]
+
+
 def write_claims(results: list[ClaimResult], path: Path) -> None:
     """Write claims.json; a case's keys stand beside what was measured."""
 
-    def flat(result: CaseResult) -> dict[str, Any]:
-        content = asdict(result)
-        return {**content.pop("case"), **content}
+    def flat(case: Plain) -> Plain:
+        return {**case["case"], **{key: value for key, value in case.items() if key != "case"}}
 
-    claims = []
-    for result in results:
-        readings = [{**asdict(reading), "cases": [flat(case) for case in reading.cases]} for reading in result.readings]
-        claims.append({**asdict(result), "cases": [flat(case) for case in result.cases], "readings": readings})
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps({"claims": claims}, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    store.write({"claims": _with_cases(store.plain(results), flat)}, path)
 
 
 def read_claims(path: Path) -> list[ClaimResult]:
     """Read claims.json; none where there is no such file, ValueError where it is not as write_claims leaves it."""
+    own = {item.name for item in fields(Case)}
+
+    def nest(case: Plain) -> Plain:
+        return {"case": {key: value for key, value in case.items() if key in own}, **{key: case[key] for key in case if key not in own}}
+
     if not path.is_file():
         return []
     try:
-        return [_claim(content) for content in json.loads(path.read_text(encoding="utf-8"))["claims"]]
+        return store.built(list[ClaimResult], _with_cases(json.loads(path.read_text(encoding="utf-8"))["claims"], nest))
     except (KeyError, TypeError) as error:
         raise ValueError(f"{path}: {error}") from error
-
-
-def _claim(content: dict[str, Any]) -> ClaimResult:
-    """A claim from its JSON object."""
-    own = {item.name: content[item.name] for item in fields(ClaimResult)}
-    readings = tuple(
-        Reading(**{**reading, "cases": tuple(map(_case, reading["cases"]))}) for reading in content["readings"]
-    )
-    cases = tuple(map(_case, content["cases"]))
-    return ClaimResult(**{**own, "cases": cases, "readings": readings, "flags": tuple(content["flags"])})
-
-
-def _case(content: dict[str, Any]) -> CaseResult:
-    """A case from its JSON object."""
-    names = {item.name for item in fields(Case)}
-    case = Case(**{key: value for key, value in content.items() if key in names})
-    rest = {key: value for key, value in content.items() if key not in names}
-    return CaseResult(case=case, **{**rest, "flags": tuple(rest["flags"])})

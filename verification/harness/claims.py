@@ -9,7 +9,6 @@ usage: python3 -m verification.harness.claims [--experiments DIR] [--runs DIR] [
 """
 from __future__ import annotations
 
-import argparse
 import math
 import sys
 from collections.abc import Sequence
@@ -20,11 +19,11 @@ from typing import Any
 
 from verification.harness.choices import Choice, read_points
 from verification.harness.claim_data import (
-    BY_J, CONFIRMED, CONTRADICTED, NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, Case, CaseResult, ClaimResult,
-    Reading, read_claims, write_claims,
+    NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, Case, CaseResult, ClaimResult, Reading, read_claims, write_claims,
 )  # fmt: skip
+from verification.harness.command import command
 from verification.harness.load import OF_SPEEDS, LoadError, Run, load
-from verification.harness.observables import OBSERVABLES, Measured, measure
+from verification.harness.observables import OBSERVABLES, measure
 from verification.harness.paths import EXPERIMENTS, RUNS
 from verification.harness.scenes import MECHANICS, mechanics_of, read_scene, scenes_of
 
@@ -49,8 +48,11 @@ def case_of(content: dict[str, Any], default_observable: str, where: str) -> Cas
     if OBSERVABLES[name].compares != ("against" in content):
         raise BadClaim(f"{where}: {name} {'needs' if OBSERVABLES[name].compares else 'takes no'} key against")
     parameters = {key: value for key, value in content.items() if key not in CASE_KEYS}
-    known = {key: content[key] for key in CASE_KEYS if key in content and key != "observable"}
-    return Case(observable=name, parameters=parameters, **known)
+    known = {key: content[key] for key in CASE_KEYS if key in content}
+    return Case(**{**known, "observable": name}, parameters=parameters)
+
+
+# --- on runs
 
 
 class Runs:
@@ -74,52 +76,45 @@ class Runs:
         return run, ""
 
 
-def finite(number: float) -> float | None:
-    """A number for JSON, where what is not finite becomes null."""
-    return number if math.isfinite(number) else None
-
-
-def marks(run: Run) -> list[str]:
-    """A flag a mark that the run's own monitors have set on it, with the run's name."""
-    return [f"suspect run {run.name}: {mark.why}" for mark in run.summary.suspect if mark.monitor != OF_SPEEDS]
+def runs_of(case: Case, experiment: str) -> list[tuple[str, str]]:
+    """Experiment and variant of each run that a case is about."""
+    return [(experiment, case.variant)] + ([(case.against_scene or experiment, case.against)] if case.against is not None else [])
 
 
 def evaluate_case(case: Case, experiment: str, runs: Runs) -> CaseResult:
-    """Measure a case on the runs."""
-    run, problem = runs.get(experiment, case.variant)
-    against: Run | None = None
-    if run is not None and case.against is not None:
-        against, problem = runs.get(case.against_scene or experiment, case.against)
+    """Measure a case on the runs; marks that the runs' own monitors have set on them are flags."""
     observable = OBSERVABLES[case.observable]
+    found = [runs.get(*names) for names in runs_of(case, experiment)]
+    problem = next((problem for _, problem in found if problem), "")
+    known = [run for run, _ in found if run is not None]
     if problem:
         return CaseResult(case, observable.unit, None, None, None, None, False, problem, (), observable.meaning)
-    assert run is not None
-    found: Measured = measure(case.observable, case.parameters, run, against)
-    holds = found.holds(case.at_least, case.at_most)
-    flags = found.flags if found.exact else (*found.flags, "bound only")
-    flags = (*flags, *(mark for one in (run, against) if one is not None for mark in marks(one)))
-    return CaseResult(
-        case, observable.unit, found.value, finite(found.low), finite(found.high), holds, True, found.note, flags, observable.meaning
-    )
+    measured = measure(case.observable, case.parameters, known[0], known[1] if len(known) > 1 else None)
+    marks = [f"suspect run {run.name}: {mark.why}" for run in known for mark in run.summary.suspect if mark.monitor != OF_SPEEDS]
+    flags = (*measured.flags, *(() if measured.exact else ("bound only",)), *marks)
+    low, high = (bound if math.isfinite(bound) else None for bound in (measured.low, measured.high))
+    holds = measured.holds(case.at_least, case.at_most)
+    return CaseResult(case, observable.unit, measured.value, low, high, holds, True, measured.note, flags, observable.meaning)
 
 
-def all_hold(cases: tuple[CaseResult, ...]) -> bool | None:
+def all_hold(cases: Sequence[CaseResult]) -> bool | None:
     """Whether all cases hold: False as soon as one does not, None where some are open."""
     if any(case.holds is False for case in cases):
         return False
     return True if all(case.holds for case in cases) else None
 
 
-def verdict_of(cases: tuple[CaseResult, ...], readings: tuple[Reading, ...]) -> str:
+def verdict_of(cases: Sequence[CaseResult], readings: Sequence[Reading]) -> str:
     """The verdict on a claim from its cases and those of its readings that have runs for all of them."""
     holds = all_hold(cases)
     if holds:
         return REPRODUCED
     if any(reading.holds and reading.complete for reading in readings):
         return ONLY_UNDER_A_VARIANT
-    if holds is None and not all(case.evaluated for case in cases):
-        return NOT_EVALUATED
-    return NOT_REPRODUCED
+    return NOT_EVALUATED if holds is None and not all(case.evaluated for case in cases) else NOT_REPRODUCED
+
+
+# --- readings
 
 
 def under(choice: Choice, cases: Sequence[Case], experiment: str) -> list[Case]:
@@ -135,20 +130,16 @@ def under(choice: Choice, cases: Sequence[Case], experiment: str) -> list[Case]:
     return found if changed else []
 
 
-def can_run(cases: Sequence[Case], experiment: str, experiments: Path, mechanics: str) -> bool:
-    """Whether the mechanics can run all variants of some cases."""
-    named = [(experiment, case.variant) for case in cases]
-    named += [(case.against_scene or experiment, case.against) for case in cases if case.against]
-    return all(mechanics in mechanics_of(experiments / f"{stem}.toml", variant) for stem, variant in named)
-
-
 def readings_of(
     claim: dict[str, Any], cases: Sequence[Case], experiment: str, runs: Runs, choices: Sequence[Choice], experiments: Path
 ) -> tuple[Reading, ...]:
-    """The readings that the scene writes, then those that follow from choices; one written for a choice stands for it."""
+    """The readings that the scene writes, then those that follow from choices; one written for a choice stands for it.
+
+    A choice is none where the mechanics cannot run all variants that stand for others.
+    """
     where = f"{experiment}, claim {claim['id']}"
     titles = {choice.id: choice.title for choice in choices}
-    written: list[tuple[str, str, list[Case], bool]] = []
+    written: list[tuple[str, str, list[Case], bool]] = []  # name, choice, cases, whether these are all
     for reading in claim.get("reading", []):
         asked = [case_of(content, claim["observable"], where) for content in reading["case"]]
         choice_id = str(reading.get("choice", ""))
@@ -158,13 +149,17 @@ def readings_of(
     spoken_for = {choice_id for _, choice_id, _, _ in written}
     for choice in choices:
         asked = under(choice, cases, experiment) if choice.id not in spoken_for else []
-        if asked and can_run(asked, experiment, experiments, runs.mechanics):
+        named = [names for case in asked for names in runs_of(case, experiment)]
+        if named and all(runs.mechanics in mechanics_of(experiments / f"{stem}.toml", variant) for stem, variant in named):
             written.append(("", choice.id, asked, len(asked) == len(cases)))
     found = []
     for name, choice_id, asked, complete in written:
         results = tuple(evaluate_case(case, experiment, runs) for case in asked)
         found.append(Reading(titles.get(choice_id, name), all_hold(results), results, choice_id, complete))
     return tuple(found)
+
+
+# --- claims
 
 
 def evaluate(
@@ -178,16 +173,13 @@ def evaluate(
     asked = [case_of(content, claim["observable"], where) for content in claim["case"]]
     cases = tuple(evaluate_case(case, experiment, runs) for case in asked)
     readings = readings_of(claim, asked, experiment, runs, choices, experiments)
-    verdict, holds = verdict_of(cases, readings), all_hold(cases)
-    flags = list(dict.fromkeys(flag for case in cases for flag in case.flags))
+    verdict, holds, flags = verdict_of(cases, readings), all_hold(cases), list(dict.fromkeys(flag for case in cases for flag in case.flags))
     if verdict == NOT_REPRODUCED and holds is None:
         flags.append("undecided: a run ended before it could show this")
     if verdict == REPRODUCED:
         flags += [f"does not hold under: {reading.name}" for reading in readings if reading.holds is False]
-    return ClaimResult(
-        claim["id"], experiment, runs.mechanics, claim["text"], claim["why"], claim["observable"], verdict, holds, cases, readings,
-        tuple(flags),
-    )  # fmt: skip
+    own = (claim["id"], experiment, runs.mechanics, claim["text"], claim["why"], claim["observable"])
+    return ClaimResult(*own, verdict, holds, cases, readings, tuple(flags))
 
 
 def claims_of(scene: Path) -> list[dict[str, Any]]:
@@ -199,20 +191,14 @@ def evaluate_all(experiments: Path, runs_folder: Path, mechanics: str = MECHANIC
     """Evaluate the claims of all scenes of a folder on the runs of one mechanics, which are below runs_folder/EXPERIMENT/."""
     runs = Runs(runs_folder, mechanics)
     choices = [choice for point in read_points(experiments) for choice in point.choices]
-    return [
-        evaluate(claim, scene.stem, runs, choices, experiments) for scene in scenes_of(experiments) for claim in claims_of(scene)
-    ]
+    return [evaluate(claim, scene.stem, runs, choices, experiments) for scene in scenes_of(experiments) for claim in claims_of(scene)]
 
 
 def evaluate_each(experiments: Path, root: Path) -> list[ClaimResult]:
     """Evaluate the claims in each mechanics that has runs below root/MECHANICS/ (in the first where none has)."""
     present = [mechanics for mechanics in MECHANICS if (root / mechanics).is_dir()] or [MECHANICS[0]]
-    results = {mechanics: evaluate_all(experiments, root / mechanics, mechanics) for mechanics in present}
-    if set(MECHANICS) <= set(results):
-        by_energy = {result.id: result for result in results["quasistatic"]}
-        results["explicit"] = [confirmed(result, by_energy[result.id]) for result in results["explicit"]]
     finer = finer_of(experiments, root) or read_claims(experiments / FINER_RECORD)
-    return [result for mechanics in present for result in results[mechanics]] + finer
+    return [result for mechanics in present for result in evaluate_all(experiments, root / mechanics, mechanics)] + finer
 
 
 def finer_of(experiments: Path, root: Path) -> list[ClaimResult]:
@@ -234,28 +220,10 @@ def record_finer(experiments: Path, root: Path) -> Path:
     return experiments / FINER_RECORD
 
 
-def confirmed(result: ClaimResult, by_energy: ClaimResult) -> ClaimResult:
-    """A claim whose cases that rest on J at an interface say whether the other mechanics decides them alike by energy."""
-    cases = tuple(_confirmed(case, other) for case, other in zip(result.cases, by_energy.cases))
-    flags = list(dict.fromkeys(flag for case in cases for flag in case.flags))
-    rest = [flag for flag in result.flags if flag not in flags and flag != BY_J]
-    return replace(result, cases=cases, flags=(*flags, *rest))
-
-
-def _confirmed(case: CaseResult, other: CaseResult) -> CaseResult:
-    """One case with its flag replaced where the other decides by energy."""
-    if BY_J not in case.flags or not other.evaluated or BY_J in other.flags or other.holds is None or case.holds is None:
-        return case
-    word = CONFIRMED if case.holds == other.holds else CONTRADICTED
-    return replace(case, flags=tuple(word if flag == BY_J else flag for flag in case.flags))
-
-
 def main(arguments: list[str] | None = None) -> int:
     """Evaluate from the command line, print a line a claim and write the JSON."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command(Path(__file__).name, __doc__, "runs", "out", runs=RUNS)
     parser.add_argument("--experiments", type=Path, default=EXPERIMENTS)
-    parser.add_argument("--runs", type=Path, default=RUNS)
-    parser.add_argument("--out", type=Path, help="default: claims.json among the runs")
     parser.add_argument("--record", action="store_true", help=f"write EXPERIMENTS/{FINER_RECORD} from the runs with cells of 0.5 m")
     options = parser.parse_args(arguments)
     if options.record:

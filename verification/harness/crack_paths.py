@@ -1,13 +1,11 @@
 """Paths of Experiments 5 and 6 by boundary elements in the infinite plane, and paths of runs in the same frame."""
 from __future__ import annotations
 
-import json
-from functools import lru_cache
-
 import numpy as np
 
 from verification.harness.load import Array, LoadError, Run
-from verification.harness.reference import values
+from verification.harness.observables import distances_to
+from verification.harness.reference import Setting, values
 
 INTERFACE_M = 5.0  # to the right of the first crack
 FIRST_TIP_M = 5.0
@@ -17,13 +15,7 @@ _ACROSS_PA = -2e6  # in-situ stress across the fracture
 _ALONG_PA = {5: -3e6, 6: -1e6}  # and along it
 
 
-@lru_cache(maxsize=None)
-def _column(quantity: str, settings: str) -> Array:
-    """A list of strata-reference crack_path for settings (JSON)."""
-    return values("crack_path", quantity, **json.loads(settings))
-
-
-def path_settings(experiment: int, increment_m: float, turning: str, growth_m: float) -> dict[str, float | str]:
+def path_settings(experiment: int, increment_m: float, turning: str, growth_m: float) -> dict[str, Setting]:
     """The settings of crack_path for Experiment 5 or 6."""
     crack, beyond = (_SOFT, _STIFF) if experiment == 5 else (_STIFF, _SOFT)
     return {
@@ -38,13 +30,13 @@ def exact_path(experiment: int, increment_m: float, turning: str, growth_m: floa
 
     Perfect interface, pressure everywhere that of the start of growth; x from the first crack; shape (n, 2), m.
     """
-    settings = json.dumps(path_settings(experiment, increment_m, turning, growth_m))
-    return np.column_stack([_column(axis, settings) for axis in ("x_m", "y_m")])
+    settings = path_settings(experiment, increment_m, turning, growth_m)
+    return np.column_stack([values("crack_path", axis, **settings) for axis in ("x_m", "y_m")])
 
 
 def first_kink_deg(experiment: int) -> float:
     """Direction of maximum hoop stress of the first crack when it starts to grow, degrees anticlockwise from its own."""
-    return float(_column("kink_deg", json.dumps(path_settings(experiment, 1.0, "forward", 1.0)))[0])
+    return float(values("crack_path", "kink_deg", **path_settings(experiment, 1.0, "forward", 1.0))[0])
 
 
 def leaving_m() -> float:
@@ -73,12 +65,5 @@ def rise_at(path: Array, x_m: float) -> float:
 
 def farthest(path: Array, other: Array) -> float:
     """Largest distance of a path's points from a polyline (m), over the height and width that both have."""
-    last = np.hypot(*(other[-1] - other[0]))
-    return max(_distance(point, other) for point in path if np.hypot(*(point - path[0])) <= last)
-
-
-def _distance(point: Array, line: Array) -> float:
-    """Distance of a point from a polyline, m."""
-    start, along = line[:-1], np.diff(line, axis=0)
-    part = np.clip(np.sum((point - start) * along, axis=1) / np.sum(along**2, axis=1), 0.0, 1.0)
-    return float(np.min(np.hypot(*(point - start - part[:, None] * along).T)))
+    near = np.hypot(*(path - path[0]).T) <= np.hypot(*(other[-1] - other[0]))
+    return float(np.max(distances_to(path[near], other)))

@@ -46,25 +46,32 @@ def toml(value: Any) -> str:
     return json.dumps(value) if isinstance(value, (str, bool)) else repr(value)
 
 
-def factors_of(content: dict[str, Any], mechanics: str) -> list[Factor]:
-    """All factors of a scene (its keys as used) in a mechanics; each alternative differs from it in that factor alone."""
-    return [
-        _mesh(content),
-        *_mesh_and_increment(content),
-        _step(content, mechanics),
-        Factor("ring", "J ring", "numerical",
-               tuple(_one(f"{r:g}", f"{r:g} cells", f"numerics.ring_cells={r!r}") for r in RINGS)),
-        _particles(content),
-        _increment(content),
-        _block(content, mechanics),
-        _rate(content),
-    ]  # fmt: skip
-
-
 def is_graded(content: dict[str, Any]) -> bool:
     """Whether a scene's cells grow far away."""
     numerics = content["numerics"]
     return float(numerics.get("far_cell_m", 0.0)) > float(numerics["cell_m"])
+
+
+def factors_of(content: dict[str, Any], mechanics: str) -> list[Factor]:
+    """All factors of a scene (its keys as used) in a mechanics; each alternative differs from it in that factor alone."""
+    numerics, inlet = content["numerics"], content.get("fluid", {}).get("inlet", {})
+    cell, points = float(numerics["cell_m"]), int(numerics.get("particles_per_cell", 4))
+    increment, rate = float(content["fracture"].get("increment_m", 1.0)), float(inlet.get("rate_Pa_s", 0.0))
+    half_cell, half_step = f"numerics.cell_m={cell / 2.0!r}", f"fracture.increment_m={increment / 2.0!r}"
+    both = _one("half", f"cells {cell / 2.0:g} m, increment {increment / 2.0:g} m", half_cell, half_step)
+    return [
+        Factor("mesh", "mesh", "numerical", (_one("half", f"cells of {cell / 2.0:g} m", half_cell),)),
+        # The direction of growth of a path that turns looks at both.
+        *([Factor("mesh_increment", "mesh and increment", "beside", (both,))] if turns(content) else []),
+        _step(content, mechanics),
+        Factor("ring", "J ring", "numerical", tuple(_one(f"{r:g}", f"{r:g} cells", f"numerics.ring_cells={r!r}") for r in RINGS)),
+        _factor("particles", "particles", "numerical", "as many as there may be",
+                *(_one(str(n), f"{n} a cell", f"numerics.particles_per_cell={n}") for n in (4, 9, 16) if n > points)),
+        _factor("increment", "increment", "model", "", *_half_and_double(increment, "m", "fracture.increment_m")),
+        Factor("block", "block", "model", tuple(_larger(content, mechanics, k) for k in (1.5, 2.0))),
+        _factor("rate", "loading rate", "model", "the inlet's pressure does not rise",
+                *(_half_and_double(rate, "MPa/s", "fluid.inlet.rate_Pa_s", 1e6) if rate > 0.0 else [])),
+    ]  # fmt: skip
 
 
 def _one(id_: str, label: str, *settings: str) -> Alternative:
@@ -72,61 +79,28 @@ def _one(id_: str, label: str, *settings: str) -> Alternative:
     return Alternative(id_, label, settings)
 
 
-def _mesh(content: dict[str, Any]) -> Factor:
-    """Cells of half the size, the increment fixed."""
-    half = float(content["numerics"]["cell_m"]) / 2.0
-    return Factor("mesh", "mesh", "numerical", (_one("half", f"cells of {half:g} m", f"numerics.cell_m={half!r}"),))
+def _factor(id_: str, label: str, group: str, why_not: str, *alternatives: Alternative) -> Factor:
+    """A factor with its alternatives, or why it has none."""
+    return Factor(id_, label, group, alternatives, "" if alternatives else why_not)
 
 
-def _mesh_and_increment(content: dict[str, Any]) -> list[Factor]:
-    """For a path that turns: cells and increment of half the size; the direction of growth looks at both."""
-    if not turns(content):
-        return []
-    half, step = float(content["numerics"]["cell_m"]) / 2.0, float(content["fracture"].get("increment_m", 1.0)) / 2.0
-    both = _one("half", f"cells {half:g} m, increment {step:g} m", f"numerics.cell_m={half!r}", f"fracture.increment_m={step!r}")
-    return [Factor("mesh_increment", "mesh and increment", "beside", (both,))]
+def _half_and_double(own: float, unit: str, key: str, size: float = 1.0) -> list[Alternative]:
+    """Half and twice a number, in words in a unit of so many SI ones."""
+    return [_one(name, f"{own * k / size:g} {unit}", f"{key}={own * k!r}") for name, k in (("half", 0.5), ("double", 2.0))]
 
 
 def _step(content: dict[str, Any], mechanics: str) -> Factor:
     """Half the time step, or half of what a step of the flow may change."""
+    numerics = content["numerics"]
     if mechanics == "explicit":
-        half = float(content["numerics"].get("courant", 0.5)) / 2.0
-        return Factor("step", "time step", "numerical", (_one("half", f"Courant number {half:g}", f"numerics.courant={half!r}"),))
+        half = float(numerics.get("courant", 0.5)) / 2.0
+        return _factor("step", "time step", "numerical", "", _one("half", f"Courant number {half:g}", f"numerics.courant={half!r}"))
     if content.get("fluid", {}).get("law", "paper") == "uniform":
-        return Factor("step", "flow step", "numerical", (), "no flow")
-    change = float(content["numerics"].get("flow_change", FLOW_CHANGE)) / 2.0
-    error = float(content["numerics"].get("flow_error", FLOW_ERROR)) / 8.0  # goes by the third power of the step
-    half = _one("half", f"flow change {change:g}, flow error {error:g}", f"numerics.flow_change={change!r}", f"numerics.flow_error={error!r}")
-    return Factor("step", "flow step", "numerical", (half,))
-
-
-def _particles(content: dict[str, Any]) -> Factor:
-    """More particles a cell."""
-    own = int(content["numerics"].get("particles_per_cell", 4))
-    more = tuple(_one(str(n), f"{n} a cell", f"numerics.particles_per_cell={n}") for n in (4, 9, 16) if n > own)
-    return Factor("particles", "particles", "numerical", more, "" if more else "as many as there may be")
-
-
-def _increment(content: dict[str, Any]) -> Factor:
-    """Half and twice the increment of growth."""
-    own = float(content["fracture"].get("increment_m", 1.0))
-    both = tuple(_one(name, f"{own * k:g} m", f"fracture.increment_m={own * k!r}") for name, k in (("half", 0.5), ("double", 2.0)))
-    return Factor("increment", "increment", "model", both)
-
-
-def _rate(content: dict[str, Any]) -> Factor:
-    """Half and twice the rate of loading."""
-    own = float(content.get("fluid", {}).get("inlet", {}).get("rate_Pa_s", 0.0))
-    if own <= 0.0:
-        return Factor("rate", "loading rate", "model", (), "the inlet's pressure does not rise")
-    both = tuple(_one(name, f"{own * k / 1e6:g} MPa/s", f"fluid.inlet.rate_Pa_s={own * k!r}")
-                 for name, k in (("half", 0.5), ("double", 2.0)))  # fmt: skip
-    return Factor("rate", "loading rate", "model", both)
-
-
-def _block(content: dict[str, Any], mechanics: str) -> Factor:
-    """A block 1.5 and 2 times as wide and high."""
-    return Factor("block", "block", "model", tuple(_larger(content, mechanics, k) for k in (1.5, 2.0)))
+        return _factor("step", "flow step", "numerical", "no flow")
+    change = float(numerics.get("flow_change", FLOW_CHANGE)) / 2.0
+    error = float(numerics.get("flow_error", FLOW_ERROR)) / 8.0  # goes by the third power of the step
+    words = f"flow change {change:g}, flow error {error:g}"
+    return _factor("step", "flow step", "numerical", "", _one("half", words, f"numerics.flow_change={change!r}", f"numerics.flow_error={error!r}"))
 
 
 def _larger(content: dict[str, Any], mechanics: str, factor: float) -> Alternative:

@@ -9,10 +9,12 @@ from collections.abc import Iterator
 from dataclasses import MISSING, dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import h5py
 import numpy as np
+
+from verification.harness.store import built
 
 Array = np.ndarray
 
@@ -145,45 +147,24 @@ class Run:
         return np.array(points)
 
 
-T = TypeVar("T")
-
-
-def number(value: Any) -> float:
-    """A JSON number as a float; null, which stands for not finite, as NaN."""
-    return math.nan if value is None else float(value)
-
-
-def build(cls: type[T], content: dict[str, Any], where: Path) -> T:
-    """A flat dataclass of numbers and words from a JSON object; a missing key without a default is a LoadError."""
-    values: dict[str, Any] = {}
-    for item in fields(cls):  # type: ignore[arg-type]
-        if item.name not in content:
-            if item.default is MISSING:
-                raise LoadError(f"{where}: no key {item.name}")
-            continue
-        reader = {"str": str, "bool": bool}.get(str(item.type), number)
-        values[item.name] = reader(content[item.name])
-    return cls(**values)
+def picked(kind: type, content: dict[str, Any]) -> dict[str, Any]:
+    """What a dataclass takes of a JSON object; raises KeyError for a key that is not there and has no default."""
+    return {item.name: content[item.name] for item in fields(kind) if item.name in content or item.default is MISSING}
 
 
 def read_summary(path: Path) -> Summary:
-    """Read summary.json."""
+    """Read summary.json; null, which stands for not finite, as NaN."""
     try:
         raw = json.loads(path.read_text(encoding="utf-8"))
-        events = tuple(build(Event, event, path) for event in raw["events"])
-        tips = tuple(build(Tip, tip, path) for tip in raw["tips"])
-        energy = {name: number(value) for name, value in raw["energy"].items()}
         words = {name: str(raw.get(name) or "") for name in ("scene", "variant", "status", "reason", "mechanics", "version")}
-        counts = {name: int(raw[name]) for name in ("cells", "particles", "steps")}
-        sizes = ("time_s", "inlet_Pa", "wall_s", "particle_steps_per_s", "peak_memory_MB", "mouth_opening_m", "fracture_volume_m2")
-        numbers = {name: number(raw[name]) for name in sizes}
-        monitors = dict(raw.get("monitors") or {})
-        suspect = tuple(build(Suspicion, mark, path) for mark in raw.get("suspect") or ())
+        lists = {name: [picked(kind, item) for item in raw[name] or ()] for name, kind in (("events", Event), ("tips", Tip))}
+        lists["suspect"] = [picked(Suspicion, mark) for mark in raw.get("suspect") or ()]
+        content = {**raw, **words, **lists, "monitors": raw.get("monitors") or {}, "raw": raw}
+        return built(Summary, picked(Summary, content))
     except KeyError as error:
         raise LoadError(f"{path}: no key {error.args[0]}") from error
     except (OSError, ValueError, TypeError, AttributeError) as error:
         raise LoadError(f"{path}: {error}") from error
-    return Summary(**words, **counts, **numbers, energy=energy, tips=tips, events=events, monitors=monitors, raw=raw, suspect=suspect)
 
 
 def read_history(path: Path) -> dict[str, Array]:

@@ -16,6 +16,7 @@ from verification.harness.claim_data import BY_J
 from verification.harness.load import GROWTH_M, Array, Event, LoadError, Run, frames
 
 Parameters = dict[str, Any]
+NONE: Parameters = {}
 
 # Heights are compared with this slack, m: far below any increment, above what the rock moves a tip.
 SLACK_M = GROWTH_M
@@ -85,12 +86,17 @@ def grew(run: Run) -> bool:
     return len(run.path) > len(run.scene["fracture"]["path_m"])
 
 
-def pressure_at_height(run: Run, height_m: float) -> Measured:
-    """Inlet pressure at which the tip first is at a height, Pa; at least the last one where it never gets there."""
+def when_at(run: Run, values: Array, height_m: float) -> Measured:
+    """What of values along the history belongs to the tip's first being at a height; at least the last one where it never gets there."""
     reached = np.flatnonzero(run.history["tip_y_m"] >= height_m - SLACK_M)
     if reached.size:
-        return exactly(run.history["inlet_Pa"][reached[0]])
-    return Measured(float(run.history["inlet_Pa"][-1]), math.inf, f"{run.name} does not reach {height_m:g} m")
+        return exactly(values[reached[0]])
+    return Measured(float(values[-1]), math.inf, f"{run.name} does not reach {height_m:g} m")
+
+
+def pressure_at_height(run: Run, height_m: float) -> Measured:
+    """Inlet pressure at which the tip first is at a height, Pa."""
+    return when_at(run, run.history["inlet_Pa"], height_m)
 
 
 def interface_height(run: Run, number: int) -> float:
@@ -107,35 +113,14 @@ def height_of(run: Run, given: Any) -> float:
     return float(given)
 
 
-def arrests_at(run: Run, height_m: float) -> list[Measured]:
-    """Rise of the inlet pressure, Pa, over each arrest at an interface at a height (m).
+def is_at(event: Event, run: Run, height_m: float) -> bool:
+    """Whether an event is at an interface at a height (m).
 
     It counts from 1.5 increments below, where growth would meet the interface, to 4 cells above: an interface that gives way
     attracts the tip and arrests it after the crossing, and up to 4 cells away K and J are not independent of it.
     """
-    events = [event for event in run.summary.events if event.kind in ("arrest", "restart")]
-    found = []
-    for k, event in enumerate(events):
-        if event.kind != "arrest" or not is_at(event, run, height_m):
-            continue
-        after = next((later for later in events[k + 1 :] if later.kind == "restart"), None)
-        if after is not None:
-            found.append(exactly(after.inlet_Pa - event.inlet_Pa))
-        else:
-            note = f"{run.name} does not grow on from {event.tip_y_m:g} m"
-            found.append(Measured(run.summary.inlet_Pa - event.inlet_Pa, math.inf, note))
-    return found
-
-
-def is_at(event: Event, run: Run, height_m: float) -> bool:
-    """Whether an event is at an interface at a height (m): from 1.5 increments below to 4 cells above."""
     lowest = height_m - 1.5 * run.increment_m - SLACK_M
     return lowest <= event.tip_y_m <= height_m + 4.0 * float(run.scene["numerics"]["cell_m"]) + SLACK_M
-
-
-def decided_by_J(event: Event, run: Run, height_m: float) -> bool:
-    """Whether an arrest at an interface rests, by the run's own word, on a J that is not to be trusted there."""
-    return event.kind == "arrest" and event.by == "J" and event.at_interface and is_at(event, run, height_m)
 
 
 def resample(path: Array, step_m: float) -> Array:
@@ -162,7 +147,7 @@ def distances_to(points: Array, path: Array) -> Array:
 # --- observables of one run
 
 
-def start_Pa(run: Run, _: Run | None, __: Parameters) -> Measured:
+def start_Pa(run: Run, _: Parameters = NONE) -> Measured:
     """Pressure of the first growth."""
     start = next((event for event in run.summary.events if event.kind == "start"), None)
     if start is not None:
@@ -170,28 +155,32 @@ def start_Pa(run: Run, _: Run | None, __: Parameters) -> Measured:
     return Measured(run.summary.inlet_Pa, math.inf, f"{run.name} does not start to grow")
 
 
-def final_height_m(run: Run, _: Run | None, parameters: Parameters) -> Measured:
+def final_height_m(run: Run, parameters: Parameters = NONE) -> Measured:
     """Height of the tip at the end of the run, above an interface (above_interface) where one is named."""
     number = int(parameters.get("above_interface", 0))
     foot = interface_height(run, number) if number else 0.0
     return exactly(float(np.max(run.history["tip_y_m"])) - foot)
 
 
-def plateau_Pa(run: Run, _: Run | None, parameters: Parameters) -> Measured:
+def plateau_Pa(run: Run, parameters: Parameters = NONE) -> Measured:
     """Rise of the inlet pressure between arrest and restart, summed from 1.5 increments below an interface to 4 cells above."""
     height = interface_height(run, int(parameters["interface"]))
     if np.max(run.history["tip_y_m"]) < height - 1.5 * run.increment_m - SLACK_M:
         return nothing(f"{run.name} does not reach the interface at {height:g} m")
-    found = arrests_at(run, height)
-    if not found:
-        return exactly(0.0)
-    by_J = run.decides_by_J or any(decided_by_J(event, run, height) for event in run.summary.events)
-    flags = (BY_J,) if by_J else ()
-    note = "; ".join(filter(None, (one.note for one in found)))
-    return Measured(sum(one.low for one in found), sum(one.high for one in found), note, flags)
+    events = [event for event in run.summary.events if event.kind in ("arrest", "restart")]
+    arrested = [(event, events[k + 1 :]) for k, event in enumerate(events) if event.kind == "arrest" and is_at(event, run, height)]
+    # By the run's own word one may rest on a J that is not to be trusted there.
+    by_J = arrested and (run.decides_by_J or any(event.by == "J" and event.at_interface for event, _ in arrested))
+    low, high, note = 0.0, 0.0, ""
+    for event, later in arrested:
+        after = next((one.inlet_Pa for one in later if one.kind == "restart"), None)
+        low += (run.summary.inlet_Pa if after is None else after) - event.inlet_Pa
+        high += (math.inf if after is None else after) - event.inlet_Pa
+        note = f"{run.name} does not grow on from {event.tip_y_m:g} m" if after is None else note
+    return Measured(low, high, note, (BY_J,) if by_J else ())
 
 
-def arrests(run: Run, _: Run | None, parameters: Parameters) -> Measured:
+def arrests(run: Run, parameters: Parameters = NONE) -> Measured:
     """Number of arrests with the tip at or above a height (from_m) that the fracture has reached."""
     lowest = height_of(run, parameters["from_m"])
     if np.max(run.history["tip_y_m"]) < lowest - SLACK_M:
@@ -199,7 +188,7 @@ def arrests(run: Run, _: Run | None, parameters: Parameters) -> Measured:
     return exactly(sum(event.kind == "arrest" and event.tip_y_m >= lowest - SLACK_M for event in run.summary.events))
 
 
-def lateral_deflection_m(run: Run, _: Run | None, __: Parameters) -> Measured:
+def lateral_deflection_m(run: Run, _: Parameters = NONE) -> Measured:
     """Farthest distance of the path from its first straight line, positive towards larger x."""
     if not grew(run):
         return nothing(f"{run.name} does not grow")
@@ -207,7 +196,7 @@ def lateral_deflection_m(run: Run, _: Run | None, __: Parameters) -> Measured:
     return exactly(float(offset[np.argmax(np.abs(offset))]))
 
 
-def final_angle_deg(run: Run, _: Run | None, parameters: Parameters) -> Measured:
+def final_angle_deg(run: Run, parameters: Parameters = NONE) -> Measured:
     """Angle between the last 5 m of the path and the horizontal, 0 to 90 degrees."""
     points = resample(run.path, 0.05)
     count = round(float(parameters.get("over_m", 5.0)) / 0.05)
@@ -232,7 +221,7 @@ def failed_length_m(arrays: dict[str, Array], number: int) -> float:
     return float(np.sum(lengths[split[order] > 0]))
 
 
-def interface_failure_excess_Pa(run: Run, _: Run | None, parameters: Parameters) -> Measured:
+def interface_failure_excess_Pa(run: Run, parameters: Parameters) -> Measured:
     """Pressure at the first output with two cells of an interface failed, less that which brought the tip near to it."""
     number = int(parameters["interface"])
     near = pressure_at_height(run, interface_height(run, number) - 1.5 * run.increment_m)
@@ -247,44 +236,29 @@ def interface_failure_excess_Pa(run: Run, _: Run | None, parameters: Parameters)
 
 def interface_energy(run: Run, height_m: float) -> Measured:
     """Energy in interfaces (stored in springs, spent on sliding and failure) when the tip is at a height, J/m."""
-    energy = run.history["interface_strain_J"] + run.history["friction_J"] + run.history["failure_J"]
-    reached = np.flatnonzero(run.history["tip_y_m"] >= height_m - SLACK_M)
-    if reached.size:
-        return exactly(energy[reached[0]])
-    return Measured(float(energy[-1]), math.inf, f"{run.name} does not reach {height_m:g} m")
+    return when_at(run, run.history["interface_strain_J"] + run.history["friction_J"] + run.history["failure_J"], height_m)
 
 
 # --- observables of two runs
 
 
-def interface_energy_difference_J(run: Run, against: Run | None, parameters: Parameters) -> Measured:
-    """Energy in interfaces, per metre of thickness, when the tip is at a height, less that of the other run."""
-    assert against is not None
-    height = height_of(run, parameters["height_m"])
-    return difference(interface_energy(run, height), interface_energy(against, height))
+def between(combine: Callable[[Measured, Measured], Measured], one: Callable[[Run, Parameters], Measured]) -> Callable[..., Measured]:
+    """An observable of one run, taken of two."""
+    return lambda run, against, parameters: combine(one(run, parameters), one(against, parameters))
 
 
-def start_shift_Pa(run: Run, against: Run | None, parameters: Parameters) -> Measured:
-    """Pressure of the first growth less that of the other run."""
-    assert against is not None
-    return difference(start_Pa(run, None, parameters), start_Pa(against, None, parameters))
+def at_height(one: Callable[[Run, float], Measured]) -> Callable[..., Measured]:
+    """Something at a height of the first run (height_m) less that of the other run there."""
+
+    def function(run: Run, against: Run, parameters: Parameters) -> Measured:
+        height = height_of(run, parameters["height_m"])
+        return difference(one(run, height), one(against, height))
+
+    return function
 
 
-def plateau_difference_Pa(run: Run, against: Run | None, parameters: Parameters) -> Measured:
-    """Plateau at an interface less that of the other run."""
-    assert against is not None
-    return difference(plateau_Pa(run, None, parameters), plateau_Pa(against, None, parameters))
-
-
-def plateau_ratio(run: Run, against: Run | None, parameters: Parameters) -> Measured:
-    """Plateau at an interface divided by that of the other run."""
-    assert against is not None
-    return ratio(plateau_Pa(run, None, parameters), plateau_Pa(against, None, parameters))
-
-
-def pressure_shift_Pa(run: Run, against: Run | None, parameters: Parameters) -> Measured:
+def pressure_shift_Pa(run: Run, against: Run, parameters: Parameters) -> Measured:
     """Largest distance in pressure, whatever its sign, between two height curves over a range of heights."""
-    assert against is not None
     if not grew(run) and not grew(against):
         return nothing("neither run grows")
     low, high, neither = 0.0, 0.0, 0
@@ -301,16 +275,8 @@ def pressure_shift_Pa(run: Run, against: Run | None, parameters: Parameters) -> 
     return Measured(low, high, note)
 
 
-def pressure_at_height_difference_Pa(run: Run, against: Run | None, parameters: Parameters) -> Measured:
-    """Pressure that brings the tip to a height less that of the other run."""
-    assert against is not None
-    height = height_of(run, parameters["height_m"])
-    return difference(pressure_at_height(run, height), pressure_at_height(against, height))
-
-
-def height_ratio(run: Run, against: Run | None, parameters: Parameters) -> Measured:
+def height_ratio(run: Run, against: Run, parameters: Parameters) -> Measured:
     """Height at the pressure which has brought the other run to a height, divided by that height."""
-    assert against is not None
     height = height_of(run, parameters["height_m"])
     pressure = pressure_at_height(against, height)
     if not pressure.exact:
@@ -319,9 +285,8 @@ def height_ratio(run: Run, against: Run | None, parameters: Parameters) -> Measu
     return exactly(float(np.max(run.history["tip_y_m"][before])) / height)
 
 
-def path_change(run: Run, against: Run | None, _: Parameters) -> Measured:
+def path_change(run: Run, against: Run, _: Parameters) -> Measured:
     """Root mean square distance of the path from the other's over what that one turns away by, over the length both have."""
-    assert against is not None
     if not (grew(run) and grew(against)):
         return nothing("one of the paths does not grow")
     common = min(path_length(run.path), path_length(against.path))
@@ -338,34 +303,38 @@ def path_change(run: Run, against: Run | None, _: Parameters) -> Measured:
 
 @dataclass(frozen=True)
 class Observable:
-    """A named observable: its function, unit and whether it compares two runs."""
+    """A named observable: its function of one run, or of two that it compares, its unit and what it is in words."""
 
-    function: Callable[[Run, Run | None, Parameters], Measured]
     unit: str
+    function: Callable[..., Measured]
+    words: str = ""
     compares: bool = False
 
     @property
     def meaning(self) -> str:
         """One sentence on what it is."""
-        return (self.function.__doc__ or "").strip()
+        return self.words or (self.function.__doc__ or "").strip()
 
+
+_ENERGY = "Energy in interfaces, per metre of thickness, when the tip is at a height, less that of the other run."
+_AT_HEIGHT = "Pressure that brings the tip to a height less that of the other run."
 
 OBSERVABLES: dict[str, Observable] = {
-    "start_Pa": Observable(start_Pa, "Pa"),
-    "final_height_m": Observable(final_height_m, "m"),
-    "plateau_Pa": Observable(plateau_Pa, "Pa"),
-    "arrests": Observable(arrests, ""),
-    "lateral_deflection_m": Observable(lateral_deflection_m, "m"),
-    "final_angle_deg": Observable(final_angle_deg, "degrees"),
-    "interface_failure_excess_Pa": Observable(interface_failure_excess_Pa, "Pa"),
-    "interface_energy_difference_J": Observable(interface_energy_difference_J, "J/m", True),
-    "start_shift_Pa": Observable(start_shift_Pa, "Pa", True),
-    "plateau_difference_Pa": Observable(plateau_difference_Pa, "Pa", True),
-    "plateau_ratio": Observable(plateau_ratio, "", True),
-    "pressure_shift_Pa": Observable(pressure_shift_Pa, "Pa", True),
-    "pressure_at_height_difference_Pa": Observable(pressure_at_height_difference_Pa, "Pa", True),
-    "height_ratio": Observable(height_ratio, "", True),
-    "path_change": Observable(path_change, "", True),
+    "start_Pa": Observable("Pa", start_Pa),
+    "final_height_m": Observable("m", final_height_m),
+    "plateau_Pa": Observable("Pa", plateau_Pa),
+    "arrests": Observable("", arrests),
+    "lateral_deflection_m": Observable("m", lateral_deflection_m),
+    "final_angle_deg": Observable("degrees", final_angle_deg),
+    "interface_failure_excess_Pa": Observable("Pa", interface_failure_excess_Pa),
+    "interface_energy_difference_J": Observable("J/m", at_height(interface_energy), _ENERGY, True),
+    "start_shift_Pa": Observable("Pa", between(difference, start_Pa), "Pressure of the first growth less that of the other run.", True),
+    "plateau_difference_Pa": Observable("Pa", between(difference, plateau_Pa), "Plateau at an interface less that of the other run.", True),
+    "plateau_ratio": Observable("", between(ratio, plateau_Pa), "Plateau at an interface divided by that of the other run.", True),
+    "pressure_shift_Pa": Observable("Pa", pressure_shift_Pa, compares=True),
+    "pressure_at_height_difference_Pa": Observable("Pa", at_height(pressure_at_height), _AT_HEIGHT, True),
+    "height_ratio": Observable("", height_ratio, compares=True),
+    "path_change": Observable("", path_change, compares=True),
 }
 
 
@@ -375,7 +344,7 @@ def measure(name: str, parameters: Parameters, run: Run, against: Run | None) ->
     if observable.compares and against is None:
         raise ValueError(f"{name} compares two runs")
     try:
-        found = observable.function(run, against, parameters)
+        found = observable.function(*((run, against) if observable.compares else (run,)), parameters)
     except LoadError as error:
         return nothing(str(error))
     return replace(found, flags=tuple(dict.fromkeys(found.flags)))

@@ -20,3 +20,9 @@ def solver() -> Path:
 def reference_program() -> Path:
     """The program with the reference values: $STRATA_REFERENCE, or that of the release build."""
     return Path(os.environ.get("STRATA_REFERENCE", ROOT / "build" / "release" / "strata-reference"))
+
+
+def need_solver() -> None:
+    """Raises ValueError where there is no solver to run."""
+    if not solver().is_file():
+        raise ValueError(f"there is no solver at {solver()}: build it first (ci/reproduce and ci/test do)")

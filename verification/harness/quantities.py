@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,8 @@ from verification.harness.observables import (
     SLACK_M, Measured, distances_to, exactly, final_angle_deg, final_height_m, grew, interface_height, lateral_deflection_m,
     nothing, path_length, pressure_at_height, resample, start_Pa,
 )  # fmt: skip
+
+NO_ARREST = "no arrest"  # the flag of a pause that is none
 
 # A pause over which the inlet rises by this is an arrest (the solver's own word for it), Pa.
 ARREST_PA = 0.05e6
@@ -68,7 +71,7 @@ def pauses(run: Run) -> list[Pause]:
 def pause_at(run: Run, interface: int) -> Pause | Measured:
     """The longest pause at an interface (counted from 1 below), or why there is none.
 
-    It counts from 1.5 increments below, where growth would meet the interface, to 4 m above, as in observables.arrests_at.
+    It counts from 1.5 increments below, where growth would meet the interface, to 4 m above, as in observables.is_at.
     """
     height = interface_height(run, interface)
     low, high = height - 1.5 * run.increment_m - SLACK_M, height + ABOVE_M + SLACK_M
@@ -79,42 +82,35 @@ def pause_at(run: Run, interface: int) -> Pause | Measured:
     return max(found, key=lambda pause: min(pause.to_Pa, last_Pa) - pause.from_Pa)
 
 
-def _of_pause(interface: int, number: Callable[[Pause, float], Measured]) -> Callable[[Run], Measured]:
-    """Something of the longest pause at an interface, given the last pressure of the run; flagged where it is no arrest."""
-
-    def measure(run: Run) -> Measured:
-        found = pause_at(run, interface)
-        if isinstance(found, Measured):
-            return found
-        last_Pa = float(run.history["inlet_Pa"][-1])
-        value = number(found, last_Pa)
-        if min(found.to_Pa, last_Pa) - found.from_Pa >= ARREST_PA:
-            return value
-        return Measured(value.low, value.high, value.note, (*value.flags, "no arrest"))
-
-    return measure
-
-
-def _bounded(value_Pa: float, least_Pa: float) -> Measured:
-    """A pressure, or the bound of it that the end of the run leaves."""
-    return exactly(value_Pa) if math.isfinite(value_Pa) else Measured(least_Pa, math.inf, "does not grow on")
-
-
 def interface_quantities(number: int, of: int) -> list[Quantity]:
-    """Arrest height, restart pressure and rise between them at one of so many interfaces across the fracture."""
+    """Arrest height, restart pressure and rise between them at one of so many interfaces across the fracture.
+
+    All are of the longest pause there, flagged where it is no arrest; where the run ends in it, it leaves a bound of the last two.
+    """
+
+    def of_pause(value: Callable[[Pause], float]) -> Callable[[Run], Measured]:
+        def measure(run: Run) -> Measured:
+            found = pause_at(run, number)
+            if isinstance(found, Measured):
+                return found
+            so_far = replace(found, to_Pa=min(found.to_Pa, float(run.history["inlet_Pa"][-1])))
+            known = math.isfinite(value(found))
+            flags = () if so_far.rise_Pa >= ARREST_PA else (NO_ARREST,)
+            return Measured(value(so_far), value(found) if known else math.inf, "" if known else "does not grow on", flags)
+
+        return measure
+
     where = f" at interface {number}" if of > 1 else ""
     return [
-        Quantity(f"arrest_{number}_m", f"arrest height{where}", "m", _of_pause(number, lambda p, _: exactly(p.height_m))),
-        Quantity(f"restart_{number}_Pa", f"restart pressure{where}", "Pa",
-                 _of_pause(number, lambda p, last: _bounded(p.to_Pa, last))),
-        Quantity(f"plateau_{number}_Pa", f"rise while arrested{where}", "Pa",
-                 _of_pause(number, lambda p, last: _bounded(p.rise_Pa, last - p.from_Pa))),
-    ]  # fmt: skip
+        Quantity(f"arrest_{number}_m", f"arrest height{where}", "m", of_pause(lambda pause: pause.height_m)),
+        Quantity(f"restart_{number}_Pa", f"restart pressure{where}", "Pa", of_pause(lambda pause: pause.to_Pa)),
+        Quantity(f"plateau_{number}_Pa", f"rise while arrested{where}", "Pa", of_pause(lambda pause: pause.rise_Pa)),
+    ]
 
 
 def quantities_of(content: dict[str, Any], heights_m: Sequence[float] = HEIGHTS_M) -> list[Quantity]:
     """What is followed of a scene (its keys with a variant's in place); heights above the tip's first and below its last only."""
-    found = [Quantity("start_Pa", "start of growth", "Pa", lambda run: start_Pa(run, None, {}))]
+    found = [Quantity("start_Pa", "start of growth", "Pa", start_Pa)]
     strata = content.get("strata", {})
     if strata.get("along", "y") == "y":
         across = [k for k, name in enumerate(strata.get("interfaces", []), 1) if name != "perfect"]
@@ -124,18 +120,19 @@ def quantities_of(content: dict[str, Any], heights_m: Sequence[float] = HEIGHTS_
     top = float(content.get("stop", {}).get("tip_y_m", content["domain"]["height_m"]))
     for height in heights_m:
         if tip < height <= top:
-            found.append(Quantity(f"pressure_at_{height:g}_Pa", f"pressure at {height:g} m", "Pa", _at(height)))
-    found.append(Quantity("final_height_m", "final height", "m", lambda run: final_height_m(run, None, {})))
+            found.append(Quantity(f"pressure_at_{height:g}_Pa", f"pressure at {height:g} m", "Pa", partial(pressure_at_height, height_m=height)))
+    found.append(Quantity("final_height_m", "final height", "m", final_height_m))
     found.append(Quantity("final_Pa", "final pressure", "Pa", lambda run: exactly(run.summary.inlet_Pa)))
     if turns(content):
-        found.append(Quantity("deflection_m", "farthest deflection", "m", lambda run: lateral_deflection_m(run, None, {})))
-        found.append(Quantity("final_angle_deg", "final angle", "degrees", lambda run: final_angle_deg(run, None, {})))
+        found.append(Quantity("deflection_m", "farthest deflection", "m", lateral_deflection_m))
+        found.append(Quantity("final_angle_deg", "final angle", "degrees", final_angle_deg))
     return found
 
 
-def _at(height_m: float) -> Callable[[Run], Measured]:
-    """Pressure at a height."""
-    return lambda run: pressure_at_height(run, height_m)
+def lack_words(measured: Measured, run: Run, unit: str) -> str:
+    """Why a run has no value of a quantity, with the bound that it leaves."""
+    bound = f", at least {measured.low:.6g} {unit}" if math.isfinite(measured.low) else ""
+    return f"{measured.note.removeprefix(run.name).strip()}{bound}"
 
 
 def turns(content: dict[str, Any]) -> bool:

@@ -3,8 +3,10 @@ from __future__ import annotations
 
 import json
 import subprocess
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -23,46 +25,48 @@ class Value:
     unit: str
 
 
+Setting = float | str | list[float]
+
+
 @lru_cache(maxsize=None)
-def _ask(name: str, settings: tuple[str, ...]) -> str:
-    """What strata-reference prints for a name and settings."""
-    command = [str(reference_program()), name]
-    for setting in settings:
-        command += ["--set", setting]
+def _answer(name: str, settings: tuple[str, ...]) -> dict[str, Any]:
+    """What strata-reference says for a name and settings."""
+    command = [str(reference_program()), name, *(word for setting in settings for word in ("--set", setting))]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise NoReference(f"{' '.join(command)}: exit {done.returncode}: {done.stderr.strip()}")
-    return done.stdout
+    return json.loads(done.stdout)
 
 
-def _settings(settings: dict[str, float | str | list[float]]) -> tuple[str, ...]:
+def settings_of(settings: Mapping[str, Any]) -> tuple[str, ...]:
     """Settings as the program takes them, numbers with all their digits."""
     return tuple(f"{key}={given!r}" if isinstance(given, (float, list)) else f"{key}={given}" for key, given in settings.items())
 
 
-def reference(name: str, **settings: float | str | list[float]) -> dict[str, Value]:
+def _ask(name: str, settings: Mapping[str, Setting]) -> dict[str, Any]:
+    """The same for settings by their names."""
+    return _answer(name, settings_of(settings))
+
+
+def reference(name: str, **settings: Setting) -> dict[str, Value]:
     """The values of a named reference solution for its settings, in the units they state; those that are lists or words left out."""
-    answer = json.loads(_ask(name, _settings(settings)))["values"]
-    numbers = {key: item for key, item in answer.items() if not isinstance(item["value"], (list, str))}
-    return {key: Value(float(item["value"]), str(item.get("unit", ""))) for key, item in numbers.items()}
+    values = _ask(name, settings)["values"]
+    return {key: Value(float(item["value"]), str(item.get("unit", ""))) for key, item in values.items() if not isinstance(item["value"], (list, str))}
 
 
-def values(name: str, quantity: str, **settings: float | str | list[float]) -> np.ndarray:
+def values(name: str, quantity: str, **settings: Setting) -> np.ndarray:
     """One quantity of a named reference solution at each of the places or times that a setting lists, SI."""
-    answer = json.loads(_ask(name, _settings(settings)))["values"]
-    if quantity not in answer:
-        raise NoReference(f"{name} has no {quantity}; it has {', '.join(sorted(answer))}")
-    return np.atleast_1d(np.array(answer[quantity]["value"], dtype=float))
-
-
-def value(name: str, quantity: str, **settings: float | str | list[float]) -> float:
-    """One value of a named reference solution, SI."""
-    found = reference(name, **settings)
+    found = _ask(name, settings)["values"]
     if quantity not in found:
         raise NoReference(f"{name} has no {quantity}; it has {', '.join(sorted(found))}")
-    return found[quantity].value
+    return np.atleast_1d(np.array(found[quantity]["value"], dtype=float))
 
 
-def relative_error(name: str, **settings: float | str | list[float]) -> float:
+def value(name: str, quantity: str, **settings: Setting) -> float:
+    """One value of a named reference solution, SI."""
+    return float(values(name, quantity, **settings).item())
+
+
+def relative_error(name: str, **settings: Setting) -> float:
     """The relative error that a named reference solution gives of itself."""
-    return float(json.loads(_ask(name, _settings(settings)))["error_estimate"]["relative"])
+    return float(_ask(name, settings)["error_estimate"]["relative"])

@@ -9,34 +9,26 @@ still to be made would take longer than --limit (minutes, by an estimate that is
 """
 from __future__ import annotations
 
-import argparse
-import json
 import math
 import sys
-import threading
-import tomllib
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
-from functools import partial
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from verification.harness import paths
-from verification.harness.cost import Cost, cost_of, nearest
-from verification.harness.load import LoadError, Run, load
-from verification.harness.observables import Measured
-from verification.harness.paths import EXPERIMENTS, solver
-from verification.harness.quantities import HEIGHTS_M, Quantity, noise_of, path_gap, quantities_of, turns
+from verification.harness import paths, store
+from verification.harness.command import command
+from verification.harness.load import Run
+from verification.harness.observables import path_length
+from verification.harness.paths import need_solver
+from verification.harness.plan import affordable, make_all
+from verification.harness.quantities import HEIGHTS_M, NO_ARREST, Quantity, lack_words, noise_of, path_gap, quantities_of, turns
 from verification.harness.richardson import Estimate, estimate, estimate_of_changes
-from verification.harness.run import Job, Outcome, done_before, key_of, run
-from verification.harness.scenes import MECHANICS, STUDY_VARIANTS, mechanics_of, merged, resolved, scenes_of, variants_of
-from verification.harness.side_by_side import Task, side_by_side
+from verification.harness.run import Job, Outcome
+from verification.harness.scenes import MECHANICS, chosen, content_of, mechanics_of, scene_of
 
 REFINE_RUNS = paths.RUNS / "refine"
-NAME = "refine.json"
 CELLS_M = (2.0, 1.0, 0.5, 0.25)
-LIMIT_MIN = 30.0
-REFUSED = 2  # exit status of a scene that cannot be run
 
 
 @dataclass(frozen=True)
@@ -73,42 +65,6 @@ class Study:
     notes: tuple[str, ...] = ()
 
 
-# --- jobs
-
-
-def scene_of(name: str) -> Path:
-    """The scene of an experiment by the beginning of its name, or a scene file; raises ValueError where that is not one."""
-    if name.endswith(".toml"):
-        if not Path(name).is_file():
-            raise ValueError(f"there is no file {name}")
-        return Path(name).resolve()
-    found = [path for path in scenes_of(EXPERIMENTS) if path.stem.startswith(name)]
-    if len(found) != 1:
-        names = ", ".join(path.stem for path in (found or scenes_of(EXPERIMENTS)))
-        raise ValueError(f"{'several experiments begin' if found else 'no experiment begins'} with {name}: {names}")
-    return found[0]
-
-
-def nested(setting: str) -> dict[str, Any]:
-    """A setting key.path=value of the command line as nested tables; a value that is no TOML is a word."""
-    key, _, text = setting.partition("=")
-    try:
-        value = tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
-        value = text
-    for part in reversed(key.split(".")):
-        value = {part: value}
-    return value
-
-
-def content_of(scene: Path, variant: str, settings: Sequence[str]) -> dict[str, Any]:
-    """The keys of a scene with those of a variant and of settings in place."""
-    content = resolved(scene, variant)
-    for setting in settings:
-        content = merged(content, nested(setting))
-    return content
-
-
 def increment_of(content: dict[str, Any]) -> float:
     """Growth increment of a scene, m; the solver's default is 1 m."""
     return float(content["fracture"].get("increment_m", 1.0))
@@ -126,121 +82,53 @@ def job_of(scene: Path, mechanics: str, variant: str, cell_m: float, settings: S
     return Job(scene, variant, root / scene.stem / mechanics / variant / f"{cell_m:g}m", tuple(own))
 
 
-def cost_to_make(job: Job) -> Cost:
-    """What a job will cost: as in a run of the same variant where there is one."""
-    content = content_of(job.scene, job.variant, job.settings)
-    mechanics, cell = str(content["numerics"]["mechanics"]), float(content["numerics"]["cell_m"])
-    beside = [*job.out.parent.glob("*/"), paths.RUNS / mechanics / job.scene.stem / job.variant]
-    return cost_of(content, mechanics, *(nearest(beside, cell) or ()))
-
-
-def expected_s(job: Job) -> float:
-    """How long a job will take, s; nothing where it is done."""
-    return 0.0 if done_before(job, key_of(job, solver())) is not None else cost_to_make(job).seconds
-
-
-def cost_lines(jobs: Sequence[Job]) -> tuple[list[str], float]:
-    """What the jobs that are still to be made will cost, in words a job, and in seconds on one thread together."""
-    lines, total, binary = [], 0.0, solver()
-    for job in jobs:
-        if done_before(job, key_of(job, binary)) is not None:
-            continue
-        cost = cost_to_make(job)
-        total += cost.seconds
-        basis = "as in a run of this variant" if cost.measured else "by experience"
-        lines.append(f"  {job.out.relative_to(job.out.parents[2])}: {cost.particles:.3g} particles x {cost.steps:.3g} steps:"
-                     f" {cost.seconds:.0f} s ({basis})")  # fmt: skip
-    return lines, total
-
-
-def make(job: Job, stop: threading.Event | None = None) -> tuple[Outcome, Run | None]:
-    """Run a job and read what it wrote; a run that failed is read as far as it came, one that was refused is not."""
-    outcome = run(job, stop=stop)
-    if outcome.exit_status == REFUSED:
-        return outcome, None
-    try:
-        return outcome, load(job.out)
-    except LoadError:
-        return outcome, None
-
-
-def made_words(made: tuple[Outcome, Run | None]) -> str:
-    """How a run ended, in words."""
-    outcome = made[0]
-    how = "done before" if outcome.skipped else f"{outcome.wall_s:.0f} s"
-    return f"{outcome.status} ({how}) {outcome.reason[:160]}".rstrip()
-
-
-def make_all(jobs: Sequence[Job], at_a_time: int) -> list[tuple[Outcome, Run | None]]:
-    """Make all jobs, so many at a time, each on one thread, with a line for each."""
-    tasks = [Task(str(job.out.relative_to(job.out.parents[2])), partial(make, job), made_words, expected_s(job)) for job in jobs]
-    return side_by_side(tasks, at_a_time)
-
-
 # --- what the runs say
 
 
 def shown(quantity: Quantity, level: Level) -> tuple[float | None, str]:
     """A quantity of one run, or None with the reason."""
-    if level.run is None:
-        return None, f"{level.cell_m:g} m: {'refused' if level.outcome.exit_status == REFUSED else 'failed'}"
-    if not level.outcome.ok and quantity.name.startswith(("final", "deflection")):
-        return None, f"{level.cell_m:g} m: the run failed"
-    found: Measured = quantity.measure(level.run)
-    if found.exact:
-        return found.low, f"{level.cell_m:g} m: {', '.join(found.flags)}" if found.flags else ""
-    bound = f", at least {found.low:.6g} {quantity.unit}" if math.isfinite(found.low) else ""
-    return None, f"{level.cell_m:g} m: {found.note.removeprefix(level.run.name).strip()}{bound}"
+    if level.run is None or not level.outcome.ok and quantity.name.startswith(("final", "deflection")):
+        return None, f"{level.cell_m:g} m: {level.outcome.word if level.run is None else 'the run failed'}"
+    found = quantity.measure(level.run)
+    if not found.exact:
+        return None, f"{level.cell_m:g} m: {lack_words(found, level.run, quantity.unit)}"
+    return found.low, f"{level.cell_m:g} m: {', '.join(found.flags)}" if found.flags else ""
 
 
 def row_of(quantity: Quantity, levels: Sequence[Level]) -> Row:
     """One quantity over all sizes; the sizes without a value are left out of the order."""
-    pairs = [shown(quantity, level) for level in levels]
-    values = tuple(value for value, _ in pairs)
+    values, notes = zip(*(shown(quantity, level) for level in levels))
     known = [(level, value) for level, value in zip(levels, values) if value is not None]
     noise = max((noise_of(quantity, level.run, value) for level, value in known if level.run), default=0.0)
     said = estimate([level.cell_m for level, _ in known], [value for _, value in known], noise, quantity.unit)
-    return Row(quantity.name, quantity.label, quantity.unit, values, tuple(note for _, note in pairs if note), noise, said)
+    return Row(quantity.name, quantity.label, quantity.unit, values, tuple(filter(None, notes)), noise, said)
 
 
 def path_rows(levels: Sequence[Level]) -> list[Row]:
     """Distance of each path to the finest, and to the next finer: whose fall is the order of the path."""
-    known = [level for level in levels if level.run is not None]
+    known = [(level, level.run) for level in levels if level.run is not None]
     if len(known) < 2:
         return []
-    runs = [level.run for level in known if level.run is not None]
-    common = min(float(sum_length(one)) for one in runs)
-
-    def distances(against: Sequence[Run]) -> list[float] | None:
-        found = [path_gap(one, other, common) for one, other in zip(runs, against)]
-        return None if any(gap is None for gap in found) else [gap[0] for gap in found if gap is not None]
-
-    to_finest, to_next = distances(runs[-1:] * (len(runs) - 1)), distances(runs[1:])
-    if to_finest is None or to_next is None:
+    runs = [run for _, run in known]
+    common = min(path_length(run.path) for run in runs)
+    gaps = [[path_gap(one, other, common) for one, other in zip(runs, against)] for against in (runs[-1:] * (len(runs) - 1), runs[1:])]
+    if any(gap is None for both in gaps for gap in both):
         return []
-    sizes = [level.cell_m for level in known]
-    said = estimate_of_changes(sizes, to_next, 1e-6, "m")
-    places = [next((k for k, one in enumerate(known) if one is level), None) for level in levels]
+    to_finest, to_next = ([gap[0] for gap in both if gap is not None] for both in gaps)
 
-    def spread_out(values: Sequence[float]) -> tuple[float | None, ...]:
-        return tuple(values[k] if k is not None and k < len(values) else None for k in places)
+    def row(name: str, label: str, values: Sequence[float], said: Estimate) -> Row:
+        at = dict(zip((level.cell_m for level, _ in known), values))
+        note = (f"root mean square over the first {common:.1f} m",)
+        return Row(name, f"path: distance to the {label}", "m", tuple(at.get(level.cell_m) for level in levels), note, 1e-6, said)
 
-    note = (f"root mean square over the first {common:.1f} m",)
     plain = Estimate("beside", "beside the finest: no order is taken from it")
-    return [
-        Row("path_to_finest_m", "path: distance to the finest", "m", spread_out([*to_finest, 0.0]), note, 1e-6, plain),
-        Row("path_to_next_m", "path: distance to the next finer", "m", spread_out(to_next), note, 1e-6, said),
-    ]
-
-
-def sum_length(run: Run) -> float:
-    """Length of a run's path, m."""
-    return float(sum(math.dist(a, b) for a, b in zip(run.path[:-1], run.path[1:])))
+    said = estimate_of_changes([level.cell_m for level, _ in known], to_next, 1e-6, "m")
+    return [row("path_to_finest_m", "finest", [*to_finest, 0.0], plain), row("path_to_next_m", "next finer", to_next, said)]
 
 
 def arrests_nowhere(row: Row) -> bool:
     """Whether a quantity of an arrest has no arrest behind it at any size."""
-    flagged = sum(note.endswith("no arrest") for note in row.notes)
+    flagged = sum(note.endswith(NO_ARREST) for note in row.notes)
     return flagged > 0 and flagged == sum(value is not None for value in row.values)
 
 
@@ -249,12 +137,9 @@ def study_of(
 ) -> Study:
     """What the runs of one variant in one mechanics say."""
     content = content_of(scene, variant, settings)
-    rows = [row_of(quantity, levels) for quantity in quantities_of(content, heights_m)]
-    rows = [row for row in rows if not arrests_nowhere(row)]
+    rows = [row for row in (row_of(quantity, levels) for quantity in quantities_of(content, heights_m)) if not arrests_nowhere(row)]
     nowhere = [row.label for row in rows if all(value is None for value in row.values)]
-    rows = [row for row in rows if row.label not in nowhere]
-    if turns(content):
-        rows += path_rows(levels)
+    rows = [row for row in rows if row.label not in nowhere] + (path_rows(levels) if turns(content) else [])
     notes = unlike(content, [level.cell_m for level in levels])
     if nowhere:
         notes += (f"{variant or 'base'}: at no size is there a {', '.join(nowhere)}",)
@@ -271,22 +156,17 @@ def unlike(content: dict[str, Any], cells_m: Sequence[float]) -> tuple[str, ...]
     thickness = [float(layer["thickness_m"]) for layer in strata["layers"][:-1]]
     places = {"the first tip": ("y", max(float(y) for _, y in path)), "the fracture": ("x", float(path[0][0]))}
     for k in range(len(thickness)):
-        name = "the interface" if len(thickness) == 1 else f"interface {k + 1}"
-        places[name] = (axis, sum(thickness[: k + 1]))
+        places["the interface" if len(thickness) == 1 else f"interface {k + 1}"] = (axis, sum(thickness[: k + 1]))
 
-    def within(place_m: float, cell_m: float) -> float:
-        return round(place_m / cell_m % 1.0, 6) % 1.0
-
-    def words(share: float) -> str:
+    def words(place_m: float, cell_m: float) -> str:
+        share = round(place_m / cell_m % 1.0, 6) % 1.0
         return {0.0: "on a grid line", 0.5: "at mid-cell"}.get(share, f"at {share:g} of a cell")
 
-    notes, finest = [], min(cells_m)
-    for name, (along, place) in places.items():
-        for cell in cells_m:
-            if within(place, cell) != within(place, finest):
-                there, here = words(within(place, cell)), words(within(place, finest))
-                notes.append(f"at {cell:g} m {name} ({along} = {place:g} m) lies {there}, at {finest:g} m {here}")
-    return tuple(notes)
+    finest = min(cells_m)
+    return tuple(
+        f"at {cell:g} m {name} ({along} = {place:g} m) lies {words(place, cell)}, at {finest:g} m {words(place, finest)}"
+        for name, (along, place) in places.items() for cell in cells_m if words(place, cell) != words(place, finest)
+    )  # fmt: skip
 
 
 # --- what is written
@@ -295,28 +175,13 @@ def unlike(content: dict[str, Any], cells_m: Sequence[float]) -> tuple[str, ...]
 def as_json(scene: Path, settings: Sequence[str], studies: Sequence[Study]) -> dict[str, Any]:
     """The whole as plain data."""
     versions = sorted({level.run.summary.version for study in studies for level in study.levels if level.run})
-    return {
-        "experiment": scene.stem,
-        "settings": list(settings),
-        "versions": versions,
-        "studies": [
-            {
-                "mechanics": study.mechanics,
-                "variant": study.variant,
-                "increment_m": study.increment_m,
-                "levels": [_level_json(level) for level in study.levels],
-                "notes": list(study.notes),
-                "rows": [asdict(row) for row in study.rows],
-            }
-            for study in studies
-        ],
-    }
+    plain = [store.plain(replace(study, levels=())) | {"levels": [_level_json(level) for level in study.levels]} for study in studies]
+    return {"experiment": scene.stem, "settings": list(settings), "versions": versions, "studies": plain}
 
 
 def _level_json(level: Level) -> dict[str, Any]:
     """How one run ended and what it cost."""
-    status = "refused" if level.outcome.exit_status == REFUSED else level.outcome.status
-    found: dict[str, Any] = {"cell_m": level.cell_m, "status": status, "reason": level.outcome.reason}
+    found: dict[str, Any] = {"cell_m": level.cell_m, "status": level.outcome.word, "reason": level.outcome.reason}
     if level.run is not None:
         summary = level.run.summary
         found |= {"particles": summary.particles, "steps": summary.steps, "wall_s": summary.wall_s, "run": str(level.run.folder)}
@@ -332,44 +197,27 @@ def value_words(value: float | None, unit: str) -> str:
 
 def estimate_words(row: Row) -> str:
     """What refinement says of a row, with the extrapolate where there is one."""
-    said, unit = row.estimate, "MPa" if row.unit == "Pa" else row.unit
+    said = row.estimate
     if said.kind != "clean":
         return said.says
-    factor = 1e-6 if row.unit == "Pa" else 1.0
-    uncertainty = f"+- {factor * (said.uncertainty or 0.0):.2g} {unit}"
+    factor, unit = (1e-6, "MPa") if row.unit == "Pa" else (1.0, row.unit)
+    uncertainty = f"{factor * (said.uncertainty or 0.0):.2g} {unit}"
     if said.extrapolate is None:
-        return f"{said.says}; the finest is within {uncertainty.removeprefix('+- ')} of the limit"
-    return f"{value_words(said.extrapolate, row.unit)} {uncertainty} ({said.says})"
+        return f"{said.says}; the finest is within {uncertainty} of the limit"
+    return f"{value_words(said.extrapolate, row.unit)} +- {uncertainty} ({said.says})"
 
 
 def table(study: Study) -> str:
     """One study as a table in text."""
-    head = [f"{level.cell_m:g} m" for level in study.levels]
     lines = [f"\n{study.mechanics} {study.variant}, increment {study.increment_m:g} m"]
-    lines += [f"  {level.cell_m:g} m {_level_json(level)['status']}: {level.outcome.reason}" for level in study.levels if not level.outcome.ok]
-    lines.append(f"  {'':38}" + "".join(f"{name:>11}" for name in head) + "   limit h -> 0, or why there is none")
+    lines += [f"  {level.cell_m:g} m {level.outcome.word}: {level.outcome.reason}" for level in study.levels if not level.outcome.ok]
+    lines.append(f"  {'':38}" + "".join(f"{f'{level.cell_m:g} m':>11}" for level in study.levels) + "   limit h -> 0, or why there is none")
     lines += [f"  {note}" for note in study.notes]
     for row in study.rows:
         label = f"{row.label} ({'MPa' if row.unit == 'Pa' else row.unit})"
         lines.append(f"  {label:38}" + "".join(f"{value_words(value, row.unit):>11}" for value in row.values) + f"   {estimate_words(row)}")
         lines += [f"  {'':38}  {note}" for note in row.notes if "root mean square" not in note]
     return "\n".join(lines)
-
-
-def parse(arguments: list[str] | None) -> tuple[argparse.ArgumentParser, argparse.Namespace]:
-    """The command line."""
-    parser = argparse.ArgumentParser(prog="ci/refine", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("experiment", help="the beginning of its name, or a scene file")
-    parser.add_argument("--cells", default=",".join(f"{cell:g}" for cell in CELLS_M), help="cell sizes in m")
-    parser.add_argument("--variants", default="", help="names, comma-separated (default: the interface types of the study)")
-    parser.add_argument("--mechanics", default="quasistatic", choices=(*MECHANICS, "both"))
-    parser.add_argument("--heights", default="", help="heights in m at which the pressure is followed")
-    parser.add_argument("--set", dest="settings", action="append", default=[], metavar="KEY=VALUE", help="a scene key")
-    parser.add_argument("--jobs", type=int, default=2, help="runs at a time")
-    parser.add_argument("--limit", type=float, default=LIMIT_MIN, help="minutes above which --yes is asked for")
-    parser.add_argument("--yes", action="store_true", help="run whatever it costs")
-    parser.add_argument("--out", type=Path, default=REFINE_RUNS)
-    return parser, parser.parse_args(arguments)
 
 
 def numbers(text: str, what: str) -> list[float]:
@@ -383,44 +231,24 @@ def numbers(text: str, what: str) -> list[float]:
     return found
 
 
-def chosen(scene: Path, names: str) -> list[str]:
-    """The variants to run: those named, or the study's own, or the base scene; raises ValueError for unknown names."""
-    known = variants_of(scene)
-    wanted = [name for name in names.split(",") if name] or [name for name in known if name in STUDY_VARIANTS] or [""]
-    unknown = [name for name in wanted if name and name not in known]
-    if unknown:
-        raise ValueError(f"{scene.stem} has no variant {', '.join(unknown)}; there are {', '.join(known)}")
-    return wanted
-
-
-def affordable(jobs: Sequence[Job], options: argparse.Namespace) -> bool:
-    """Print what the jobs will cost; whether they may be made."""
-    lines, seconds = cost_lines(jobs)
-    minutes = seconds / 60.0 / max(options.jobs, 1)
-    if lines:
-        print("\n".join([f"{len(lines)} of {len(jobs)} runs to make, by estimate:", *lines]))
-        print(f"  together about {minutes:.1f} min with {options.jobs} at a time", flush=True)
-    if minutes <= options.limit or options.yes:
-        return True
-    print(f"above the limit of {options.limit:g} min: give --yes, a larger --limit, fewer variants or coarser cells", file=sys.stderr)
-    return False
-
-
 def main(arguments: list[str] | None = None) -> int:
     """The study from the command line; 0 where all runs completed, 3 where some did not, 2 for bad input."""
-    parser, options = parse(arguments)
+    parser = command("ci/refine", __doc__, "variants", "mechanics", "set", "jobs", "limit", "yes", "out", mechanics="quasistatic", out=REFINE_RUNS)
+    parser.add_argument("experiment", help="the beginning of its name, or a scene file")
+    parser.add_argument("--cells", default=",".join(f"{cell:g}" for cell in CELLS_M), help="cell sizes in m")
+    parser.add_argument("--heights", default="", help="heights in m at which the pressure is followed")
+    options = parser.parse_args(arguments)
     try:
         scene, cells = scene_of(options.experiment), sorted(set(numbers(options.cells, "cells")), reverse=True)
         variants, heights = chosen(scene, options.variants), numbers(options.heights, "heights") or list(HEIGHTS_M)
+        need_solver()
+        mechanics = MECHANICS if options.mechanics == "both" else (options.mechanics,)
+        cases = [(one, variant) for one in mechanics for variant in variants if one in mechanics_of(scene, variant)]
+        if not cases:
+            raise ValueError(f"none of {', '.join(variants)} runs in {options.mechanics}")
     except ValueError as error:
         parser.error(str(error))
-    if not solver().is_file():
-        parser.error(f"there is no solver at {solver()}: build it first (ci/reproduce and ci/test do)")
-    mechanics = MECHANICS if options.mechanics == "both" else (options.mechanics,)
-    cases = [(one, variant) for one in mechanics for variant in variants if one in mechanics_of(scene, variant)]
     jobs = [job_of(scene, *case, cell, options.settings, options.out.resolve()) for case in cases for cell in cells]
-    if not jobs:
-        parser.error(f"none of {', '.join(variants)} runs in {options.mechanics}")
     if not affordable(jobs, options):
         return 2
     made = make_all(jobs, options.jobs)
@@ -429,8 +257,7 @@ def main(arguments: list[str] | None = None) -> int:
         own = [Level(cell, *found) for cell, found in zip(cells, made[k * len(cells) : (k + 1) * len(cells)])]
         studies.append(study_of(scene, one, variant, own, options.settings, heights))
         print(table(studies[-1]))
-    target = options.out / scene.stem / NAME
-    target.write_text(json.dumps(as_json(scene, options.settings, studies), indent=1) + "\n", encoding="utf-8")
+    target = store.write(as_json(scene, options.settings, studies), options.out / scene.stem / "refine.json")
     print(f"\nwritten: {target}")
     return 0 if all(outcome.ok for outcome, _ in made) else 3
 

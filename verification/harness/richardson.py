@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 # Orders outside this range are no order of a scheme whose terms are of first and second order.
 CLEAN_ORDERS = (0.5, 3.0)
@@ -119,7 +119,8 @@ def estimate(sizes: Sequence[float], values: Sequence[float], noise: float = 0.0
         raise ValueError(f"{len(sizes)} sizes and {len(values)} values")
     if len(sizes) < 3:
         spread = abs(values[1] - values[0]) if len(values) == 2 else None
-        return Estimate("too few", _few_words(sizes, values, unit), spread=spread)
+        says = "at no size" if not sizes else f"one size only ({sizes[0]:g} m)"
+        return Estimate("too few", says if spread is None else f"two sizes only, {told(spread, unit)} apart", spread=spread)
     triples = tuple(triple(sizes[k : k + 3], values[k : k + 3], noise) for k in range(len(sizes) - 2))
     spread = max(values[-3:]) - min(values[-3:])
     last = triples[-1]
@@ -127,12 +128,12 @@ def estimate(sizes: Sequence[float], values: Sequence[float], noise: float = 0.0
         kind = last.kind if last.kind != "converges" else "odd order"
         return Estimate(kind, _why_not(last, spread, abs(values[-1] - values[-2]), noise, unit), triples, last.order, spread=spread)
     assert last.order is not None
-    agrees = len(triples) == 1 or _agree(triples[-2], last)
-    beyond = (values[-1] - values[-2]) / ((sizes[-2] / sizes[-1]) ** last.order - 1.0)
+    before = triples[-2] if len(triples) > 1 else last
+    agrees = before.clean and abs((before.order or 0.0) - last.order) <= SAME_ORDER
     safety = SAFETY if agrees else SAFETY_UNCONFIRMED
-    doubt = "" if agrees else f"; {_triple_words(triples[-2])} with {triples[-2].sizes[0]:g} m, so the factor of safety is {safety:g}"
-    says = f"order {last.order:.2f}{doubt}"
-    return Estimate("clean", says, triples, last.order, values[-1] + beyond, safety * abs(beyond), spread)
+    doubt = "" if agrees else f"; {_triple_words(before)} with {before.sizes[0]:g} m, so the factor of safety is {safety:g}"
+    beyond = (values[-1] - values[-2]) / ((sizes[-2] / sizes[-1]) ** last.order - 1.0)
+    return Estimate("clean", f"order {last.order:.2f}{doubt}", triples, last.order, values[-1] + beyond, safety * abs(beyond), spread)
 
 
 def estimate_of_changes(sizes: Sequence[float], changes: Sequence[float], noise: float = 0.0, unit: str = "") -> Estimate:
@@ -143,13 +144,7 @@ def estimate_of_changes(sizes: Sequence[float], changes: Sequence[float], noise:
     if len(changes) != max(len(sizes) - 1, 0):
         raise ValueError(f"{len(sizes)} sizes have {len(sizes) - 1} changes, not {len(changes)}")
     values = [math.fsum(changes[k:]) for k in range(len(sizes))]
-    found = estimate(sizes, values, noise, unit)
-    return Estimate(found.kind, found.says, found.triples, found.order, None, found.uncertainty, found.spread)
-
-
-def _agree(before: Triple, last: Triple) -> bool:
-    """Whether two successive triples show the same clean order."""
-    return before.clean and abs((before.order or 0.0) - (last.order or 0.0)) <= SAME_ORDER
+    return replace(estimate(sizes, values, noise, unit), extrapolate=None)
 
 
 def _triple_words(item: Triple) -> str:
@@ -175,10 +170,3 @@ def _why_not(last: Triple, spread: float, change: float, noise: float, unit: str
         return f"{order}not converging, {range_words}"
     shown = "above 60" if last.order is None else f"{last.order:.2f}"
     return f"order {shown} is outside {CLEAN_ORDERS[0]:g} to {CLEAN_ORDERS[1]:g}: no extrapolate, {range_words}"
-
-
-def _few_words(sizes: Sequence[float], values: Sequence[float], unit: str) -> str:
-    """What fewer than three values can say."""
-    if len(values) == 2:
-        return f"two sizes only, {told(abs(values[1] - values[0]), unit)} apart"
-    return f"one size only ({sizes[0]:g} m)" if len(values) == 1 else "at no size"

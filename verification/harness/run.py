@@ -1,30 +1,28 @@
-"""Runs one variant of a scene into a folder, unless that folder already holds the same run by the same solver.
-
-usage: python3 -m verification.harness.run SCENE --variant NAME --out DIR [--set KEY=VALUE]... [--force]
-"""
+"""Runs one variant of a scene into a folder, unless that folder already holds the same run by the same solver."""
 from __future__ import annotations
 
-import argparse
 import hashlib
 import json
+import resource
 import shutil
 import signal
 import subprocess
-import sys
 import threading
 import time
 import tomllib
-from dataclasses import asdict, dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from verification.harness import store
 from verification.harness.paths import solver
 
 OUTCOME = "outcome.json"
 
 # What the solver's exit status means (0 done, 3 numerics failed); only these two are the solver's word on the scene.
-INTERRUPTED = 130
-MEANING = {0: "completed", 1: "a bug in the solver", 2: "bad input", 3: "numerics failed", INTERRUPTED: "interrupted"}
+BAD_INPUT, INTERRUPTED = 2, 130
+MEANING = {0: "completed", 1: "a bug in the solver", BAD_INPUT: "bad input", 3: "numerics failed", INTERRUPTED: "interrupted"}
 FINAL = (0, 3)
 TOO_LONG = 124  # a run that was killed since it took longer than was asked for
 
@@ -62,6 +60,11 @@ class Outcome:
         """Whether the run came to its end."""
         return self.status == "completed"
 
+    @property
+    def word(self) -> str:
+        """How it ended: "completed", "failed", "refused" for bad input, or "too long"."""
+        return {BAD_INPUT: "refused", TOO_LONG: "too long"}.get(self.exit_status, self.status)
+
 
 def without_claims(scene_text: str, variant: str) -> dict[str, Any]:
     """What of a scene decides on a run: all but its title, its claims and the other variants."""
@@ -85,20 +88,16 @@ def key_of(job: Job, binary: Path) -> str:
 
 def command_of(job: Job, binary: Path) -> list[str]:
     """The command line of a job."""
-    command = [str(binary), "run", str(job.scene), "--out", str(job.out), "--threads", str(job.threads), "--quiet"]
-    if job.variant:
-        command += ["--variant", job.variant]
-    for setting in job.settings:
-        command += ["--set", setting]
-    return command
+    words = [str(binary), "run", str(job.scene), "--out", str(job.out), "--threads", str(job.threads), "--quiet"]
+    words += ["--variant", job.variant] if job.variant else []
+    return words + [word for setting in job.settings for word in ("--set", setting)]
 
 
 def load_outcome(folder: Path) -> Outcome | None:
     """The outcome kept in a run's folder, or None where there is none that can be read."""
     try:
-        content = json.loads((folder / OUTCOME).read_text(encoding="utf-8"))
-        return Outcome(**{**content, "settings": tuple(content["settings"])})
-    except (OSError, ValueError, KeyError, TypeError):
+        return store.read(Outcome, folder / OUTCOME)
+    except ValueError:
         return None
 
 
@@ -130,13 +129,13 @@ def reason_of(folder: Path, exit_status: int, log: str) -> str:
     return reason or " / ".join(log.strip().splitlines()[-3:]) or meaning
 
 
-def ended(command: list[str], limit_s: float | None, stop: threading.Event | None = None) -> tuple[int, str]:
+def ended(words: list[str], limit_s: float | None, stop: threading.Event | None = None) -> tuple[int, str]:
     """Exit status and what was said; a command that takes longer than the limit is killed (TOO_LONG, with that as its word).
 
     Once `stop` is set it is interrupted as by Ctrl-C, and killed where that does not end it.
     """
     begun, asked = time.monotonic(), False
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
         while True:
             try:
                 said, _ = process.communicate(timeout=limit_s if stop is None else LOOK_S)
@@ -152,6 +151,21 @@ def ended(command: list[str], limit_s: float | None, stop: threading.Event | Non
                 limit_s, asked = spent + GRACE_S, True
 
 
+Timed = tuple[float, float]  # wall and CPU time, s
+
+
+def timed(action: Callable[[], Any]) -> tuple[Any, Timed]:
+    """What an action gives, with the wall and CPU time of the processes that were waited for meanwhile, s."""
+
+    def cpu_s() -> float:
+        used = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return used.ru_utime + used.ru_stime
+
+    cpu, wall = cpu_s(), time.perf_counter()
+    made = action()
+    return made, (time.perf_counter() - wall, cpu_s() - cpu)
+
+
 def run(job: Job, binary: Path | None = None, force: bool = False, limit_s: float | None = None, stop: threading.Event | None = None) -> Outcome:
     """Run a job unless its folder has it already; the outcome says how it ended and never raises for a failed run.
 
@@ -160,51 +174,21 @@ def run(job: Job, binary: Path | None = None, force: bool = False, limit_s: floa
     """
     binary = binary or solver()
     key = key_of(job, binary)
-    before = None if force else done_before(job, key)
-    if before is not None:
-        return Outcome(**{**asdict(before), "settings": before.settings, "skipped": True})
-    before = None if force else load_outcome(job.out)
+    done, before = (None, None) if force else (done_before(job, key), load_outcome(job.out))
+    if done is not None:
+        return replace(done, skipped=True)
     start = time.monotonic()
     if before is not None and before.key == key and before.exit_status == INTERRUPTED and (job.out / "scene.toml").is_file():
-        command = [str(binary), "resume", str(job.out), "--threads", str(job.threads), "--quiet"]
+        words = [str(binary), "resume", str(job.out), "--threads", str(job.threads), "--quiet"]
         start -= before.wall_s
     else:
         clear(job.out)
-        command = command_of(job, binary)
-    exit_status, said = ended(command, limit_s, stop)
-    wall_s = time.monotonic() - start
+        words = command_of(job, binary)
+    exit_status, said = ended(words, limit_s, stop)
+    wall_s = round(time.monotonic() - start, 6)
     (job.out / "log.txt").write_text(said, encoding="utf-8")
     complete = exit_status == 0 and (job.out / "summary.json").is_file()
-    outcome = Outcome(
-        scene=job.scene.stem,
-        variant=job.variant,
-        status="completed" if complete else "failed",
-        exit_status=exit_status,
-        reason="" if complete else reason_of(job.out, exit_status, said),
-        wall_s=round(wall_s, 6),
-        key=key,
-        settings=job.settings,
-    )
-    (job.out / OUTCOME).write_text(json.dumps(asdict(outcome), indent=1) + "\n", encoding="utf-8")
+    status, reason = ("completed", "") if complete else ("failed", reason_of(job.out, exit_status, said))
+    outcome = Outcome(job.scene.stem, job.variant, status, exit_status, reason, wall_s, key, job.settings)
+    store.write(outcome, job.out / OUTCOME)
     return outcome
-
-
-def main(arguments: list[str] | None = None) -> int:
-    """Run one job from the command line; exit status that of the solver."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scene", type=Path)
-    parser.add_argument("--variant", default="", help="a variant of the scene (default: the base scene)")
-    parser.add_argument("--out", type=Path, required=True, help="the run's folder")
-    parser.add_argument("--set", dest="settings", action="append", default=[], metavar="KEY=VALUE", help="a scene key")
-    parser.add_argument("--threads", type=int, default=1)
-    parser.add_argument("--force", action="store_true", help="run even if the folder holds the same run")
-    options = parser.parse_args(arguments)
-    job = Job(options.scene, options.variant, options.out, tuple(options.settings), options.threads)
-    outcome = run(job, force=options.force)
-    how = "already done" if outcome.skipped else f"{outcome.wall_s:.1f} s"
-    print(f"{outcome.scene} {outcome.variant}: {outcome.status} ({how}) {outcome.reason}".rstrip())
-    return outcome.exit_status if outcome.exit_status >= 0 else 1
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,10 +1,16 @@
-"""What scene files say before anything runs: variants, their resolved keys, and the mechanics each can run in."""
+"""What scene files say before anything runs: variants, their keys with settings in place, and the mechanics each can run in.
+
+The solver merges variants and settings by the same rule; where it prints what it makes of them, merged() can go.
+"""
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
+
+from verification.harness.paths import EXPERIMENTS
 
 # The two models of the rock, in the order in which they are run and shown.
 MECHANICS: tuple[str, ...] = ("explicit", "quasistatic")
@@ -32,9 +38,32 @@ def scenes_of(folder: Path) -> list[Path]:
     return sorted(folder.glob("*.toml"))
 
 
+def scene_of(name: str) -> Path:
+    """The scene of an experiment by the beginning of its name, or a scene file; raises ValueError where that is not one."""
+    if name.endswith(".toml"):
+        if not Path(name).is_file():
+            raise ValueError(f"there is no file {name}")
+        return Path(name).resolve()
+    found = [path for path in scenes_of(EXPERIMENTS) if path.stem.startswith(name)]
+    if len(found) != 1:
+        names = ", ".join(path.stem for path in (found or scenes_of(EXPERIMENTS)))
+        raise ValueError(f"{'several experiments begin' if found else 'no experiment begins'} with {name}: {names}")
+    return found[0]
+
+
 def variants_of(scene: Path) -> list[str]:
     """The names of a scene's variants, in its order."""
     return list(read_scene(scene).get("variants", {}))
+
+
+def chosen(scene: Path, names: str) -> list[str]:
+    """The variants named (with commas between), else the study's own, else the base scene; raises ValueError for unknown names."""
+    known = variants_of(scene)
+    wanted = [name for name in names.split(",") if name] or [name for name in known if name in STUDY_VARIANTS] or [""]
+    unknown = [name for name in wanted if name and name not in known]
+    if unknown:
+        raise ValueError(f"{scene.stem} has no variant {', '.join(unknown)}; there are {', '.join(known)}")
+    return wanted
 
 
 def merged(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
@@ -46,17 +75,30 @@ def merged(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
     return both
 
 
-def resolved(scene: Path, variant: str) -> dict[str, Any]:
-    """A scene with the keys of one of its variants in place, without variants and claims."""
-    content = read_scene(scene)
-    base = {key: value for key, value in content.items() if key not in ("variants", "claim")}
-    return merged(base, content.get("variants", {}).get(variant, {}))
+def nested(setting: str) -> dict[str, Any]:
+    """A setting key.path=value of the command line as nested tables; a value that is no TOML is a word."""
+    key, _, text = setting.partition("=")
+    try:
+        value = tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        value = text
+    for part in reversed(key.split(".")):
+        value = {part: value}
+    return value
+
+
+def content_of(scene: Path, variant: str, settings: Sequence[str] = ()) -> dict[str, Any]:
+    """The keys of a scene with those of a variant and of settings in place, without variants and claims."""
+    content = {key: value for key, value in read_scene(scene).items() if key not in ("variants", "claim")}
+    for over in (read_scene(scene).get("variants", {}).get(variant, {}), *map(nested, settings)):
+        content = merged(content, over)
+    return content
 
 
 def mechanics_of(scene: Path, variant: str) -> tuple[str, ...]:
     """The mechanics that a variant can run in: the one it names itself or that its keys need, else both."""
     named = read_scene(scene).get("variants", {}).get(variant, {}).get("numerics", {}).get("mechanics")
-    content = resolved(scene, variant)
+    content = content_of(scene, variant)
     if any(content.get(table, {}).get(key) == value for table, key, value in QUASISTATIC_ONLY):
         named = "quasistatic"
     return (str(named),) if named else MECHANICS

@@ -6,11 +6,12 @@ import threading
 from pathlib import Path
 from typing import Any
 
-from verification.harness.compare import Comparison, Expected, compare
-from verification.harness.load import Run, load
+from verification.harness import store
+from verification.harness.load import Run
 from verification.harness.observables import path_length, resample
 from verification.harness.paths import EXPERIMENTS, RUNS
-from verification.harness.run import Job, run
+from verification.harness.plan import make
+from verification.harness.run import Job
 from verification.harness.scenes import MECHANICS, mechanics_of
 
 EXPECTED = EXPERIMENTS / "expected"
@@ -61,57 +62,51 @@ def settings_of(mechanics: str) -> tuple[str, ...]:
     return (f"numerics.mechanics={mechanics}", *SETTINGS)
 
 
-def arrest_values(found: Run) -> Values:
-    """Pressures (Pa) at which each arrest began and ended, named by the tip's height (m)."""
-    values: Values = {}
-    tolerance = PRESSURE_TOLERANCE_PA[found.summary.mechanics]
-    events = [event for event in found.summary.events if event.kind in ("arrest", "restart")]
-    for k, event in enumerate(events):
-        if event.kind != "arrest":
-            continue
-        after = events[k + 1] if k + 1 < len(events) else None
-        rise = (after.inlet_Pa if after else found.summary.inlet_Pa) - event.inlet_Pa
-        item = {"unit": "Pa", "tolerance": tolerance} | ({"optional": True} if rise < SURE_ARREST_PA else {})
-        height = f"{round(event.tip_y_m)}m"
-        values[f"arrest_at_{height}_Pa"] = {"value": round(event.inlet_Pa, 3), **item}
-        if after is not None:
-            values[f"restart_from_{height}_Pa"] = {"value": round(after.inlet_Pa, 3), **item}
-    return values
-
-
 def measured_values(found: Run) -> Values:
-    """Start, arrests, restarts, final height and points of the path, each with unit and tolerance."""
-    starts = [event for event in found.summary.events if event.kind == "start"]
-    values = arrest_values(found)
-    if starts:
-        tolerance = PRESSURE_TOLERANCE_PA[found.summary.mechanics]
-        values["start_Pa"] = {"value": round(starts[0].inlet_Pa, 3), "unit": "Pa", "tolerance": tolerance}
+    """Start, arrests and restarts (named by the tip's height), final height and points of the path, each with unit and tolerance."""
+    values: Values = {}
 
-    def put_length(name: str, value: float) -> None:
+    def pressure(name: str, value: float, sure: bool = True) -> None:
+        item = {"value": round(value, 3), "unit": "Pa", "tolerance": PRESSURE_TOLERANCE_PA[found.summary.mechanics]}
+        values[name] = item if sure else {**item, "optional": True}
+
+    def length(name: str, value: float) -> None:
         values[name] = {"value": round(value, 6), "unit": "m", "tolerance": LENGTH_TOLERANCE_M}
 
-    put_length("final_height_m", float(found.history["tip_y_m"].max()))
+    events = [event for event in found.summary.events if event.kind in ("arrest", "restart")]
+    for event, after in zip(events, [*events[1:], None]):
+        if event.kind != "arrest":
+            continue
+        sure = (after.inlet_Pa if after else found.summary.inlet_Pa) - event.inlet_Pa >= SURE_ARREST_PA
+        pressure(f"arrest_at_{round(event.tip_y_m)}m_Pa", event.inlet_Pa, sure)
+        if after is not None:
+            pressure(f"restart_from_{round(event.tip_y_m)}m_Pa", after.inlet_Pa, sure)
+    for event in [event for event in found.summary.events if event.kind == "start"][:1]:
+        pressure("start_Pa", event.inlet_Pa)
+    length("final_height_m", float(found.history["tip_y_m"].max()))
     quarter = path_length(found.path) / 4.0
     for k, (x, y) in enumerate(resample(found.path, quarter)[1:5] if quarter > 0.0 else [], 1):
-        put_length(f"path_{k}_x_m", float(x))
-        put_length(f"path_{k}_y_m", float(y))
+        length(f"path_{k}_x_m", float(x))
+        length(f"path_{k}_y_m", float(y))
     return values
 
 
-def compare_values(found: Values, expected: Values) -> list[Comparison]:
-    """Compare value by value; one that is there on one side only fails, but for arrests too short to be sure of."""
-    comparisons = []
-    for name in sorted(expected.keys() | found.keys()):
-        if not (name in expected and name in found) and {**expected, **found}[name].get("optional"):
+def differences(found: Values, expected: Values) -> list[str]:
+    """What is not as expected, a line a value; of arrests too short to be sure of, one that is there on one side only is none.
+
+    Raises ValueError for an expectation so loose that zero or twice the value would pass.
+    """
+    lines = []
+    for name, item in sorted((expected | found).items()):
+        if not (name in expected and name in found):
+            lines += [] if item.get("optional") else [f"{name}: {'not expected' if name in found else 'not there'}"]
             continue
-        if name not in expected:
-            unasked = Expected(0.0, 0.0, found[name]["unit"], scale=1.0)
-            comparisons.append(Comparison(f"{name} (not expected)", float("nan"), unasked))
-            continue
-        item = expected[name]
-        allowed = Expected(item["value"], item["tolerance"], item["unit"])
-        comparisons.append(compare(name, found[name]["value"] if name in found else None, allowed))
-    return comparisons
+        value, wanted, tolerance = found[name]["value"], expected[name]["value"], expected[name]["tolerance"]
+        if not 0.0 <= tolerance < abs(wanted):
+            raise ValueError(f"{name}: a tolerance of {tolerance} would let zero or twice {wanted} pass")
+        if not abs(value - wanted) <= tolerance:
+            lines.append(f"{name}: {value:.6g} against {wanted:.6g} {item['unit']}, allowed {tolerance:.3g}")
+    return lines
 
 
 def expected_file(mechanics: str, experiment: str) -> Path:
@@ -127,20 +122,17 @@ def read_expected(mechanics: str, experiment: str) -> dict[str, Values]:
 
 def write_expected(mechanics: str, experiment: str, variants: dict[str, Values]) -> None:
     """Write the expected values of an experiment with the settings they belong to."""
-    content = {"experiment": experiment, "settings": list(settings_of(mechanics)), "variants": variants}
-    path = expected_file(mechanics, experiment)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    content = {"experiment": experiment, "settings": settings_of(mechanics), "variants": variants}
+    store.write(content, expected_file(mechanics, experiment))
 
 
 def measure_case(case: Case, stop: threading.Event | None = None) -> Values:
     """Run a case, unless it is there, and measure it; raises RuntimeError for a run that failed or was made in another mechanics."""
     mechanics, experiment, variant = case
     folder = SMOKE_RUNS.joinpath(*case)
-    outcome = run(Job(EXPERIMENTS / f"{experiment}.toml", variant, folder, settings_of(mechanics)), stop=stop)
-    if not outcome.ok:
+    outcome, found = make(Job(EXPERIMENTS / f"{experiment}.toml", variant, folder, settings_of(mechanics)), stop)
+    if found is None or not outcome.ok:
         raise RuntimeError(f"{'/'.join(case)}: {outcome.reason}")
-    found = load(folder)
     if found.summary.mechanics != mechanics:
         raise RuntimeError(f"{'/'.join(case)}: the solver ran {found.summary.mechanics}")
     return measured_values(found)

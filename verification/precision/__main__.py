@@ -11,26 +11,25 @@ Exit status: 0 done (failures of methods are results), 2 wrong use or no idle ma
 """
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from verification.harness.cost import cost_of
+from verification.benchmarks import machine
+from verification.harness.choose import beginnings
+from verification.harness.command import command
 from verification.harness.paths import reference_program, solver
-from verification.harness.refine import content_of
+from verification.harness.plan import about_s
+from verification.harness.scenes import content_of
 from verification.ladder.case import Level
-from verification.precision import machine, store
+from verification.precision import store
 from verification.precision.measure import LONG_S, REPEATS, RUNS, SOME, WARM_S, key_of, measured
 from verification.precision.problem import STRATA, Method, Problem, thinned
 from verification.precision.problems import PROBLEMS
 from verification.precision.store import Point, Sheet
 
 QUICK = RUNS / "quick"
-
-# To plan with before anything is known: particle-steps a second on one thread.
-PARTICLE_STEPS_A_SECOND = {"explicit": 4.0e7, "quasistatic": 4.0e5}
 
 
 @dataclass(frozen=True)
@@ -55,13 +54,10 @@ class Task:
         if self.method.program != STRATA or self.method.setting is None:
             return 0.1
         assert isinstance(self.method.source, Path)
-        graded = self.method.setting.graded > 0.0 or self.method.setting.beyond_m > 0.0
-        if graded and self.method.setting.mechanics == "quasistatic":
+        if self.method.setting.mechanics == "quasistatic":
             return self.problem.about_s * (self.method.levels[-1].size / self.level.size) ** 2
-        cost = cost_of(content_of(self.method.source, self.level.variant, self.level.settings), self.method.setting.mechanics)
-        steps = max(cost.steps, 1.0) if self.method.setting.mechanics == "explicit" else 4.0
-        share = 0.2 if graded else 1.0  # of the uniform grid's particles
-        return min(share * cost.particles * steps / PARTICLE_STEPS_A_SECOND[self.method.setting.mechanics], self.problem.limit_s)
+        content = content_of(self.method.source, self.level.variant, self.level.settings)
+        return min(about_s(content), self.problem.limit_s)
 
     def expected_total_s(self, once: bool) -> float:
         """How long all runs of the point may take, s; one that failed before ends at its first."""
@@ -71,40 +67,21 @@ class Task:
         return one * (SOME if one > WARM_S else REPEATS + 1)
 
 
-def parser() -> argparse.ArgumentParser:
-    """The options."""
-    options = argparse.ArgumentParser("ci/chart", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    options.add_argument("--only", default="", help="problems, comma-separated (default: all)")
-    options.add_argument("--methods", default="", help="methods by the beginnings of their names, comma-separated (default: all)")
-    options.add_argument("--quick", action="store_true", help="coarse sizes of a few methods, once each, to try it out")
-    options.add_argument("--once", action="store_true", help="run each point once, without a warm-up")
-    options.add_argument("--list", action="store_true", help="say what is to be measured and how long it takes; run nothing")
-    options.add_argument("--force", action="store_true", help="measure even if the machine is not idle")
-    options.add_argument("--fresh", action="store_true", help="measure again what is known")
-    options.add_argument("--out", type=Path, help="folder of the data (default: verification/precision/data)")
-    return options
-
-
-def chosen(options: argparse.Namespace) -> list[Problem]:
+def chosen(only: str, methods: str, quick: bool) -> list[Problem]:
     """The problems and methods that are asked for; raises ValueError for names that are not there."""
-    wanted = [name for name in options.only.split(",") if name]
+    wanted, starts = beginnings(only), beginnings(methods)
     strangers = [name for name in wanted if all(problem.name != name for problem in PROBLEMS)]
     if strangers:
         raise ValueError(f"no problem {', '.join(strangers)}; there are {', '.join(problem.name for problem in PROBLEMS)}")
-    found = [problem for problem in PROBLEMS if not wanted or problem.name in wanted]
-    if options.quick:
-        found = [thinned(problem) for problem in found]
-    starts = tuple(name for name in options.methods.split(",") if name)
-    if starts:
-        found = [replace(one, methods=tuple(method for method in one.methods if method.name.startswith(starts))) for one in found]
+    found = [thinned(problem) if quick else problem for problem in PROBLEMS if not wanted or problem.name in wanted]
+    found = [replace(one, methods=tuple(method for method in one.methods if not starts or method.name.startswith(starts))) for one in found]
     if not any(problem.methods for problem in found):
         raise ValueError(f"no method begins with {' or '.join(starts)}")
     return found
 
 
-def tasks_of(problem: Problem, sheet: Sheet | None, here: machine.Machine, fresh: bool) -> list[Task]:
-    """All points of a problem, with what is known of them."""
-    same = sheet is not None and machine.made_here(sheet.machine, here)
+def tasks_of(problem: Problem, sheet: Sheet | None, same: bool, fresh: bool) -> list[Task]:
+    """All points of a problem, with what is known of them; `same`: by this machine."""
     tasks = []
     for method in problem.methods:
         for level in method.levels:
@@ -150,50 +127,51 @@ def words(point: Point) -> str:
 def measure_all(tasks: Sequence[Task], sheets: dict[str, Sheet], folder: Path, runs: Path, once: bool) -> None:
     """Measure the points that are not known, and write each as it comes."""
     left = [task for task in tasks if not task.fresh]
+    order = {problem.name: [method.name for method in problem.methods] for problem in PROBLEMS}
     remaining = sum(task.expected_total_s(once) for task in left)
     for k, task in enumerate(left, 1):
+        name = task.problem.name
         point = measured(task.problem, task.method, task.level, runs, once)
-        sheets[task.problem.name] = sheets[task.problem.name].with_point(point)
-        order = [method.name for problem in PROBLEMS if problem.name == task.problem.name for method in problem.methods]
-        store.write(sheets[task.problem.name], folder, order)
+        sheets[name] = sheets[name].with_point(point)
+        store.write(sheets[name], folder, order[name])
         remaining -= task.expected_total_s(once)
         print(f"[{k:3d}/{len(left)}, {minutes(max(remaining, 0.0))} left] {task.name}: {words(point)}", flush=True)
 
 
-def sheet_for(problem: Problem, known: Sheet | None, here: machine.Machine) -> Sheet:
-    """What the points of a problem are added to: what is known from this machine, without methods that are gone; else nothing."""
-    if known is None or not machine.made_here(known.machine, here):
-        return Sheet(problem.name, here.as_json(), ())
-    every = next(one for one in PROBLEMS if one.name == problem.name)
-    names = {(method.name, level.label) for method in every.methods for level in method.levels}
-    return Sheet(problem.name, here.as_json(), tuple(point for point in known.points if (point.method, point.level) in names))
-
-
 def main(arguments: list[str] | None = None) -> int:
     """Measure what is asked for."""
-    command = parser()
-    options = command.parse_args(arguments)
+    parser = command("ci/chart", __doc__, "list", "out")
+    parser.add_argument("--only", default="", help="problems, comma-separated (default: all)")
+    parser.add_argument("--methods", default="", help="methods by the beginnings of their names, comma-separated (default: all)")
+    parser.add_argument("--quick", action="store_true", help="coarse sizes of a few methods, once each, to try it out")
+    parser.add_argument("--once", action="store_true", help="run each point once, without a warm-up")
+    parser.add_argument("--force", action="store_true", help="measure even if the machine is not idle")
+    parser.add_argument("--fresh", action="store_true", help="measure again what is known")
+    options = parser.parse_args(arguments)
     try:
-        problems = chosen(options)
+        problems = chosen(options.only, options.methods, options.quick)
     except ValueError as error:
-        command.error(str(error))
+        parser.error(str(error))
     for program in (solver(), reference_program()):
         if not program.is_file():
-            command.error(f"there is no {program}: build it first (ci/chart does)")
-    folder, runs = options.out or (QUICK / "data" if options.quick else store.DATA), QUICK if options.quick else RUNS
-    if options.out:
-        runs = options.out / "runs"
-    once = options.quick or options.once
-    here = machine.this_machine()
+            parser.error(f"there is no {program}: build it first (ci/chart does)")
+    folder = options.out or (QUICK / "data" if options.quick else store.DATA)
+    runs = options.out / "runs" if options.out else QUICK if options.quick else RUNS
+    once, here = options.quick or options.once, machine.described()
     known = {problem.name: store.read(problem.name, folder) for problem in problems}
-    tasks = [task for problem in problems for task in tasks_of(problem, known[problem.name], here, options.fresh)]
+    same = {name: sheet is not None and machine.made_here(sheet.machine, here) for name, sheet in known.items()}
+    tasks = [task for problem in problems for task in tasks_of(problem, known[problem.name], same[problem.name], options.fresh)]
     if options.list:
         show(tasks, once)
         return 0
     if not (options.force or options.quick or machine.becomes_idle()):
         print("others are at work on this machine; --force measures all the same", file=sys.stderr)
         return 2
-    sheets = {problem.name: sheet_for(problem, known[problem.name], here) for problem in problems}
+    points = {(problem.name, method.name, level.label) for problem in PROBLEMS for method in problem.methods for level in method.levels}
+    sheets = {}  # what is known from this machine, without methods that are gone
+    for name, sheet in known.items():
+        kept = sheet.points if sheet is not None and same[name] else ()
+        sheets[name] = Sheet(name, here, tuple(point for point in kept if (name, point.method, point.level) in points))
     measure_all(tasks, sheets, folder, runs, once)
     print(f"{len(tasks)} points of {len(problems)} problems are in {folder}")
     return 0

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from verification.harness.richardson import CLEAN_ORDERS, estimate
+from verification.harness.richardson import CLEAN_ORDERS
 from verification.precision.problem import STRATA, Method, Problem, Wanted
 from verification.precision.store import OK, Found, Point, Sheet
 
@@ -56,15 +56,6 @@ class Lack:
 
 
 @dataclass(frozen=True)
-class Limit:
-    """A reference that is the limit of a method's sizes: value, its uncertainty (same unit), and what it rests on in words."""
-
-    value: float
-    uncertainty: float
-    says: str
-
-
-@dataclass(frozen=True)
 class Panel:
     """A wanted number over all methods: what was measured, what was not, and how well the reference is known (relative)."""
 
@@ -73,55 +64,6 @@ class Panel:
     dots: tuple[Dot, ...]
     lacks: tuple[Lack, ...]
     uncertainty: float
-    limit: Limit | None
-
-
-def limit_of(sizes: Sequence[float], values: Sequence[float]) -> Limit | None:
-    """The limit of values as sizes shrink, with its grid convergence index; None below three sizes.
-
-    Where the values show no order the limit is the finest, uncertain by what the finest three differ by (the code's own words).
-    """
-    if len(values) < 3:
-        return None
-    found = estimate(sizes, values)
-    if found.kind == "clean" and found.extrapolate is not None and found.uncertainty is not None:
-        return Limit(found.extrapolate, found.uncertainty, found.says)
-    says = f"{found.says}; the finest is taken, uncertain by the spread of the finest three"
-    return Limit(values[-1], found.spread or 0.0, says)
-
-
-def values_of(sheet: Sheet, method: str, wanted: Wanted) -> dict[float, float]:
-    """What a method found for a wanted number, by its sizes, coarse to fine."""
-    own = sorted((point for point in sheet.points if point.method == method and point.ok), key=lambda point: -point.size)
-    return {point.size: found.value for point in own if (found := point.found.get(wanted.name)) and found.value is not None}
-
-
-def limit_in(sheet: Sheet, wanted: Wanted) -> Limit | None:
-    """The limit that a wanted number is held against, from the sizes of the method it names.
-
-    Its uncertainty has in it what halving the steps of time moved the number by (`steps_of`: the same method with steps twice as
-    long), which at first order is what they still leave.
-    """
-    known = values_of(sheet, wanted.limit_of, wanted)
-    limit = limit_of(list(known), list(known.values()))
-    if limit is None or not wanted.steps_of:
-        return limit
-    coarse = values_of(sheet, wanted.steps_of, wanted)
-    moved = max((abs(known[size] - value) for size, value in coarse.items() if size in known), default=math.nan)
-    if math.isnan(moved):
-        return None
-    return Limit(limit.value, limit.uncertainty + moved, f"{limit.says}; halving the steps of time moved it by {moved:.3g}")
-
-
-def with_reference(found: Found, wanted: Wanted, limit: Limit | None) -> Found:
-    """A found value held against the limit, where its reference is one."""
-    if not wanted.limit_of or found.failure or found.value is None:
-        return found
-    if limit is None:
-        return replace(found, failure="no reference: fewer than three sizes of the method whose limit it is")
-    size = limit.value - wanted.base
-    error, uncertainty = (found.value - limit.value) / size, limit.uncertainty / abs(size)
-    return replace(found, reference=limit.value, error=error, reference_error=uncertainty)
 
 
 def judged(errors: Sequence[float], uncertainties: Sequence[float], sizes: Sequence[float], by_order: bool = True) -> list[float]:
@@ -138,39 +80,24 @@ def judged(errors: Sequence[float], uncertainties: Sequence[float], sizes: Seque
 
 def panel_of(problem: Problem, wanted: Wanted, sheet: Sheet) -> Panel:
     """What the measurements of a problem say of a wanted number."""
-    limit = limit_in(sheet, wanted) if wanted.limit_of else None
     dots: list[Dot] = []
     lacks: list[Lack] = []
     for method in problem.methods:
-        shown: list[tuple[Point, Found]] = []
+        shown: list[tuple[Point, Found, float]] = []
         for level in method.levels:
             point = sheet.point(method.name, level.label)
-            if point is None or (point.ok and wanted.name not in point.found):
-                continue
-            if point.status != OK:
+            found = point.found.get(wanted.name) if point is not None else None
+            if point is not None and point.status != OK:
                 lacks.append(Lack(method, level.label, point.status, point.reason, point.time_s))
-                continue
-            found = with_reference(point.found[wanted.name], wanted, limit)
-            if found.error is None or found.failure:
+            elif point is not None and found is not None and (found.error is None or found.failure):
                 lacks.append(Lack(method, level.label, "no value", found.failure or "nothing was measured", point.time_s))
-            else:
-                shown.append((point, found))
-        dots += _curve(method, shown)
-    uncertainty = max((dot.uncertainty for dot in dots), default=0.0)
-    return Panel(problem, wanted, tuple(dots), tuple(lacks), uncertainty, limit)
-
-
-def _curve(method: Method, shown: Sequence[tuple[Point, Found]]) -> list[Dot]:
-    """The dots of a method, coarse to fine."""
-    if not shown:
-        return []
-    errors = [float(found.error or 0.0) for _, found in shown]
-    doubts = [found.reference_error for _, found in shown]
-    counted = judged(errors, doubts, [point.size for point, _ in shown], method.program == STRATA)
-    return [
-        Dot(method, point.level, point.size, point.time_s, error, doubt, bound, point)
-        for (point, _), error, doubt, bound in zip(shown, errors, doubts, counted)
-    ]
+            elif point is not None and found is not None and found.error is not None:
+                shown.append((point, found, found.error))
+        errors, sizes = [error for _, _, error in shown], [point.size for point, _, _ in shown]
+        counted = judged(errors, [found.reference_error for _, found, _ in shown], sizes, method.program == STRATA)
+        dots += [Dot(method, point.level, point.size, point.time_s, error, found.reference_error, bound, point)
+                 for (point, found, error), bound in zip(shown, counted)]  # fmt: skip
+    return Panel(problem, wanted, tuple(dots), tuple(lacks), max((dot.uncertainty for dot in dots), default=0.0))
 
 
 def pareto(dots: Iterable[Dot]) -> list[Dot]:

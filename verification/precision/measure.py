@@ -9,23 +9,22 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-import resource
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from datetime import datetime, timezone
 from pathlib import Path
-from typing import Any
 
+from verification.benchmarks.machine import others_running
 from verification.harness import paths
 from verification.harness import run as harness
-from verification.harness.load import LoadError, Run, load
+from verification.harness.choose import folder_name
+from verification.harness.load import LoadError, load
 from verification.harness.paths import ROOT, reference_program, solver
-from verification.harness.run import Job, Outcome
+from verification.harness.run import Job, Timed, timed
 from verification.ladder.case import Level, Sample
-from verification.ladder.catalogue import folder_name
 from verification.ladder.measure import summarised
-from verification.precision import machine
-from verification.precision.problem import STRATA, Answer, Method, Problem, Wanted
+from verification.precision.problem import STRATA, Answer, Method, Problem
 from verification.precision.store import FAILED, OK, REFUSED, TOO_LONG, Found, Point
 
 RUNS = paths.RUNS / "precision"
@@ -34,39 +33,29 @@ REPEATS, SOME = 5, 3
 # Wall time over CPU time of the quickest run, and beyond it (s), above which something else had the processor.
 DISTURBED, WAITING_S = 1.15, 0.05
 
-Timed = tuple[float, float]  # wall and CPU time, s
-
 
 class Failure(Exception):
-    """A run that has nothing to show; `status` says how it failed."""
+    """A run that has nothing to show: how it failed, and why."""
 
     def __init__(self, status: str, reason: str) -> None:
-        """How it failed, and why."""
-        super().__init__(reason)
+        """Words between single spaces, places in the project by their names there: data are read on other machines, too."""
+        super().__init__(" ".join(reason.replace(f"{ROOT}/", "").split()))
         self.status = status
+
+
+def job_of(method: Method, level: Level, folder: Path = Path()) -> Job:
+    """The run of a method of the solver at a level."""
+    assert isinstance(method.source, Path)
+    return Job(method.source, level.variant, folder, level.settings, method.threads)
 
 
 def key_of(method: Method, level: Level) -> str:
     """A hash of all that a point's numbers depend on, the machine apart: scene, settings and program."""
     if method.program == STRATA:
-        assert isinstance(method.source, Path)
-        return harness.key_of(Job(method.source, level.variant, Path(), level.settings, method.threads), solver())[:16]
+        return harness.key_of(job_of(method, level), solver())[:16]
     digest = hashlib.sha256(json.dumps([str(method.source), list(level.settings)]).encode())
     digest.update(hashlib.sha256(reference_program().read_bytes()).digest())
     return digest.hexdigest()[:16]
-
-
-def _cpu_s() -> float:
-    """CPU time of all processes that were waited for so far, s."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
-def timed(action: Callable[[], Any]) -> tuple[Any, Timed]:
-    """What an action gives, with the wall and CPU time of the processes that it started, s."""
-    cpu, wall = _cpu_s(), time.perf_counter()
-    made = action()
-    return made, (time.perf_counter() - wall, _cpu_s() - cpu)
 
 
 def repeated(action: Callable[[], Timed], once: bool = False) -> list[Timed]:
@@ -79,34 +68,27 @@ def repeated(action: Callable[[], Timed], once: bool = False) -> list[Timed]:
     return [action() for _ in range(REPEATS)]
 
 
-def run_solver(method: Method, level: Level, folder: Path, limit_s: float) -> tuple[Outcome, Timed]:
-    """One run of the solver into a folder, with its wall and CPU time; raises Failure for one without a result."""
-    assert isinstance(method.source, Path)
-    job = Job(method.source, level.variant, folder, level.settings, method.threads)
+def run_solver(job: Job, limit_s: float) -> Timed:
+    """One run of the solver, its wall and CPU time; raises Failure for one without a result."""
     outcome, (_, cpu) = timed(lambda: harness.run(job, force=True, limit_s=limit_s))
     if not outcome.ok:
-        status = {2: REFUSED, harness.TOO_LONG: TOO_LONG}.get(outcome.exit_status, FAILED)
-        raise Failure(status, " ".join(outcome.reason.replace(f"{ROOT}/", "").split()))  # data are read on other machines, too
-    return outcome, (outcome.wall_s, cpu)
+        raise Failure(outcome.word, outcome.reason)
+    return outcome.wall_s, cpu
 
 
 def run_reference(method: Method, level: Level, limit_s: float) -> tuple[Answer, Timed]:
     """One run of strata-reference, its values and what it took; raises Failure where it refuses."""
-    command = [str(reference_program()), str(method.source)]
-    for setting in level.settings:
-        command += ["--set", setting]
+    command = [str(reference_program()), str(method.source), *(word for setting in level.settings for word in ("--set", setting))]
     (exit_status, said), times = timed(lambda: harness.ended(command, limit_s))
     if exit_status != 0:
-        raise Failure(TOO_LONG if exit_status == harness.TOO_LONG else REFUSED, " ".join(said.split()))
+        raise Failure(TOO_LONG if exit_status == harness.TOO_LONG else REFUSED, said)
     return {name: item["value"] for name, item in json.loads(said)["values"].items()}, times
 
 
-def found_by(wanted: Wanted, sample: Callable[[], Sample]) -> Found:
-    """A wanted number of a run; what keeps it from being measured is its failure."""
+def found_by(sample: Callable[[], Sample]) -> Found:
+    """A number of a run; what keeps it from being measured is its failure."""
     try:
         one = sample()
-        if wanted.limit_of:
-            return Found(float(one.values[0]))
         value, exact = summarised(one)
         error = one.error()
     except Exception as defect:  # a number that is not there must not cost the others theirs
@@ -119,38 +101,25 @@ def found_by(wanted: Wanted, sample: Callable[[], Sample]) -> Found:
 def measured(problem: Problem, method: Method, level: Level, runs: Path = RUNS, once: bool = False) -> Point:
     """A point of a problem's chart; failures are points too."""
     folder = runs / problem.name / method.name / folder_name(level.label)
-    key, others = key_of(method, level), machine.others_running()
-    point = Point(method.name, level.label, level.size, key, OK, date=machine.now(), settings=level.settings)
+    key, others = key_of(method, level), others_running()
+    date = datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M:%S")
+    point = Point(method.name, level.label, level.size, key, OK, date=date, settings=level.settings)
     start = time.perf_counter()
     try:
         if method.program == STRATA:
-            times = repeated(lambda: run_solver(method, level, folder, problem.limit_s)[1], once)
-            point = of_run(point, problem, load(folder))
+            times = repeated(lambda: run_solver(job_of(method, level, folder), problem.limit_s), once)
+            run = load(folder)
+            found = {one.name: found_by(lambda one=one: one.sample(run)) for one in problem.wanted}
+            about = run.summary
+            point = replace(point, cells=about.cells, particles=about.particles, steps=about.steps, memory_MB=round(about.peak_memory_MB, 1))
         else:
             answer, _ = run_reference(method, level, problem.limit_s)
             times = repeated(lambda: run_reference(method, level, problem.limit_s)[1], once)
-            found = {one.name: found_by(one, _bind(one, answer)) for one in problem.wanted if one.answer is not None}
-            point = replace(point, found=found)
+            found = {one.name: found_by(lambda reads=one.answer: reads(answer)) for one in problem.wanted if one.answer is not None}
     except Failure as failure:
         return replace(point, status=failure.status, reason=str(failure), wall_s=(round(time.perf_counter() - start, 4),))
     except LoadError as failure:
         return replace(point, status=FAILED, reason=str(failure))
-    wall, cpu = zip(*times)
-    disturbed = min(others, machine.others_running()) > 0 or min(wall) > DISTURBED * min(cpu) + WAITING_S
-    return replace(point, wall_s=tuple(round(t, 5) for t in wall), cpu_s=tuple(round(t, 5) for t in cpu),
-                   disturbed=disturbed, once=len(times) == 1)  # fmt: skip
-
-
-def _bind(wanted: Wanted, answer: Answer) -> Callable[[], Sample]:
-    """The sample of an answer, later."""
-    assert wanted.answer is not None
-    reads = wanted.answer
-    return lambda: reads(answer)
-
-
-def of_run(point: Point, problem: Problem, run: Run) -> Point:
-    """A point with what its run found and how large it was."""
-    found = {one.name: found_by(one, lambda one=one: one.sample(run)) for one in problem.wanted}
-    summary = run.summary
-    return replace(point, found=found, cells=summary.cells, particles=summary.particles, steps=summary.steps,
-                   memory_MB=round(summary.peak_memory_MB, 1))  # fmt: skip
+    wall, cpu = (tuple(round(one, 5) for one in both) for both in zip(*times))
+    disturbed = min(others, others_running()) > 0 or min(wall) > DISTURBED * min(cpu) + WAITING_S
+    return replace(point, found=found, wall_s=wall, cpu_s=cpu, disturbed=disturbed, once=len(times) == 1)

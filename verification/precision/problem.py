@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from verification.harness.choose import twice
 from verification.harness.load import Run
 from verification.ladder.case import Level, Sample
 
@@ -22,7 +23,8 @@ Answer = Mapping[str, Any]  # the values of strata-reference by their names, SI:
 class Setting:
     """How the solver goes about a problem: the keys of a scene's [numerics], and what `further` sets besides.
 
-    graded: cells far away so many times as large, 0 for a uniform grid. beyond_m: rock beyond a block that is then small. kernels: empty for the solver's default.
+    graded: cells far away so many times as large, 0 for a uniform grid. beyond_m: rock beyond a block that is then small. kernels: empty for
+    the solver's default.
     """
 
     mechanics: str = "quasistatic"
@@ -76,9 +78,7 @@ class Method:
 class Wanted:
     """A number that a problem asks for: a panel of the chart.
 
-    sample: of a run (LoadError where there is none). answer: the same of what strata-reference says. Where the reference is the limit
-    of the sizes of a method (`limit_of`), samples hold values alone and errors are relative to limit - base; `steps_of` is that method with
-    steps of time twice as long.
+    sample: of a run (LoadError where there is none). answer: the same of what strata-reference says.
     """
 
     name: str  # unique over all problems, as in a file name
@@ -87,9 +87,6 @@ class Wanted:
     says: str  # what an error of 1 % is, and what the reference is
     sample: Callable[[Run], Sample]
     answer: Callable[[Answer], Sample] | None = None
-    limit_of: str = ""
-    steps_of: str = ""
-    base: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -112,36 +109,24 @@ class BadProblem(Exception):
 
 
 def checked(problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
-    """The problems, if names are unique, sizes fall and limits name a method; raises BadProblem otherwise."""
-    _unique("problems", [problem.name for problem in problems])
-    _unique("quantities", [wanted.name for problem in problems for wanted in problem.wanted])
+    """The problems, if names are unique and sizes fall; raises BadProblem otherwise."""
+    names = {"problems": [problem.name for problem in problems], "quantities": [wanted.name for problem in problems for wanted in problem.wanted]}
     for problem in problems:
-        _unique(f"{problem.name}: methods", [method.name for method in problem.methods])
+        names[f"{problem.name}: methods"] = [method.name for method in problem.methods]
         for method in problem.methods:
             where = f"{problem.name}/{method.name}"
-            _unique(f"{where}: levels", [level.label for level in method.levels])
+            names[f"{where}: levels"] = [level.label for level in method.levels]
             sizes = [level.size for level in method.levels]
             if not sizes or any(fine >= coarse for coarse, fine in zip(sizes, sizes[1:])):
                 raise BadProblem(f"{where}: sizes {sizes} do not fall")
             if isinstance(method.source, Path) and not method.source.is_file():
                 raise BadProblem(f"{where}: no scene {method.source}")
-        for wanted in problem.wanted:
-            for name in filter(None, (wanted.limit_of, wanted.steps_of)):
-                if all(method.name != name for method in problem.methods):
-                    raise BadProblem(f"{problem.name}: {wanted.name} is to be the limit of {name}, which is no method")
+    for what, every in names.items():
+        if twice(every):
+            raise BadProblem(f"{what} of the same name: {', '.join(twice(every))}")
     return problems
-
-
-def _unique(what: str, names: list[str]) -> None:
-    """Raise BadProblem where a name stands twice."""
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise BadProblem(f"{what} of the same name: {', '.join(twice)}")
 
 
 def thinned(problem: Problem) -> Problem:
     """A problem with those methods and coarse levels alone that are enough to try the chart out."""
-    return replace(
-        problem, methods=tuple(replace(one, levels=one.levels[: one.quick]) for one in problem.methods if one.quick > 0),
-        wanted=tuple(one for one in problem.wanted if not one.limit_of),
-    )  # fmt: skip
+    return replace(problem, methods=tuple(replace(one, levels=one.levels[: one.quick]) for one in problem.methods if one.quick > 0))

@@ -1,12 +1,13 @@
 """The measurements as data: a file a problem, with the machine that made them; read by the page, resumed by the campaign."""
 from __future__ import annotations
 
-import json
 import statistics
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
+
+from verification.harness import store
 
 DATA = Path(__file__).resolve().parent / "data"
 
@@ -81,38 +82,13 @@ class Sheet:
         return replace(self, points=(*kept, point))
 
 
-def file_of(problem: str, folder: Path) -> Path:
-    """Where a problem's measurements are."""
-    return folder / f"{problem}.json"
-
-
 def read(problem: str, folder: Path = DATA) -> Sheet | None:
     """The measurements of a problem; None where there are none. Raises ValueError for a file that cannot be understood."""
-    path = file_of(problem, folder)
-    if not path.is_file():
-        return None
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-        return Sheet(content["problem"], content["machine"], tuple(_point(item) for item in content["points"]))
-    except (KeyError, TypeError, ValueError) as error:
-        raise ValueError(f"{path}: {type(error).__name__}: {error}") from error
-
-
-def _point(item: dict[str, Any]) -> Point:
-    """A point from plain data."""
-    lists = {name: tuple(item[name]) for name in ("wall_s", "cpu_s", "settings")}
-    return Point(**{**item, **lists, "found": {name: Found(**one) for name, one in item["found"].items()}})
+    return store.read(Sheet, folder / f"{problem}.json")
 
 
 def write(sheet: Sheet, folder: Path = DATA, order: Iterable[str] = ()) -> Path:
     """Write the measurements of a problem, methods in the order given, a point a line."""
-    folder.mkdir(parents=True, exist_ok=True)
     places = {name: k for k, name in enumerate(order)}
     points = sorted(sheet.points, key=lambda point: (places.get(point.method, len(places)), point.method, -point.size))
-    lines = ",\n".join("  " + json.dumps(asdict(point)) for point in points)
-    machine = json.dumps(dict(sheet.machine), indent=1).replace("\n", "\n ")
-    path = file_of(sheet.problem, folder)
-    new = path.with_suffix(".new")
-    new.write_text(f'{{\n "problem": {json.dumps(sheet.problem)},\n "machine": {machine},\n "points": [\n{lines}\n ]\n}}\n', encoding="utf-8")
-    new.replace(path)
-    return path
+    return store.write(replace(sheet, points=tuple(points)), folder / f"{sheet.problem}.json", ("points",))

@@ -17,12 +17,11 @@ from verification.ablation.effects import CHANGES, NEEDED, NOTHING, SPARED, Trie
 from verification.ablation.ingredients import LEFT_OUT, MODELLED, RESOLVED, Ingredient, View, ingredients_of, mirrored, named
 from verification.ablation.measure import INTERFACES, OWN, NoBase, table_of
 from verification.ablation.reasons import reasons, unexplained
-from verification.harness.budget import Effect
+from verification.harness.effects import Effect
 from verification.harness.load import Run, load
 from verification.harness.paths import EXPERIMENTS
 from verification.harness.quantities import quantities_of
-from verification.harness.refine import content_of
-from verification.harness.scenes import scenes_of
+from verification.harness.scenes import content_of, scenes_of
 from verification.tests.fake_run import climb, write_run
 
 EXP1 = EXPERIMENTS / "exp1_single_interface.toml"

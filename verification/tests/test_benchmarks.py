@@ -16,10 +16,10 @@ from verification.benchmarks.judge import (
     BROKEN, FASTER, GONE, NEW, SAME, SLOWER, UNJUDGED, Mark, best_crack, compare, compare_figure, marks, sizes,
 )  # fmt: skip
 from verification.benchmarks.machine import Build, Load, Machine
-from verification.benchmarks.process import Setting, take, take_all
 from verification.benchmarks.records import (
     BadRecord, OtherMachine, Record, append, as_json, file_of, from_json, last_record, load_records, why_not_recorded,
 )  # fmt: skip
+from verification.benchmarks.runs import job_of, take, take_all
 from verification.benchmarks.table import cost, report, told
 
 HERE = Machine("Some CPU 25 17 1", 2, "L1 32K L2 1024K L3 32768K")
@@ -205,6 +205,8 @@ def test_the_machine_is_described() -> None:
     assert HERE.key == "some_cpu_25_17_1_2_cores_l1_32k_l2_1024k_l3_32768k"
     assert machine.this_machine().cores == os.cpu_count() and machine.this_build().version
     assert -0.2 <= machine.busy_processors(0.05) <= 1.05 * (os.cpu_count() or 1)
+    here = machine.described()
+    assert machine.made_here(here, here) and not machine.made_here({**here, "caches": "L1 1K"}, here) and not machine.made_here({}, here)
     assert machine._idle_and_total("cpu  10 1 5 100 20 0 3 1 0 0\ncpu0 1 2") == (120, 140)
 
 
@@ -261,12 +263,12 @@ def test_memory_a_point_is_that_beyond_what_every_process_holds() -> None:
 
 def test_batches_are_all_default_variants() -> None:
     """23 runs, each a variant that its scene has."""
-    settings = runs.settings_of(runs.Batch("quasistatic", 1.0, 1, 10.0))
+    settings = runs.jobs_of(runs.Batch("quasistatic", 1.0, 1, 10.0))
     assert len(settings) == len(set(settings)) == 23
     for setting in settings:
         assert f"[variants.{setting.variant}]" in setting.scene.read_text(encoding="utf-8")
     assert not any("fine_" in key for setting in settings for key in setting.settings)
-    small = runs.settings_of(runs.Batch("quasistatic", 0.25, 1, 10.0))
+    small = runs.jobs_of(runs.Batch("quasistatic", 0.25, 1, 10.0))
     wide = sorted((setting.scene.stem[:4], setting.variant) for setting in small if "numerics.fine_right_m=80" in setting.settings)
     assert wide == [("exp1", "weak"), ("exp2", "weak"), ("exp3", "soft_weak"), ("exp3", "weak_soft"), ("exp4", "weak")]
     assert len(small) == 23 and small[0].scene.stem in runs.TURNING
@@ -274,19 +276,19 @@ def test_batches_are_all_default_variants() -> None:
 
 def test_a_run_is_timed_and_one_that_takes_too_long_is_ended(tmp_path: Path) -> None:
     """The equilibrium of the block: seconds, memory, summary. Out of time: not begun, or ended; bad input: its words."""
-    good = take(Setting(runs.CRACK, "", ("numerics.cell_m=4",)))
+    good = take(job_of(runs.CRACK, "numerics.cell_m=4"))
     assert good.problem == "" and good.summary is not None and 0.0 < good.summary.wall_s < good.seconds
-    assert good.summary.peak_memory_MB > 5.0 and good.cpu_s > 0.0
-    assert "no.such" in take(Setting(runs.CRACK, "", ("no.such=1",))).problem
-    long = Setting(runs.BLOCK, "", ("numerics.cell_m=0.5", "stop.time_s=100"))
+    assert good.summary.peak_memory_MB > 5.0
+    assert "no.such" in take(job_of(runs.CRACK, "no.such=1")).problem
+    long = job_of(runs.BLOCK, "numerics.cell_m=0.5", "stop.time_s=100")
     seconds, (ended, late) = take_all([long, long], 1, 0.3, lambda words: None)
     assert "ended" in ended.problem and "not begun" in late.problem and seconds < 30.0
 
 
 def test_failed_batches_are_figures_without_values(monkeypatch: pytest.MonkeyPatch) -> None:
     """One run that fails leaves the batch without a time, with how many came to their end."""
-    bad = Setting(runs.CRACK, "", ("no.such=1",))
-    monkeypatch.setattr(runs, "settings_of", lambda batch: [Setting(runs.CRACK, "", ("numerics.cell_m=4",)), bad])
+    bad = job_of(runs.CRACK, "no.such=1")
+    monkeypatch.setattr(runs, "jobs_of", lambda batch: [job_of(runs.CRACK, "numerics.cell_m=4"), bad])
     whole, first, second = runs.batch_figures(runs.Batch("quasistatic", 4.0, 3, 60.0), lambda: (5e10, 4e10), lambda words: None)
     assert whole.values == () and whole.problem.startswith("1 of 2 runs") and second.problem and not first.problem
 

@@ -12,13 +12,13 @@ from pathlib import Path
 
 import pytest
 
-from verification.harness.budget import Effect, Line, Tried, VARIANTS, budget_of, jobs_of, main, table, totals_of
+from verification.harness.budget import Line, Tried, VARIANTS, budget_of, jobs_of, main, table, totals_of
+from verification.harness.effects import Effect
 from verification.harness.factors import Alternative, Factor, factors_of, toml
 from verification.harness.load import Run, load
 from verification.harness.paths import EXPERIMENTS
-from verification.harness.refine import content_of, nested
 from verification.harness.run import Outcome
-from verification.harness.scenes import merged, resolved, scenes_of, variants_of
+from verification.harness.scenes import content_of, merged, nested, scenes_of, variants_of
 from verification.tests.fake_run import climb, write_run
 
 EXP1, EXP5 = (EXPERIMENTS / f"{name}.toml" for name in ("exp1_single_interface", "exp5_parallel_interface"))
@@ -38,14 +38,14 @@ KEYS = {
 
 def factor(scene: Path, variant: str, id_: str, mechanics: str = "quasistatic") -> Factor:
     """One factor of a variant."""
-    return next(one for one in factors_of(resolved(scene, variant), mechanics) if one.id == id_)
+    return next(one for one in factors_of(content_of(scene, variant), mechanics) if one.id == id_)
 
 
 @pytest.mark.parametrize("scene", scenes_of(EXPERIMENTS), ids=lambda path: path.stem)
 @pytest.mark.parametrize("mechanics", ["explicit", "quasistatic"])
 def test_every_factor_varies_its_own_keys_and_something_of_them(scene: Path, mechanics: str) -> None:
     for variant in variants_of(scene)[:4]:
-        content = resolved(scene, variant)
+        content = content_of(scene, variant)
         factors = factors_of(content, mechanics)
         assert len({one.id for one in factors}) == len(factors)
         for one in factors:
@@ -66,14 +66,14 @@ def test_a_larger_block_keeps_fracture_and_layers_in_its_middle() -> None:
         assert content["strata"]["layers"] == [{"rock": "soft", "thickness_m": width / 2.0 + 5.0}, {"rock": "stiff"}]
         assert content["numerics"]["far_cell_m"] == content["numerics"]["cell_m"]  # a path that turns would meet the coarse cells
     straight = content_of(EXP1, "soft", factor(EXP1, "soft", "block").alternatives[1].settings)
-    assert straight["strata"]["layers"] == resolved(EXP1, "soft")["strata"]["layers"]
+    assert straight["strata"]["layers"] == content_of(EXP1, "soft")["strata"]["layers"]
     assert straight["numerics"]["far_cell_m"] == 4.0
 
 
 def test_factors_that_do_not_apply_say_why() -> None:
     assert factor(EXP1, "uniform", "step").why_not == "no flow"
     assert factor(EXP1, "uniform", "step", "explicit").alternatives[0].settings == ("numerics.courant=0.25",)
-    content = merged(resolved(EXP1, "perfect"), {"numerics": {"particles_per_cell": 16}, "fluid": {"inlet": {"rate_Pa_s": 0.0}}})
+    content = merged(content_of(EXP1, "perfect"), {"numerics": {"particles_per_cell": 16}, "fluid": {"inlet": {"rate_Pa_s": 0.0}}})
     why = {one.id: one.why_not for one in factors_of(content, "quasistatic") if not one.alternatives}
     assert set(why) == {"particles", "rate"} and all(why.values())
 
@@ -84,7 +84,7 @@ def test_values_are_written_as_toml() -> None:
 
 
 def test_the_base_and_half_the_cells_are_the_runs_of_the_refinement_study(tmp_path: Path) -> None:
-    jobs = jobs_of(EXP1, "quasistatic", "soft", factors_of(resolved(EXP1, "soft"), "quasistatic"), (), tmp_path / "b", tmp_path / "r")
+    jobs = jobs_of(EXP1, "quasistatic", "soft", factors_of(content_of(EXP1, "soft"), "quasistatic"), (), tmp_path / "b", tmp_path / "r")
     below = tmp_path / "r" / EXP1.stem / "quasistatic" / "soft"
     assert jobs["", ""].out == below / "1m" and jobs["mesh", "half"].out == below / "0.5m"
     rest = [job for key, job in jobs.items() if key[0] not in ("", "mesh")]
@@ -147,7 +147,7 @@ def test_effects_are_differences_from_the_base_and_failures_are_failures(tmp_pat
     assert found.totals["start_Pa"]["all"].rss == pytest.approx(0.05e6)
     said = table(found)
     silent = replace(found, lines=(replace(rate, tried=(replace(rate.tried[1], status="completed"),)),))
-    assert "does not reach 40 m, at least 3.20000" in table(silent)
+    assert "does not reach 40 m, at least 3.2e+06 Pa" in table(silent)
     assert "refused: unknown key" in said and "failed: a mechanism" in said and "-30.00 -1.25%" in said
     broken = budget_of(EXP1, "quasistatic", "soft", factors, jobs, {**made, ("", ""): (outcome(3, "no"), made[keys[1]][1])})
     assert broken.status == "failed" and "failed: no" in table(broken)

@@ -13,11 +13,12 @@ import pytest
 
 from verification.harness import campaign as campaigns
 from verification.harness import choices
-from verification.harness.campaign import Campaign, expected_s, main
+from verification.harness.campaign import jobs_of, main
 from verification.harness.choices import BadChoice, read_points
 from verification.harness.paths import EXPERIMENTS
+from verification.harness.plan import expected_s
 from verification.harness.run import Outcome, load_outcome
-from verification.harness.scenes import MECHANICS, mechanics_of, resolved, scenes_of, variants_of
+from verification.harness.scenes import MECHANICS, content_of, mechanics_of, scene_of, scenes_of, variants_of
 from verification.tests.fake_run import climb, write_run
 
 SCENE = """
@@ -54,13 +55,13 @@ def test_what_a_variant_can_run_in(scene: Path, variant: str, expected: tuple[st
 
 
 def test_a_variant_replaces_keys_and_keeps_the_rest(scene: Path) -> None:
-    assert resolved(scene, "flow")["fluid"] == {"law": "reynolds"}
-    assert resolved(scene, "graded")["numerics"] == {"mechanics": "explicit", "cell_m": 1.0, "far_cell_m": 5.0}
-    assert "variants" not in resolved(scene, "plain")
+    assert content_of(scene, "flow")["fluid"] == {"law": "reynolds"}
+    assert content_of(scene, "graded")["numerics"] == {"mechanics": "explicit", "cell_m": 1.0, "far_cell_m": 5.0}
+    assert "variants" not in content_of(scene, "plain")
 
 
 def test_the_campaign_runs_both_mechanics_but_what_one_cannot(tmp_path: Path) -> None:
-    jobs = Campaign(tmp_path).jobs()
+    jobs = jobs_of(tmp_path, scenes_of(EXPERIMENTS))
     folders = {str(job.out.relative_to(tmp_path)) for job in jobs}
     assert len(folders) == len(jobs)
     assert {folder.split("/")[0] for folder in folders} == set(MECHANICS)
@@ -70,7 +71,7 @@ def test_the_campaign_runs_both_mechanics_but_what_one_cannot(tmp_path: Path) ->
 
 
 def test_one_mechanics_and_some_experiments(tmp_path: Path) -> None:
-    jobs = Campaign(tmp_path, ("exp3",), ("numerics.cell_m=2",), ("quasistatic",)).jobs()
+    jobs = jobs_of(tmp_path, [scene_of("exp3")], ("numerics.cell_m=2",), ("quasistatic",))
     assert {job.out.parts[-3:-1] for job in jobs} == {("quasistatic", "exp3_two_interfaces")}
     assert all("numerics.cell_m=2" in job.settings for job in jobs)
 
@@ -172,7 +173,7 @@ def wait_for(file: Path) -> None:
 
 def test_what_takes_longest_is_known_before_anything_was_run(tmp_path: Path) -> None:
     """By the scene's cells and mechanics; by the last time where there is one."""
-    coarse, fine = (Campaign(tmp_path, ("exp1",), (f"numerics.cell_m={cell}",), ("explicit",)).jobs()[0] for cell in (2, 1))
+    coarse, fine = (jobs_of(tmp_path, [scene_of("exp1")], (f"numerics.cell_m={cell}",), ("explicit",))[0] for cell in (2, 1))
     assert expected_s(fine) > 3.0 * expected_s(coarse) > 0.0
     fine.out.mkdir(parents=True)
     outcome = Outcome("exp1", "", "completed", 0, "", 12.5, "key")

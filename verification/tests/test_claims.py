@@ -11,7 +11,7 @@ import pytest
 
 from verification.harness.choices import Choice
 from verification.harness.claim_data import (
-    BY_J, CONFIRMED, CONTRADICTED, NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, read_claims, write_claims,
+    NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, read_claims, write_claims,
 )  # fmt: skip
 from verification.harness.claims import BadClaim, Runs, case_of, claims_of, evaluate, evaluate_all, evaluate_each, record_finer
 from verification.harness.paths import EXPERIMENTS
@@ -41,21 +41,18 @@ def test_right_zero_twice_and_flipped(tmp_path: Path, plateau: float, verdict: s
     assert result.flags == (("J at interface",) if plateau > 0 else ())
 
 
-def test_a_reading_that_holds_makes_it_only_under_a_variant(tmp_path: Path) -> None:
-    write(tmp_path, "weak", 0.0)
-    write(tmp_path, "other", 0.2)
-    reading = {"name": "another reading", "case": [{"variant": "other", "interface": 1, "at_least": 0.05 * MPA}]}
+@pytest.mark.parametrize(
+    "own, other, verdict, flag", [(0.0, 0.2, ONLY_UNDER_A_VARIANT, ()), (0.2, 0.0, REPRODUCED, ("does not hold under: another",))]
+)
+def test_a_reading_rescues_what_does_not_hold_and_flags_what_does(
+    tmp_path: Path, own: float, other: float, verdict: str, flag: tuple[str, ...]
+) -> None:
+    write(tmp_path, "weak", own)
+    write(tmp_path, "other", other)
+    reading = {"name": "another", "case": [{"variant": "other", "interface": 1, "at_least": 0.05 * MPA}]}
     result = evaluate({**CLAIM, "reading": [reading]}, "exp", Runs(tmp_path))
-    assert result.verdict == ONLY_UNDER_A_VARIANT
-    assert [one.name for one in result.readings if one.holds] == ["another reading"]
-
-
-def test_a_reading_that_fails_flags_what_is_reproduced(tmp_path: Path) -> None:
-    write(tmp_path, "weak", 0.2)
-    write(tmp_path, "other", 0.0)
-    reading = {"name": "another reading", "case": [{"variant": "other", "interface": 1, "at_least": 0.05 * MPA}]}
-    result = evaluate({**CLAIM, "reading": [reading]}, "exp", Runs(tmp_path))
-    assert result.verdict == REPRODUCED and "does not hold under: another reading" in result.flags
+    assert result.verdict == verdict and result.flags[1:] == flag
+    assert [one.name for one in result.readings if one.holds] == ["another"] * (other > 0.0)
 
 
 def test_a_claim_that_rests_on_a_suspect_run_says_so(tmp_path: Path) -> None:
@@ -251,24 +248,7 @@ def test_a_reading_written_for_a_choice_stands_for_it(tmp_path: Path, scenes: Pa
         evaluate({**CLAIM, "reading": [{**own, "choice": "d"}]}, "exp", Runs(tmp_path), [OTHER], scenes)
 
 
-# --- two mechanics
-
-
-@pytest.mark.parametrize("by_energy, word", [(0.2, CONFIRMED), (0.0, CONTRADICTED)])
-def test_J_at_an_interface_is_confirmed_or_contradicted_by_energy(tmp_path: Path, by_energy: float, word: str) -> None:
-    folder = tmp_path / "scenes"
-    folder.mkdir()
-    case = "{variant = 'weak', interface = 1, at_least = 5e4}"
-    (folder / "exp.toml").write_text(
-        f"[variants.weak]\n[[claim]]\nid = 'x'\ntext = 't'\nwhy = 'w'\nobservable = 'plateau_Pa'\ncase = [{case}]\n"
-    )
-    write(tmp_path / "runs" / "explicit", "weak", 0.2)
-    alone = evaluate_each(folder, tmp_path / "runs")
-    assert [result.flags for result in alone] == [(BY_J,)]
-    write(tmp_path / "runs" / "quasistatic", "weak", by_energy, mechanics="quasistatic")
-    explicit, quasistatic = evaluate_each(folder, tmp_path / "runs")
-    assert (explicit.mechanics, quasistatic.mechanics) == ("explicit", "quasistatic")
-    assert explicit.flags == (word,) and quasistatic.flags == ()
+# --- two mechanics, two sizes
 
 
 def test_cells_of_half_the_size_have_verdicts_of_their_own_run_or_recorded(tmp_path: Path) -> None:
@@ -281,6 +261,10 @@ def test_cells_of_half_the_size_have_verdicts_of_their_own_run_or_recorded(tmp_p
     write(runs / "quasistatic", "weak", 0.0, mechanics="quasistatic")
     write(runs / "set" / "0.5m" / "quasistatic", "weak", 0.2, mechanics="quasistatic")
     at_1_m, at_half = evaluate_each(folder, runs)
+    write(runs / "explicit", "weak", 0.2)
+    both = [(result.mechanics, result.flags) for result in evaluate_each(folder, runs)[:2]]
+    assert both == [("explicit", ("J at interface",)), ("quasistatic", ())]
+    shutil.rmtree(runs / "explicit")
     assert (at_1_m.verdict, at_half.verdict, at_half.mechanics) == (NOT_REPRODUCED, REPRODUCED, "quasistatic 0.5 m")
     record_finer(folder, runs)
     shutil.rmtree(runs / "set")

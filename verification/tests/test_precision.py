@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,15 +13,14 @@ from verification.ladder.case import Level, Sample
 from verification.precision import measure, store
 from verification.precision.__main__ import main
 from verification.precision.judge import (
-    Panel, advice, cheapest, choice_for, judged, limit_of, nearest, panel_of, pareto, run_at,
+    Panel, advice, cheapest, choice_for, judged, nearest, panel_of, pareto, run_at,
 )  # fmt: skip
-from verification.precision.machine import Machine
 from verification.precision.problem import ELEMENTS, STRATA, BadProblem, Method, Problem, Setting, Wanted, checked
 from verification.precision.problems import PROBLEMS
 from verification.precision.store import FAILED, OK, REFUSED, Found, Point, Sheet
 
 SCENE = ANALYTIC / "static_quasistatic.toml"
-MACHINE = Machine("a processor", 2, "L1 1K", 8.0, "a system", "a compiler", "-O3", "0", "abc").as_json()
+MACHINE = {"processor": "a processor", "cores": 2, "caches": "L1 1K", "version": "0"}
 EXACT = 4.0
 
 
@@ -41,9 +39,9 @@ def method(name: str, *sizes: float, setting: Setting | None = None, program: st
     return Method(name, name, program, SCENE if program == STRATA else "block_crack", levels(*sizes), setting or Setting())
 
 
-def wanted(name: str = "K", **keys: object) -> Wanted:
+def wanted(name: str = "K") -> Wanted:
     """A wanted number."""
-    return Wanted(name, name, "1", "relative", no_sample, **keys)  # type: ignore[arg-type]
+    return Wanted(name, name, "1", "relative", no_sample)
 
 
 def point(name: str, size: float, error: float | None, time_s: float, status: str = OK, number: str = "K", doubt: float = 0.0) -> Point:
@@ -131,37 +129,6 @@ def test_methods_with_inertia_and_boundary_elements_have_rows_of_their_own() -> 
     assert chosen == {"any method": "a", "with inertia": "m", "boundary elements": "e"}
 
 
-# --- limits
-
-
-def test_a_limit_is_richardsons_with_its_uncertainty() -> None:
-    limit = limit_of([4.0, 2.0, 1.0], [10.0 + 0.4, 10.0 + 0.2, 10.0 + 0.1])
-    assert limit is not None and math.isclose(limit.value, 10.0) and math.isclose(limit.uncertainty, 0.125)
-    assert limit_of([2.0, 1.0], [1.0, 1.1]) is None
-
-
-def test_no_order_leaves_the_finest_with_the_spread() -> None:
-    limit = limit_of([4.0, 2.0, 1.0], [10.0, 10.3, 10.1])
-    assert limit is not None and limit.value == 10.1 and math.isclose(limit.uncertainty, 0.3)
-
-
-def test_errors_against_a_limit_are_relative_to_what_is_above_the_base() -> None:
-    number = wanted(limit_of="fine", steps_of="coarse_steps", base=6.0)
-    values = {"fine": {4.0: 10.4, 2.0: 10.2, 1.0: 10.1}, "coarse_steps": {1.0: 10.2}, "other": {1.0: 10.8}}
-    points = [
-        replace(point(name, size, 0.0, 1.0), found={"K": Found(value)}) for name, own in values.items() for size, value in own.items()
-    ]
-    one = panel((method("fine", 4.0, 2.0, 1.0), method("coarse_steps", 1.0), method("other", 1.0)), points, number)
-    other = next(dot for dot in one.dots if dot.method.name == "other")
-    assert math.isclose(other.error, 0.2) and math.isclose(one.uncertainty, (0.125 + 0.1) / 4.0)
-    assert all(dot.judged >= one.uncertainty for dot in one.dots)
-
-
-def test_without_three_sizes_there_is_no_reference() -> None:
-    one = panel((method("fine", 2.0, 1.0),), [replace(point("fine", 2.0, 0.0, 1.0), found={"K": Found(10.0)})], wanted(limit_of="fine"))
-    assert not one.dots and "fewer than three sizes" in one.lacks[0].reason
-
-
 # --- what an experiment should use
 
 
@@ -235,7 +202,6 @@ def test_problems_are_as_the_chart_relies_on() -> None:
     for bad in (
         replace(good, methods=(method("a", 1.0), method("a", 2.0))),
         replace(good, methods=(method("a", 1.0, 2.0),)),
-        replace(good, wanted=(wanted(limit_of="b"),)),
     ):
         with pytest.raises(BadProblem):
             checked((bad,))

@@ -10,7 +10,6 @@ import h5py
 import numpy as np
 import pytest
 
-from verification.harness.compare import Expected, compare, require, within
 from verification.harness.load import Run, load
 from verification.harness.paths import ANALYTIC, EXPERIMENTS, solver
 from verification.harness.run import Job, run
@@ -61,14 +60,8 @@ def test_damped_motion_settles_on_the_quasi_static_solution(
     assert scale > 1e-5
     off = float(np.abs(u - expected).max())
     print(f"{variant} {kinematics} {both}: displacement off by {off / scale:.2e} of {scale:.3e} m")
-    require(
-        compare("displacement", off, Expected(0.0, of_largest * scale, "m", scale=scale)),
-        compare(
-            "K_I",
-            moved.summary.tips[0].K_I_Pa_sqrt_m,
-            within(still.summary.tips[0].K_I_Pa_sqrt_m, of_K, "Pa sqrt(m)"),
-        ),
-    )
+    assert off <= of_largest * scale and of_largest < 1.0
+    assert moved.summary.tips[0].K_I_Pa_sqrt_m == pytest.approx(still.summary.tips[0].K_I_Pa_sqrt_m, rel=of_K)
 
 
 def test_what_moving_points_add_falls_with_the_load() -> None:

@@ -12,12 +12,13 @@ from pathlib import Path
 import pytest
 
 from verification.harness import refine
-from verification.harness.cost import cost_of, duration_s, steps_of, wave_speed
-from verification.harness.load import Run, load, read_summary
+from verification.harness.load import Run, load
 from verification.harness.paths import EXPERIMENTS
+from verification.harness.plan import about_s
 from verification.harness.quantities import Pause, pause_at, path_gap, pauses, quantities_of
-from verification.harness.refine import Level, job_of, main, nested, row_of, scene_of, study_of
+from verification.harness.refine import Level, job_of, main, row_of, study_of
 from verification.harness.run import Outcome
+from verification.harness.scenes import nested, scene_of
 from verification.tests.fake_run import climb, write_run
 
 EXP1 = EXPERIMENTS / "exp1_single_interface.toml"
@@ -155,24 +156,17 @@ def test_settings_are_read_as_the_solver_reads_them() -> None:
     assert nested('strata.layers=[{rock = "a"}]') == {"strata": {"layers": [{"rock": "a"}]}}
 
 
-def test_the_cost_is_particles_times_steps_over_speed(tmp_path: Path) -> None:
-    assert wave_speed(CONTENT["rock"]["stiff"]) == pytest.approx(2108.185, abs=0.01)  # references.md, family G
-    assert duration_s(CONTENT) == pytest.approx(2.0e6 / 0.35e6)
-    assert steps_of(CONTENT, "explicit") == pytest.approx(2.0e6 / 0.35e6 * 2108.185 / 0.5, rel=1e-5)
-    fine = {**CONTENT, "numerics": {"cell_m": 0.25}}
-    for mechanics, ratio in (("explicit", 64.0), ("quasistatic", 16.0)):
-        coarse, finer = cost_of(CONTENT, mechanics), cost_of(fine, mechanics)
-        assert finer.seconds / coarse.seconds == pytest.approx(ratio) and not finer.measured
-    like = read_summary(made(tmp_path / "r").folder / "summary.json")  # 100 steps, 1e7 a second
-    assert cost_of(fine, "explicit", like, 1.0).seconds == pytest.approx(409600 * 400 / 1e7)
-    assert cost_of(fine, "quasistatic", like, 1.0).seconds == pytest.approx(409600 * 100 / 1e7)
+@pytest.mark.parametrize("mechanics, ratio", [("explicit", 64.0), ("quasistatic", 16.0)])
+def test_an_estimate_goes_by_points_and_with_inertia_by_steps(mechanics: str, ratio: float) -> None:
+    coarse, fine = ({**CONTENT, "numerics": {"cell_m": cell, "mechanics": mechanics}} for cell in (1.0, 0.25))
+    assert about_s(fine) / about_s(coarse) == pytest.approx(ratio)
 
 
 def test_what_costs_too_much_is_not_run_without_yes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = ["exp1", "--mechanics", "explicit", "--cells", "0.25", "--variants", "weak", "--out", str(tmp_path)]
     assert main(arguments) == 2
     said = capsys.readouterr()
-    assert "4.1e+05 particles" in said.out and "above the limit of 30 min" in said.err
+    assert "1 of 1 runs to make" in said.out and "above the limit of 30 min" in said.err
     assert not list(tmp_path.iterdir())
 
 

@@ -2,10 +2,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
-from verification.harness.paths import ANALYTIC
-from verification.harness.reference import relative_error, value
-from verification.ladder.case import Level, Sample, cell_levels
+from verification.harness.load import Run
+from verification.harness.reference import relative_error, settings_of, value
+from verification.ladder.case import Level, Sample
 from verification.ladder.cases import cracks, interfaces
 from verification.precision.methods import Curve, endless, methods, with_inertia, without_inertia
 from verification.precision.problem import ELEMENTS, Answer, Method, Problem, Setting, Wanted
@@ -23,8 +24,7 @@ UNKNOWNS = (4, 8, 12, 16, 24)
 
 def asked(settings: Mapping[str, object], key: str, counts: tuple[int, ...]) -> tuple[Level, ...]:
     """Levels of a solution of strata-reference by a number of unknowns under a key."""
-    given = tuple(f"{name}={number if isinstance(number, str) else repr(number)}" for name, number in settings.items())
-    return tuple(Level(f"{key} {count}", 1.0 / count, (*given, f"{key}={count}")) for count in counts)
+    return tuple(Level(f"{key} {count}", 1.0 / count, settings_of({**settings, key: count})) for count in counts)
 
 
 def collocation(name: str, key: str, settings: Mapping[str, object], counts: tuple[int, ...]) -> Method:
@@ -48,10 +48,9 @@ def block_K_I(answer: Answer) -> Sample:
     return Sample.of(answer["K_I"], value("block_crack", "K_I", **BLOCK_SETTINGS), None, relative_error("block_crack", **BLOCK_SETTINGS))
 
 
-def exact_block_K_I(run: object) -> Sample:
+def exact_block_K_I(run: Run) -> Sample:
     """The ladder's sample of K_I, with the reference's own error."""
-    sample = cracks.K_I(run)  # type: ignore[arg-type]
-    return Sample(sample.values, sample.exact, None, None, relative_error("block_crack", **BLOCK_SETTINGS))
+    return replace(cracks.K_I(run), reference_error=relative_error("block_crack", **BLOCK_SETTINGS))
 
 
 BLOCK_CURVES = [
@@ -101,13 +100,10 @@ def near(layers: tuple[str, str], laws: tuple[str, ...] = ()):  # type: ignore[n
     return base
 
 
-
-
 def near_curves() -> list[Curve]:
     """The curves near an interface; single choices are tried in the block."""
     still = [*without_inertia(NEAR_M, NEAR_EXPLICIT_M), *endless(NEAR_M, WIDE_M)]
     return [*still, *with_inertia(NEAR_EXPLICIT_M, (1.25,), (), NEAR_SETTLING_1_S)]
-
 
 
 def near_tip(reference: interfaces.Reference, name: str, title: str, says: str, exact: dict[str, float]) -> Wanted:

@@ -9,7 +9,7 @@ import numpy as np
 from verification.harness.crack_paths import INTERFACE_M, exact_path, farthest, grown, path_settings
 from verification.harness.load import LoadError, Run
 from verification.harness.paths import ANALYTIC, EXPERIMENTS
-from verification.harness.reference import value
+from verification.harness.reference import settings_of, value
 from verification.ladder.case import Array, Level, Sample
 from verification.ladder.cases import kgd, paths
 from verification.precision.methods import (
@@ -100,11 +100,7 @@ def elements_off(answer: Answer) -> Sample:
 
 def increments(*sizes_m: float) -> tuple[Level, ...]:
     """Levels of paths of boundary elements by their increments."""
-    return tuple(
-        Level(f"increments {size:g} m", size, tuple(f"{key}={given if isinstance(given, str) else repr(given)}"
-              for key, given in path_settings(6, size, "forward", paths.GROWTH_M).items()))
-        for size in sizes_m
-    )  # fmt: skip
+    return tuple(Level(f"increments {size:g} m", size, settings_of(path_settings(6, size, "forward", paths.GROWTH_M))) for size in sizes_m)
 
 
 def converged(_: Run | None = None) -> Array:
