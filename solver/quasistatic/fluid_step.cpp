@@ -50,7 +50,7 @@ void diffuse_in_steps(const Scene& scene, const State& state, const std::vector<
   const int steps = std::clamp(static_cast<int>(std::ceil(std::min(dt / shortest, 1.0 * most))), 1, most);
   const double step = dt / steps;
   const auto inlet_Pa = [&](int k) { return fluid.start_Pa + fluid.rate_Pa_s * (time + k * step); };
-  Diffusion(channel, mobility, fluid.time_rule, step).steps(steps, inlet_Pa, line.P);
+  diffuse(channel, mobility, fluid.time_rule, step, steps, inlet_Pa, line.P);
   line.inlet_Pa = inlet_Pa(steps);
 }
 
