@@ -359,8 +359,6 @@ void note_growth(State& state, Tip& tip) {
     monitors.J_spread_sum += tip.J_spread;
     note_largest(monitors.largest_J_spread, tip.J_spread);
   }
-  tip.J_at_growth = tip.J;
-  tip.J_spread_at_growth = tip.J_spread;
 }
 
 bool runs(const Tip& tip, double time) {

@@ -11,12 +11,6 @@ namespace strata {
 
 namespace {
 
-// Pressure of the fracture's points from that of its vertices.
-void pass_to_points(State& state) {
-  auto& points = state.fracture().points;
-  for (std::size_t k = 0; k < points.size(); ++k) points[k].P = 0.5 * (state.fluid.P[k] + state.fluid.P[k + 1]);
-}
-
 void set_point_pressures(const Eigen::VectorXd& P, State& state) {
   auto& points = state.fracture().points;
   for (std::size_t k = 0; k < points.size(); ++k) points[k].P = P[static_cast<Eigen::Index>(k)];
@@ -133,7 +127,7 @@ FluidStep couple(const Scene& scene, double dt, State& state, QuasistaticModel& 
       Eigen::Map<const Eigen::VectorXd>(state.reynolds.P.data(), static_cast<Eigen::Index>(state.reynolds.P.size())),
       state);
   state.monitors.volume_balance = state.balance.closure();
-  return {true, report.estimated ? report.error_w / allowed : 0.0, ""};
+  return {true, report.error_w / allowed, ""};
 }
 
 }  // namespace
