@@ -309,15 +309,11 @@ std::string what_stops(const Scene& scene, const State& state, const Tip& tip) {
   return "";
 }
 
-bool stopped_by_edge(const Scene& scene, const State& state, const Tip& tip) {
-  return !what_stops(scene, state, tip).empty();
-}
-
 bool stop_at_edge(const Scene& scene, const State& state, Tip& tip) {
-  if (!tip.growing || !stopped_by_edge(scene, state, tip)) return false;
-  tip.growing = false;
+  if (!tip.growing) return false;
   tip.stopped_by = what_stops(scene, state, tip);
-  return true;
+  tip.growing = tip.stopped_by.empty();
+  return !tip.growing;
 }
 
 double shorten_tip(State& state, Tip& tip, double length) {

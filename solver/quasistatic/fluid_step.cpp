@@ -187,15 +187,13 @@ FluidStep advance_fluid(const Scene& scene, double dt, State& state, Quasistatic
     return {};
   }
   if (scene.fluid.law == Fluid::Law::reynolds) return couple(scene, dt, state, model);
-  if (dt > 0.0) {
-    if (scene.fluid.law == Fluid::Law::paper)
-      diffuse_in_steps(scene, state, openings_midway(scene, dt, state, model), state.time, dt, state.fluid);
-    state.dt = dt;
-    if (scene.fluid.law == Fluid::Law::uniform) advance_pressure(scene, state);
-    state.time += dt;
-  } else if (scene.fluid.law == Fluid::Law::uniform) {
+  if (scene.fluid.law == Fluid::Law::uniform) {
+    if (dt > 0.0) state.fluid.inlet_Pa = scene.fluid.start_Pa + scene.fluid.rate_Pa_s * (state.time + dt);
     std::fill(state.fluid.P.begin(), state.fluid.P.end(), state.fluid.inlet_Pa);
+  } else if (dt > 0.0) {
+    diffuse_in_steps(scene, state, openings_midway(scene, dt, state, model), state.time, dt, state.fluid);
   }
+  state.time += dt;
   pass_to_points(state);
   return {};
 }

@@ -82,7 +82,6 @@ double margin_of(const Scene& scene, const std::vector<Elasticity>& rocks, State
 void equilibrate(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
   run.equilibrium = find_equilibrium(scene, state.time, state, run.model);
   set_fields(scene, state, run.model, run.equilibrium);
-  if (state.dt <= 0.0) state.dt = 1.0;  // J's inertia divides by it; there is none
   measure_tips(scene, rocks, run.rules, state);
   if (!trials_hold(scene, state, run.trials))
     run.trials = make_trials(scene, rocks, state, run.model, std::move(run.trials));

@@ -47,8 +47,7 @@ std::vector<double> worth_of_particles(const Scene& scene, const State& state, c
     const Bin& bin = state.bins[b];
     if (std::none_of(bin.record.begin(), bin.record.end(), [&](int r) { return reached[master_of(state, r)] >= 0.0; }))
       continue;
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
-         q += static_cast<std::size_t>(bin.stride)) {
+    for (const std::size_t q : bin) {
       const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
       for (std::size_t n = 0; n < 9; ++n) worth[master_of(state, bin.record[n])] += p.V[q] * slope(g, n);
     }

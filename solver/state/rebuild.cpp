@@ -92,6 +92,7 @@ void mark_interface(const Scene& scene, const State& state, const Surface& s, st
   }
 }
 
+// Edges that mirror: symmetric or fixed ones.
 struct Mirrors {
   bool sides, bottom, top;
 };
@@ -412,8 +413,7 @@ SideWord sides_ahead(const State& state, const Tip& tip) {
 std::vector<std::size_t> bins_of_particles(const State& state) {
   std::vector<std::size_t> of(state.particles.size());
   for (std::size_t b = 0; b < state.bins.size(); ++b) {
-    const Bin& bin = state.bins[b];
-    for (int q = bin.first; q < bin.last; q += bin.stride) of[static_cast<std::size_t>(q)] = b;
+    for (const std::size_t q : state.bins[b]) of[q] = b;
   }
   return of;
 }
