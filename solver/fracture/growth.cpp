@@ -23,11 +23,6 @@ constexpr double sliver_cells = 1.5;    // rock that an increment leaves before 
 constexpr double arrest_rise_Pa = 5e4;  // the inlet's rise over which a tip that stays counts as arrested
 constexpr double sliver = 0.25;         // no growth step is shorter than this fraction of an increment
 
-// Cells that must be fine around a tip: its rings, and half a span more that functions there reach.
-double fine_cells(const Scene& scene) {
-  return scene.numerics.ring_cells + 1.0;
-}
-
 // Length of the next `times` increments of da from `tip` along `direction`: they end on the first interface that they
 // would cross or nearly reach. One whose faces are apart ends any that does not begin on it: beyond it another rock is
 // to be broken.
@@ -63,8 +58,8 @@ bool near_edge(const Scene& scene, const Vec2& x, const Vec2& direction, double 
 bool ready(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Tip& tip) {
   const Elasticity& ahead = rocks[rock_ahead(scene, state, tip)];
   const double G = driving(ahead, tip);
-  if (!tip.growing || G <= 0.0 || G < ahead.J_c) return false;
-  return state.time >= tip.due_s;
+  const bool may = scene.fracture->growth != Fracture::Growth::none && tip.growing && state.time >= tip.due_s;
+  return may && G > 0.0 && G >= ahead.J_c;
 }
 
 // How many increments a tip that is ready makes, and when the next one is due. One whose next increment has become due
@@ -188,12 +183,12 @@ constexpr int now_and_then = 2;
 // Whether a particle stands within `reach` (m) of a point of the fracture, across it and beside its piece.
 bool near_point(const Particles& p, std::size_t q, const SurfacePoint& s, double reach) {
   const Vec2 off = Vec2{p.x[q], p.y[q]} - s.x;
-  return std::abs(off.dot(s.n)) < reach && std::abs(off.dot(Vec2{s.n.y(), -s.n.x()})) - 0.5 * s.A < reach;
+  return std::abs(off.dot(s.n)) < reach && std::abs(off.dot(tangent_of(s.n))) - 0.5 * s.A < reach;
 }
 
 bool passes_through(const Particles& p, std::size_t q, const SurfacePoint& s, double h) {
   const Vec2 off = Vec2{p.x[q], p.y[q]} - s.x;
-  return std::abs(off.dot(s.n)) < 1e-3 * h && std::abs(off.dot(Vec2{s.n.y(), -s.n.x()})) - 0.5 * s.A <= 1.5 * h;
+  return std::abs(off.dot(s.n)) < 1e-3 * h && std::abs(off.dot(tangent_of(s.n))) - 0.5 * s.A <= 1.5 * h;
 }
 
 // Particles that passes_through() or near_point(1.5 h) may hold for, for any of these points: those in a box around
@@ -290,8 +285,7 @@ double extend_tip(const Scene& scene, State& state, Tip& tip, double increment, 
 }
 
 std::size_t rock_ahead(const Scene& scene, const State& state, const Tip& tip) {
-  const Vec2 ahead = ahead_cells * state.grid.h * tip_direction(state.fracture(), tip.at_back);
-  return rock_at(scene, tip_position(state, tip) + ahead);
+  return rock_at(scene, place_ahead(state, tip));
 }
 
 std::string what_stops(const Scene& scene, const State& state, const Tip& tip) {
@@ -301,11 +295,12 @@ std::string what_stops(const Scene& scene, const State& state, const Tip& tip) {
   if (tip.has_grown && near_edge(scene, at, direction, edge_cells * h)) return "within 3 cells of an edge of the block";
   if (tip.has_grown && near_edge(scene, at, direction, scene.fracture->increment_m + sliver_cells * h))
     return fmt::format("an increment more would end within {} cells of an edge of the block", sliver_cells);
-  if (!state.grid.fine_around(at.x(), at.y(), fine_cells(scene) * h))
+  const double fine_cells = scene.numerics.ring_cells + 1.0;  // its rings, and what functions there reach
+  if (!state.grid.fine_around(at.x(), at.y(), fine_cells * h))
     return fmt::format(
         "within {} cells of coarser ones; move numerics.fine_left_m, fine_right_m, fine_bottom_m or fine_top_m, or "
         "leave out far_cell_m",
-        fine_cells(scene));
+        fine_cells);
   return "";
 }
 
@@ -362,17 +357,13 @@ bool runs(const Tip& tip, double time) {
 }
 
 bool ready_to_grow(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
-  if (!state.has_fracture || scene.fracture->growth == Fracture::Growth::none) return false;
-  return std::any_of(state.tips.begin(), state.tips.end(),
-                     [&](const Tip& tip) { return ready(scene, rocks, state, tip); });
+  return std::ranges::any_of(state.tips, [&](const Tip& tip) { return ready(scene, rocks, state, tip); });
 }
 
 bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
-  if (!state.has_fracture || scene.fracture->growth == Fracture::Growth::none) return false;
   bool moved = false;
   for (Tip& tip : state.tips) {
-    if (!ready(scene, rocks, state, tip)) continue;
-    if (stop_at_edge(scene, state, tip)) continue;
+    if (!ready(scene, rocks, state, tip) || stop_at_edge(scene, state, tip)) continue;
     const Elasticity& ahead = rocks[rock_ahead(scene, state, tip)];
     const double times = increments_due(scene, ahead, state, tip);
     note_growth(state, tip);

@@ -178,6 +178,15 @@ inline Vec2 tip_position(const State& state, const Tip& tip) {
   return tip.at_back ? state.fracture().vertices.back().x : state.fracture().vertices.front().x;
 }
 
+// How far ahead of a tip its rock is looked up (cells). A tip that stands on an interface follows the rock, by about a
+// millimetre per MPa, while the layers' borders stay: the rock ahead must not be taken for the one behind.
+constexpr double ahead_cells = 0.1;
+
+/// A place (m) in the rock that a tip is about to enter; throws nothing.
+inline Vec2 place_ahead(const State& state, const Tip& tip) {
+  return tip_position(state, tip) + ahead_cells * state.grid.h * tip_direction(state.fracture(), tip.at_back);
+}
+
 /// Displacement of a record since the base (m), under kinematics = "total", or velocity (m/s): of v_x and v_y by slots.
 /// Throws nothing.
 inline Vec2 of_master(const State& state, int record, const SpreadArray& x, const SpreadArray& y) {
