@@ -47,12 +47,10 @@ double increment_to_interface(const Scene& scene, const State& state, const Vec2
 
 // True where a tip at x is nearer than `keep` m to an edge that it heads for.
 bool near_edge(const Scene& scene, const Vec2& x, const Vec2& direction, double keep) {
-  const Stretch along_x = scene.domain.along_x(), along_y = scene.domain.along_y();
-  const bool left = x.x() < along_x.from + keep && direction.x() < 0.0;
-  const bool right = x.x() > along_x.to - keep && direction.x() > 0.0;
-  const bool bottom = x.y() < along_y.from + keep && direction.y() < 0.0;
-  const bool top = x.y() > along_y.to - keep && direction.y() > 0.0;
-  return left || right || bottom || top;
+  const auto near = [keep](const Stretch& block, double at, double way) {
+    return (at < block.from + keep && way < 0.0) || (at > block.to - keep && way > 0.0);
+  };
+  return near(scene.domain.along_x(), x.x(), direction.x()) || near(scene.domain.along_y(), x.y(), direction.y());
 }
 
 bool ready(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Tip& tip) {
@@ -321,11 +319,11 @@ double shorten_tip(State& state, Tip& tip, double length) {
   };
   while (pieces + 1 < fracture.points.size() && gone + piece(pieces) <= length * (1.0 + round_off))
     gone += piece(pieces++);
-  const auto take = [&](auto& list) {
+  const auto shorten = [&](auto& list) {
     const auto n = static_cast<std::ptrdiff_t>(pieces);
     list.erase(tip.at_back ? list.end() - n : list.begin(), tip.at_back ? list.end() : list.begin() + n);
   };
-  take(fracture.points), take(fracture.vertices), take(state.fluid.P);
+  shorten(fracture.points), shorten(fracture.vertices), shorten(state.fluid.P);
   if (!tip.at_back) state.fluid.inlet -= std::min(pieces, state.fluid.inlet);
   update_geometry(fracture);
   return gone;
@@ -378,11 +376,10 @@ bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state
 
 void watch_tips(const Scene& scene, State& state) {
   for (Tip& tip : state.tips) {
-    for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
-      const double distance = std::abs(stacking(scene, tip_position(state, tip)) - scene.strata.interfaces[k].at_m);
-      const int id = static_cast<int>(k);
-      if (distance > 0.5 * state.grid.h || std::find(tip.reached.begin(), tip.reached.end(), id) != tip.reached.end())
-        continue;
+    for (int k = 0; const InterfacePlace& interface : scene.strata.interfaces) {
+      const double distance = std::abs(stacking(scene, tip_position(state, tip)) - interface.at_m);
+      const int id = k++;
+      if (distance > 0.5 * state.grid.h || std::ranges::count(tip.reached, id) > 0) continue;
       tip.reached.push_back(id);
       record(state, "reach_interface", tip, state.time, state.fluid.inlet_Pa, at_interface(tip), "");
     }

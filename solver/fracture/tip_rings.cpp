@@ -26,8 +26,12 @@ struct Room {
   double nearest = HUGE_VAL;
   Obstacle near = Obstacle::none;
 
-  // Keeps the ring off what is so far from the tip (m).
+  // Keeps the ring off what is so far from the tip (m), and notes it.
   void keep_off(double distance) { radius = std::min(radius, distance - h); }
+  void keep_off(double distance, Obstacle what) {
+    keep_off(distance);
+    note(distance, what, trusted_cells);
+  }
   // Notes what is nearer than so many cells.
   void note(double distance, Obstacle what, double cells) {
     constexpr double round_off = 1e-3;  // of a cell: a tip that stands so many cells off is clear
@@ -39,27 +43,20 @@ struct Room {
 void keep_off_edges(const Scene& scene, const Vec2& at, Room& room) {
   const Stretch along_x = scene.domain.along_x(), along_y = scene.domain.along_y();
   const Obstacle below = scene.domain.bottom == Edge::symmetry ? Obstacle::symmetry_line : Obstacle::edge;
-  for (const auto& [distance, what] :
-       {std::pair{at.x() - along_x.from, Obstacle::edge}, std::pair{along_x.to - at.x(), Obstacle::edge},
-        std::pair{at.y() - along_y.from, below}, std::pair{along_y.to - at.y(), Obstacle::edge}}) {
-    room.keep_off(distance);
-    room.note(distance, what, trusted_cells);
-  }
+  room.keep_off(at.x() - along_x.from, Obstacle::edge);
+  room.keep_off(along_x.to - at.x(), Obstacle::edge);
+  room.keep_off(at.y() - along_y.from, below);
+  room.keep_off(along_y.to - at.y(), Obstacle::edge);
 }
 
 // The other tip, and where the path comes back to the tip: farther along it than any that only bends on its way.
 void keep_off_fracture(const State& state, const Tip& tip, const Vec2& at, Room& room) {
   const Surface& fracture = state.fracture();
-  for (const Tip& other : state.tips) {
-    if (other.at_back == tip.at_back) continue;
-    room.keep_off(0.5 * fracture.length());
-    room.note(0.5 * fracture.length(), Obstacle::fracture, trusted_cells);
-  }
+  if (state.tips.size() > 1) room.keep_off(0.5 * fracture.length(), Obstacle::fracture);
   for (const SurfacePoint& s : fracture.points) {
     const double along = tip.at_back ? fracture.length() - s.arc : s.arc, distance = (s.x - at).norm();
     if (along < 2.0 * distance || along < 2.0 * trusted_cells * room.h) continue;
-    room.keep_off(distance);
-    room.note(distance, Obstacle::fracture, trusted_cells);
+    room.keep_off(distance, Obstacle::fracture);
   }
 }
 
@@ -129,7 +126,7 @@ double Ring::at_node(double r) const {
 TipGeometry tip_geometry(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Tip& tip) {
   const Surface& fracture = state.fracture();
   TipGeometry at;
-  at.frame.tip = tip.at_back ? fracture.vertices.back().x : fracture.vertices.front().x;
+  at.frame.tip = tip_position(state, tip);
   at.frame.sign = tip.at_back ? 1.0 : -1.0;
   const Room room = ring_room(scene, state, tip, at.frame.tip);
   const double radius = std::max(room.radius, narrowest_ring_cells * state.grid.h);
@@ -215,7 +212,7 @@ void close_where_faces_touch(const Scene& scene, const State& state, const TipGe
   double largest = 0.0;
   for (const SurfacePoint& s : points) largest = std::max(largest, s.w.norm());
   tip.K_I = 0.0;
-  if (std::abs(last.w.dot(Vec2{last.n.y(), -last.n.x()})) <= slides * largest) tip.K_II = 0.0;
+  if (std::abs(last.w.dot(tangent_of(last.n))) <= slides * largest) tip.K_II = 0.0;
   tip.J = tip.K_II * tip.K_II / at.rock.E_prime;
   tip.J_spread = 0.0;
 }

@@ -15,7 +15,7 @@ namespace strata {
 namespace {
 
 constexpr std::string_view magic = "strata-checkpoint\n";
-constexpr std::uint32_t format_version = 11;  // to be raised with every change of what is saved
+constexpr std::uint32_t format_version = 12;  // to be raised with every change of what is saved
 constexpr std::uint32_t byte_order = 0x01020304;
 
 // Values that are saved as the bytes they are.

@@ -409,7 +409,7 @@ void rebuild_copies(const Scene& scene, State& state) {
   make_masters(scene, state);
   make_surface_stencils(state);
   join_light_copies(scene, state);
-  state.x_spans = spans_along_x(state.grid), state.y_spans = spans_along_y(state.grid);
+  state.x_spans = spans_along(state.grid, Axis::x), state.y_spans = spans_along(state.grid, Axis::y);
   const auto records = static_cast<std::size_t>(state.copies.records());
   state.sums.clear(records), state.motion.clear(records);
   state.gathered = false;
