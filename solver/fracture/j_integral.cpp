@@ -57,39 +57,48 @@ RingParticle ring_particle(const Elasticity& rock, const State& state, const Fra
   return of;
 }
 
-// Adds the particles of a bin that count: at rest those where q is 1 all around do not.
-void add_bin(const std::vector<Elasticity>& rocks, const State& state, bool at_rest, std::size_t b, TipRule& rule) {
-  const Bin& bin = state.bins[b];
-  const auto nodes = ring_nodes(state.grid, rule.at, bin.i, bin.j);
+// Calls visit(RingParticle) for the particles of all bins that count: at rest those where q is 1 all around do not.
+template <class Visit>
+void weigh_particles(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
+                     const TipGeometry& at, Visit visit) {
+  const bool at_rest = scene.numerics.mechanics == Numerics::Mechanics::quasistatic && !scene.body.acceleration_m_s2;
   const auto flat = [](const std::array<double, 9>& q, double value) { return std::ranges::count(q, value) == 9; };
-  if (!nodes || std::ranges::all_of(*nodes, [&](const auto& q) { return flat(q, 0.0); })) return;
-  if (at_rest && std::ranges::all_of(*nodes, [&](const auto& q) { return flat(q, 1.0) || flat(q, 0.0); })) return;
   const Particles& p = state.particles;
-  for (const std::size_t q : bin) {
-    const RingWeights weights = ring_weights(state.grid, *nodes, bin.i, bin.j, {p.x[q], p.y[q]});
-    rule.particles.push_back(ring_particle(rocks[p.rock[q]], state, rule.at.frame, weights, b, q));
+  for (std::size_t b = 0; b < state.bins.size(); ++b) {
+    const Bin& bin = state.bins[b];
+    const auto nodes = ring_nodes(state.grid, at, bin.i, bin.j);
+    if (!nodes || std::ranges::all_of(*nodes, [&](const auto& q) { return flat(q, 0.0); })) continue;
+    if (at_rest && std::ranges::all_of(*nodes, [&](const auto& q) { return flat(q, 1.0) || flat(q, 0.0); })) continue;
+    for (const std::size_t q : bin) {
+      const RingWeights weights = ring_weights(state.grid, *nodes, bin.i, bin.j, {p.x[q], p.y[q]});
+      visit(ring_particle(rocks[p.rock[q]], state, at.frame, weights, b, q));
+    }
   }
 }
 
-void add_face(const State& state, bool at_back, std::size_t point, TipRule& rule) {
+// Calls visit(RingFace) for the points of the fracture that rings may weigh.
+template <class Visit>
+void weigh_faces(const State& state, const TipGeometry& at, bool at_back, Visit visit) {
   const Grid& grid = state.grid;
   const Surface& fracture = state.fracture();
-  const SurfacePoint& s = fracture.points[point];
-  const double from_tip = at_back ? fracture.length() - s.arc : s.arc;
-  const int i = grid.column_at(s.x.x()), j = grid.row_at(s.x.y());
-  const auto nodes = ring_nodes(grid, rule.at, i, j);
-  if (!nodes || from_tip > 1.5 * rule.at.rings.back().outer + 2.0 * grid.h) return;
-  const std::size_t after = std::min(point + 1, fracture.points.size() - 1),
-                    before = point - std::min<std::size_t>(point, 1);
-  RingFace face{point, at_back ? after : before, at_back ? before : after};
-  face.span = std::abs(fracture.points[after].arc - fracture.points[before].arc);
-  const RingWeights weights = ring_weights(grid, *nodes, i, j, s.x);
-  for (std::size_t k = 0; k < rings; ++k)
-    face.q[k] = weights[k].q, face.dq_ds[k] = rule.at.frame.sign * weights[k].grad.dot(tangent_of(s.n));
-  const double near = std::max(from_tip - 0.5 * s.A, 0.0), far = from_tip + 0.5 * s.A;
-  face.I = mean_over_rings(0.0, [&](std::size_t k) { return face.q[k]; }) * 4.0 / rule.at.rock.E_prime * 2.0 *
-           (std::sqrt(far) - std::sqrt(near)) / std::sqrt(2.0 * std::numbers::pi);
-  rule.faces.push_back(face);
+  for (std::size_t point = 0; point < fracture.points.size(); ++point) {
+    const SurfacePoint& s = fracture.points[point];
+    const double from_tip = at_back ? fracture.length() - s.arc : s.arc;
+    const int i = grid.column_at(s.x.x()), j = grid.row_at(s.x.y());
+    const auto nodes = ring_nodes(grid, at, i, j);
+    if (!nodes || from_tip > 1.5 * at.rings.back().outer + 2.0 * grid.h) continue;
+    const std::size_t after = std::min(point + 1, fracture.points.size() - 1),
+                      before = point - std::min<std::size_t>(point, 1);
+    RingFace face{point, at_back ? after : before, at_back ? before : after};
+    face.span = std::abs(fracture.points[after].arc - fracture.points[before].arc);
+    const RingWeights weights = ring_weights(grid, *nodes, i, j, s.x);
+    for (std::size_t k = 0; k < rings; ++k)
+      face.q[k] = weights[k].q, face.dq_ds[k] = at.frame.sign * weights[k].grad.dot(tangent_of(s.n));
+    const double near = std::max(from_tip - 0.5 * s.A, 0.0), far = from_tip + 0.5 * s.A;
+    face.I = mean_over_rings(0.0, [&](std::size_t k) { return face.q[k]; }) * 4.0 / at.rock.E_prime * 2.0 *
+             (std::sqrt(far) - std::sqrt(near)) / std::sqrt(2.0 * std::numbers::pi);
+    visit(face);
+  }
 }
 
 // w . d(t q)/ds of J, and the interaction's term.
@@ -141,8 +150,10 @@ ParticleFields fields_at(const Scene& scene, const State& state, const Vec2& e, 
   return f;
 }
 
-void sum_particle(const Elasticity& rock, const ParticleFields& f, const Vec2& e, const RingParticle& of,
-                  TipSums& sums) {
+void sum_particle(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Vec2& e,
+                  const RingParticle& of, TipSums& sums) {
+  const Elasticity& rock = rocks[state.particles.rock[of.particle]];
+  const ParticleFields f = fields_at(scene, state, e, of.bin, of.particle);
   const double g_xx = f.g(0, 0), g_xy = f.g(0, 1), g_yx = f.g(1, 0), g_yy = f.g(1, 1);
   const Stress s = stress_of(rock, g_xx, g_xy, g_yx, g_yy);
   const Vec2 u_1 = f.g * e;
@@ -160,12 +171,11 @@ void sum_particle(const Elasticity& rock, const ParticleFields& f, const Vec2& e
 
 std::vector<TipRule> make_tip_rules(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
   std::vector<TipRule> rules;
-  const bool at_rest = scene.numerics.mechanics == Numerics::Mechanics::quasistatic && !scene.body.acceleration_m_s2;
   for (const Tip& tip : state.tips) {
     TipRule& rule = rules.emplace_back();
     rule.at = tip_geometry(scene, rocks, state, tip);
-    for (std::size_t b = 0; b < state.bins.size(); ++b) add_bin(rocks, state, at_rest, b, rule);
-    for (std::size_t k = 0; k < state.fracture().points.size(); ++k) add_face(state, tip.at_back, k, rule);
+    weigh_particles(scene, rocks, state, rule.at, [&](const RingParticle& of) { rule.particles.push_back(of); });
+    weigh_faces(state, rule.at, tip.at_back, [&](const RingFace& face) { rule.faces.push_back(face); });
   }
   return rules;
 }
@@ -175,17 +185,23 @@ void measure_tips(const Scene& scene, const std::vector<Elasticity>& rocks, cons
   for (std::size_t t = 0; t < rules.size(); ++t) {
     const Frame& frame = rules[t].at.frame;
     TipSums sums;
-    for (const RingParticle& of : rules[t].particles) {
-      const ParticleFields f = fields_at(scene, state, frame.e_1, of.bin, of.particle);
-      sum_particle(rocks[state.particles.rock[of.particle]], f, frame.e_1, of, sums);
-    }
+    for (const RingParticle& of : rules[t].particles) sum_particle(scene, rocks, state, frame.e_1, of, sums);
     for (const RingFace& face : rules[t].faces) sum_face(state.fracture(), frame, face, sums);
     finish_tip(scene, rules[t].at, state, sums, state.tips[t]);
   }
 }
 
+// Without rules, which would take memory in each step.
 void measure_tips(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
-  measure_tips(scene, rocks, make_tip_rules(scene, rocks, state), state);
+  for (Tip& tip : state.tips) {
+    const TipGeometry at = tip_geometry(scene, rocks, state, tip);
+    TipSums sums;
+    weigh_particles(scene, rocks, state, at,
+                    [&](const RingParticle& of) { sum_particle(scene, rocks, state, at.frame.e_1, of, sums); });
+    weigh_faces(state, at, tip.at_back,
+                [&](const RingFace& face) { sum_face(state.fracture(), at.frame, face, sums); });
+    finish_tip(scene, at, state, sums, tip);
+  }
 }
 
 double kink_angle(double K_I, double K_II) {
