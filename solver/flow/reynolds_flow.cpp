@@ -27,6 +27,14 @@ constexpr const char* what_to_look_at =
 // pressure would leave its balance without an unknown. 1e-4 of the study's openings.
 constexpr double thinnest = 1e-8;
 
+std::vector<double> as_vector(const VectorXd& x) {
+  return {x.data(), x.data() + x.size()};
+}
+
+Eigen::Map<const VectorXd> mapped(const std::vector<double>& x) {
+  return {x.data(), static_cast<Index>(x.size())};
+}
+
 double storage_opening(double w) {
   return std::max(w, thinnest);
 }
@@ -87,8 +95,7 @@ struct Balance {
   // d inflow/d P, d inflow/d w of a cell (rows) by the cell before it, itself and the one behind it (columns).
   Eigen::MatrixX3d by_P, by_w;
   double inlet_Pa = 0.0;
-  double flux = 0.0;       // into the fracture, at the inlet's pressure (m^2/s)
-  double mass_flux = 0.0;  // the same at the cavitation pressure
+  double injected = 0.0;  // flow into the fracture at the cavitation pressure (m^2/s)
 
   bool finite() const {
     return residual.allFinite() && rock.w.allFinite() && rock.dw_dP.allFinite() && std::isfinite(inlet_Pa);
@@ -192,8 +199,7 @@ void add_inlet(const Step& step, const Trial& trial, Balance& b) {
     const Dual entering = by_rate ? Dual(step.line.P[static_cast<std::size_t>(cell[s])]) : P;
     const Dual flow = density(step.fluid, q.value() >= 0.0 ? entering : at[s].P) * q;
     add_flow(b, cell[s], flow, cell[0], cell[1]);
-    b.flux += q.value();
-    b.mass_flux += flow.value();
+    b.injected += flow.value();
   }
 }
 
@@ -208,7 +214,7 @@ Balance evaluate(const Step& step, const Trial& trial) {
   for (Index k = 0; k < n; ++k)
     b.held(k) = trial.phi(k) * density(step.fluid, trial.P(k)) * storage_opening(b.rock.w(k)) *
                 step.line.length[static_cast<std::size_t>(k)];
-  b.residual = b.held - Eigen::Map<const VectorXd>(step.line.content.data(), n) - step.dt * b.inflow;
+  b.residual = b.held - mapped(step.line.content) - step.dt * b.inflow;
   return b;
 }
 
@@ -269,7 +275,7 @@ double trusted_fraction(const Step& step, const Trial& trial, const VectorXd& dx
 // True where every cell's balance, and that of all together, holds as well as the tolerance and the round-off of the
 // fluxes allow.
 bool balanced(const Step& step, const Trial& trial, const Balance& b, const MatrixXd& J) {
-  const double total = std::max(b.held.sum(), step.dt * std::abs(b.mass_flux));
+  const double total = std::max(b.held.sum(), step.dt * std::abs(b.injected));
   const double digit = 4.0 * std::numeric_limits<double>::epsilon() * trial.P.maxCoeff();
   VectorXd of_cell = VectorXd::Zero(b.residual.size());  // round-off
   double of_whole = 0.0;
@@ -292,13 +298,12 @@ struct Iterate {
 
 // Halves the step along dx until the imbalance falls; the best of all that were tried, nothing where none is finite.
 // Where a cell fills up none may be better than where it came from: the cell's other unknown takes its step next.
-std::optional<Iterate> search(const Step& step, const Iterate& from, const VectorXd& dx, int& rock_calls) {
+std::optional<Iterate> search(const Step& step, const Iterate& from, const VectorXd& dx) {
   std::optional<Iterate> best;
   double fraction = trusted_fraction(step, from.trial, dx);
   for (int halving = 0; halving < 6; ++halving, fraction *= 0.5) {
     Iterate next{moved(step.fluid, from.trial, dx, fraction), {}};
     next.b = evaluate(step, next.trial);
-    ++rock_calls;
     if (!next.b.finite()) continue;
     const double merit = next.b.merit();
     if (!best || merit < best->b.merit()) best = std::move(next);
@@ -311,9 +316,7 @@ std::optional<Iterate> search(const Step& step, const Iterate& from, const Vecto
 StepReport iterate(const Step& step, int max_iterations, Iterate& at) {
   StepReport report;
   at.b = evaluate(step, at.trial);
-  ++report.rock_calls;
   for (; at.b.finite(); ++report.iterations) {
-    report.residual = at.b.residual.lpNorm<Eigen::Infinity>();
     const MatrixXd J = jacobian(step, at.trial, at.b);
     report.converged = balanced(step, at.trial, at.b, J);
     if (report.converged) return report;
@@ -324,7 +327,7 @@ StepReport iterate(const Step& step, int max_iterations, Iterate& at) {
     }
     const VectorXd dx = J.partialPivLu().solve(-at.b.residual);
     if (!dx.allFinite()) break;
-    std::optional<Iterate> next = search(step, at, dx, report.rock_calls);
+    std::optional<Iterate> next = search(step, at, dx);
     if (!next) break;
     at = std::move(*next);
   }
@@ -334,8 +337,7 @@ StepReport iterate(const Step& step, int max_iterations, Iterate& at) {
 
 // Where the iteration starts: what was before the step,
 Trial before(const ReynoldsLine& line) {
-  const Index n = static_cast<Index>(line.size());
-  Trial trial{Eigen::Map<const VectorXd>(line.P.data(), n), Eigen::Map<const VectorXd>(line.phi.data(), n), {}};
+  Trial trial{mapped(line.P), mapped(line.phi), {}};
   for (const double phi : line.phi) trial.full.push_back(phi >= 1.0);
   return trial;
 }
@@ -350,31 +352,17 @@ Trial filled(const ReynoldsLine& line) {
   return trial;
 }
 
-std::vector<double> as_vector(const VectorXd& x) {
-  return {x.data(), x.data() + x.size()};
+// Half the change of the opening's rate over a step is backward Euler's local error over dt, dt^2 w''/2.
+double error_of(const Step& step, const VectorXd& w) {
+  if (!step.line.rates_known) return 0.0;
+  const VectorXd foreseen = mapped(step.line.w) + step.dt * mapped(step.line.w_rate);
+  return 0.5 * (w - foreseen).lpNorm<Eigen::Infinity>() / std::max(w.maxCoeff(), thinnest);
 }
 
-// Half the change of the rates over a step is backward Euler's local error over dt, dt^2 x''/2.
-void estimate_error(const Step& step, const Trial& trial, const Balance& b, StepReport& report) {
-  report.estimated = step.line.rates_known;
-  if (!report.estimated) return;
-  for (Index k = 0; k < trial.P.size(); ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    const double w = step.line.w[at] + step.dt * step.line.w_rate[at];
-    const double P = step.line.P[at] + step.dt * step.line.P_rate[at];
-    report.error_w = std::max(report.error_w, 0.5 * std::abs(b.rock.w(k) - w));
-    report.error_P = std::max(report.error_P, 0.5 * std::abs(trial.P(k) - P));
-  }
-  report.error_w /= std::max(b.rock.w.maxCoeff(), thinnest);
-}
-
-void take(const Step& step, const Trial& trial, const Balance& b, ReynoldsLine& line) {
-  const Index n = trial.P.size();
-  const VectorXd w = Eigen::Map<const VectorXd>(line.w.data(), n), P = Eigen::Map<const VectorXd>(line.P.data(), n);
-  line.w_rate = as_vector((b.rock.w - w) / step.dt);
-  line.P_rate = as_vector((trial.P - P) / step.dt);
+void accept(const Step& step, const Trial& trial, const Balance& b, ReynoldsLine& line) {
+  line.w_rate = as_vector((b.rock.w - mapped(line.w)) / step.dt);
   // By flows and not by what is held: what the iteration leaves over then does not add up from step to step.
-  line.content = as_vector(Eigen::Map<const VectorXd>(line.content.data(), n) + step.dt * b.inflow);
+  line.content = as_vector(mapped(line.content) + step.dt * b.inflow);
   line.w = as_vector(b.rock.w);
   line.P = as_vector(trial.P);
   line.phi = as_vector(trial.phi);
@@ -393,7 +381,6 @@ ReynoldsLine full_line(const Fluid& fluid, const std::vector<double>& length, st
   line.phi.assign(n, 1.0);
   line.w = as_vector(w);
   line.w_rate.assign(n, 0.0);
-  line.P_rate.assign(n, 0.0);
   line.inlet = inlet;
   line.inlet_Pa = line.P[0];
   balance = {};
@@ -411,7 +398,7 @@ void grow(ReynoldsLine& line, const Fluid& fluid, bool at_back, double length) {
   };
   add(line.length, length);
   add(line.P, fluid.cavitation_Pa);
-  for (std::vector<double>* values : {&line.phi, &line.content, &line.w, &line.w_rate, &line.P_rate}) add(*values, 0.0);
+  for (std::vector<double>* values : {&line.phi, &line.content, &line.w, &line.w_rate}) add(*values, 0.0);
   line.rates_known = false;
   if (!at_back) ++line.inlet;
 }
@@ -422,19 +409,17 @@ StepReport step_reynolds(const Fluid& fluid, const Inlet& inlet, double dt, cons
   Iterate at{before(line), {}};
   StepReport report = iterate(step, options.max_iterations / 5, at);
   if (!report.converged) {
-    const int iterations = report.iterations, rock_calls = report.rock_calls;
+    const int iterations = report.iterations;
     at.trial = filled(line);
     report = iterate(step, options.max_iterations, at);
     report.iterations += iterations;
-    report.rock_calls += rock_calls;
   }
   if (!report.converged) return report;
   const Balance& b = at.b;
   report.inlet_Pa = b.inlet_Pa;
-  report.flux_m2_s = b.flux;
-  estimate_error(step, at.trial, b, report);
-  take(step, at.trial, b, line);
-  balance.injected += dt * b.mass_flux;
+  report.error_w = error_of(step, b.rock.w);
+  accept(step, at.trial, b, line);
+  balance.injected += dt * b.injected;
   balance.largest = std::max(balance.largest, std::abs(balance.injected));
   balance.stored = b.held.sum();
   return report;

@@ -59,13 +59,8 @@ struct StepReport {
   bool converged = false;  // where false nothing was changed, and reason says why
   std::string reason;
   int iterations = 0;
-  int rock_calls = 0;
-  double residual = 0.0;   // largest imbalance of a cell (m^2)
-  double inlet_Pa = 0.0;   // pressure at the inlet vertex
-  double flux_m2_s = 0.0;  // what enters there, at the inlet's pressure
-  bool estimated = false;  // whether the two below are known
-  double error_w = 0.0;    // error of this step's opening, relative to the largest opening
-  double error_P = 0.0;    // error of this step's pressure (Pa)
+  double inlet_Pa = 0.0;  // pressure at the inlet vertex
+  double error_w = 0.0;   // error of this step's opening, relative to the largest opening; 0 where it is not known
 };
 
 struct ReynoldsOptions {

@@ -75,14 +75,8 @@ Criterion criterion_of(const Scene& scene, const State& state, const Tip& tip) {
 }
 
 const char* name_of(Criterion criterion) {
-  switch (criterion) {
-    case Criterion::J:
-      return "J";
-    case Criterion::energy:
-      return "energy";
-    default:
-      return "K";
-  }
+  if (criterion == Criterion::J) return "J";
+  return criterion == Criterion::energy ? "energy" : "K";
 }
 
 double driving(const Elasticity& rock, const Tip& tip) {

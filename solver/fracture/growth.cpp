@@ -23,11 +23,6 @@ constexpr double sliver_cells = 1.5;    // rock that an increment leaves before 
 constexpr double arrest_rise_Pa = 5e4;  // the inlet's rise over which a tip that stays counts as arrested
 constexpr double sliver = 0.25;         // no growth step is shorter than this fraction of an increment
 
-// Cells that must be fine around a tip: its rings, and half a span more that functions there reach.
-double fine_cells(const Scene& scene) {
-  return scene.numerics.ring_cells + 1.0;
-}
-
 // Length of the next `times` increments of da from `tip` along `direction`: they end on the first interface that they
 // would cross or nearly reach. One whose faces are apart ends any that does not begin on it: beyond it another rock is
 // to be broken.
@@ -52,19 +47,17 @@ double increment_to_interface(const Scene& scene, const State& state, const Vec2
 
 // True where a tip at x is nearer than `keep` m to an edge that it heads for.
 bool near_edge(const Scene& scene, const Vec2& x, const Vec2& direction, double keep) {
-  const Stretch along_x = scene.domain.along_x(), along_y = scene.domain.along_y();
-  const bool left = x.x() < along_x.from + keep && direction.x() < 0.0;
-  const bool right = x.x() > along_x.to - keep && direction.x() > 0.0;
-  const bool bottom = x.y() < along_y.from + keep && direction.y() < 0.0;
-  const bool top = x.y() > along_y.to - keep && direction.y() > 0.0;
-  return left || right || bottom || top;
+  const auto near = [keep](const Stretch& block, double at, double way) {
+    return (at < block.from + keep && way < 0.0) || (at > block.to - keep && way > 0.0);
+  };
+  return near(scene.domain.along_x(), x.x(), direction.x()) || near(scene.domain.along_y(), x.y(), direction.y());
 }
 
 bool ready(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Tip& tip) {
   const Elasticity& ahead = rocks[rock_ahead(scene, state, tip)];
   const double G = driving(ahead, tip);
-  if (!tip.growing || G <= 0.0 || G < ahead.J_c) return false;
-  return state.time >= tip.due_s;
+  const bool may = scene.fracture->growth != Fracture::Growth::none && tip.growing && state.time >= tip.due_s;
+  return may && G > 0.0 && G >= ahead.J_c;
 }
 
 // How many increments a tip that is ready makes, and when the next one is due. One whose next increment has become due
@@ -188,12 +181,12 @@ constexpr int now_and_then = 2;
 // Whether a particle stands within `reach` (m) of a point of the fracture, across it and beside its piece.
 bool near_point(const Particles& p, std::size_t q, const SurfacePoint& s, double reach) {
   const Vec2 off = Vec2{p.x[q], p.y[q]} - s.x;
-  return std::abs(off.dot(s.n)) < reach && std::abs(off.dot(Vec2{s.n.y(), -s.n.x()})) - 0.5 * s.A < reach;
+  return std::abs(off.dot(s.n)) < reach && std::abs(off.dot(tangent_of(s.n))) - 0.5 * s.A < reach;
 }
 
 bool passes_through(const Particles& p, std::size_t q, const SurfacePoint& s, double h) {
   const Vec2 off = Vec2{p.x[q], p.y[q]} - s.x;
-  return std::abs(off.dot(s.n)) < 1e-3 * h && std::abs(off.dot(Vec2{s.n.y(), -s.n.x()})) - 0.5 * s.A <= 1.5 * h;
+  return std::abs(off.dot(s.n)) < 1e-3 * h && std::abs(off.dot(tangent_of(s.n))) - 0.5 * s.A <= 1.5 * h;
 }
 
 // Particles that passes_through() or near_point(1.5 h) may hold for, for any of these points: those in a box around
@@ -290,8 +283,7 @@ double extend_tip(const Scene& scene, State& state, Tip& tip, double increment, 
 }
 
 std::size_t rock_ahead(const Scene& scene, const State& state, const Tip& tip) {
-  const Vec2 ahead = ahead_cells * state.grid.h * tip_direction(state.fracture(), tip.at_back);
-  return rock_at(scene, tip_position(state, tip) + ahead);
+  return rock_at(scene, place_ahead(state, tip));
 }
 
 std::string what_stops(const Scene& scene, const State& state, const Tip& tip) {
@@ -301,23 +293,20 @@ std::string what_stops(const Scene& scene, const State& state, const Tip& tip) {
   if (tip.has_grown && near_edge(scene, at, direction, edge_cells * h)) return "within 3 cells of an edge of the block";
   if (tip.has_grown && near_edge(scene, at, direction, scene.fracture->increment_m + sliver_cells * h))
     return fmt::format("an increment more would end within {} cells of an edge of the block", sliver_cells);
-  if (!state.grid.fine_around(at.x(), at.y(), fine_cells(scene) * h))
+  const double fine_cells = scene.numerics.ring_cells + 1.0;  // its rings, and what functions there reach
+  if (!state.grid.fine_around(at.x(), at.y(), fine_cells * h))
     return fmt::format(
         "within {} cells of coarser ones; move numerics.fine_left_m, fine_right_m, fine_bottom_m or fine_top_m, or "
         "leave out far_cell_m",
-        fine_cells(scene));
+        fine_cells);
   return "";
 }
 
-bool stopped_by_edge(const Scene& scene, const State& state, const Tip& tip) {
-  return !what_stops(scene, state, tip).empty();
-}
-
 bool stop_at_edge(const Scene& scene, const State& state, Tip& tip) {
-  if (!tip.growing || !stopped_by_edge(scene, state, tip)) return false;
-  tip.growing = false;
+  if (!tip.growing) return false;
   tip.stopped_by = what_stops(scene, state, tip);
-  return true;
+  tip.growing = tip.stopped_by.empty();
+  return !tip.growing;
 }
 
 double shorten_tip(State& state, Tip& tip, double length) {
@@ -330,11 +319,11 @@ double shorten_tip(State& state, Tip& tip, double length) {
   };
   while (pieces + 1 < fracture.points.size() && gone + piece(pieces) <= length * (1.0 + round_off))
     gone += piece(pieces++);
-  const auto take = [&](auto& list) {
+  const auto shorten = [&](auto& list) {
     const auto n = static_cast<std::ptrdiff_t>(pieces);
     list.erase(tip.at_back ? list.end() - n : list.begin(), tip.at_back ? list.end() : list.begin() + n);
   };
-  take(fracture.points), take(fracture.vertices), take(state.fluid.P);
+  shorten(fracture.points), shorten(fracture.vertices), shorten(state.fluid.P);
   if (!tip.at_back) state.fluid.inlet -= std::min(pieces, state.fluid.inlet);
   update_geometry(fracture);
   return gone;
@@ -359,8 +348,6 @@ void note_growth(State& state, Tip& tip) {
     monitors.J_spread_sum += tip.J_spread;
     note_largest(monitors.largest_J_spread, tip.J_spread);
   }
-  tip.J_at_growth = tip.J;
-  tip.J_spread_at_growth = tip.J_spread;
 }
 
 bool runs(const Tip& tip, double time) {
@@ -368,17 +355,13 @@ bool runs(const Tip& tip, double time) {
 }
 
 bool ready_to_grow(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
-  if (!state.has_fracture || scene.fracture->growth == Fracture::Growth::none) return false;
-  return std::any_of(state.tips.begin(), state.tips.end(),
-                     [&](const Tip& tip) { return ready(scene, rocks, state, tip); });
+  return std::ranges::any_of(state.tips, [&](const Tip& tip) { return ready(scene, rocks, state, tip); });
 }
 
 bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
-  if (!state.has_fracture || scene.fracture->growth == Fracture::Growth::none) return false;
   bool moved = false;
   for (Tip& tip : state.tips) {
-    if (!ready(scene, rocks, state, tip)) continue;
-    if (stop_at_edge(scene, state, tip)) continue;
+    if (!ready(scene, rocks, state, tip) || stop_at_edge(scene, state, tip)) continue;
     const Elasticity& ahead = rocks[rock_ahead(scene, state, tip)];
     const double times = increments_due(scene, ahead, state, tip);
     note_growth(state, tip);
@@ -393,11 +376,10 @@ bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state
 
 void watch_tips(const Scene& scene, State& state) {
   for (Tip& tip : state.tips) {
-    for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
-      const double distance = std::abs(stacking(scene, tip_position(state, tip)) - scene.strata.interfaces[k].at_m);
-      const int id = static_cast<int>(k);
-      if (distance > 0.5 * state.grid.h || std::find(tip.reached.begin(), tip.reached.end(), id) != tip.reached.end())
-        continue;
+    for (int k = 0; const InterfacePlace& interface : scene.strata.interfaces) {
+      const double distance = std::abs(stacking(scene, tip_position(state, tip)) - interface.at_m);
+      const int id = k++;
+      if (distance > 0.5 * state.grid.h || std::ranges::count(tip.reached, id) > 0) continue;
       tip.reached.push_back(id);
       record(state, "reach_interface", tip, state.time, state.fluid.inlet_Pa, at_interface(tip), "");
     }

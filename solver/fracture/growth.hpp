@@ -35,9 +35,6 @@ std::size_t rock_ahead(const Scene& scene, const State& state, const Tip& tip);
 /// but std::bad_alloc.
 std::string what_stops(const Scene& scene, const State& state, const Tip& tip);
 
-/// Whether something stops it so.
-bool stopped_by_edge(const Scene& scene, const State& state, const Tip& tip);
-
 /// Stops a tip for good, with the reason, where something stops it so; whether it did. Throws nothing but
 /// std::bad_alloc.
 bool stop_at_edge(const Scene& scene, const State& state, Tip& tip);

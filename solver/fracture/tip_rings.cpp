@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <string>
 
 #include "fracture/criterion.hpp"
@@ -18,12 +19,6 @@ constexpr double pi = std::numbers::pi;
 constexpr double least_cells = 2.0;     // nearer than this K is no number, nor is J
 constexpr double inner_fraction = 0.6;  // q is 1 inside this fraction of a ring's radius: 0.3 costs 1 % in J
 
-// Whether all nodes around a bin lie outside the square around a ring: then q is 0 at them.
-bool out_of_reach(const Grid& g, const Vec2& tip, const Ring& ring, const Bin& bin) {
-  return g.x(bin.i + 1) < tip.x() - ring.outer || g.x(bin.i - 1) > tip.x() + ring.outer ||
-         g.y(bin.j + 1) < tip.y() - ring.outer || g.y(bin.j - 1) > tip.y() + ring.outer;
-}
-
 // How far a ring may reach from a tip (m), and the nearest thing that is too near.
 struct Room {
   double h;
@@ -31,8 +26,12 @@ struct Room {
   double nearest = HUGE_VAL;
   Obstacle near = Obstacle::none;
 
-  // Keeps the ring off what is so far from the tip (m).
+  // Keeps the ring off what is so far from the tip (m), and notes it.
   void keep_off(double distance) { radius = std::min(radius, distance - h); }
+  void keep_off(double distance, Obstacle what) {
+    keep_off(distance);
+    note(distance, what, trusted_cells);
+  }
   // Notes what is nearer than so many cells.
   void note(double distance, Obstacle what, double cells) {
     constexpr double round_off = 1e-3;  // of a cell: a tip that stands so many cells off is clear
@@ -44,27 +43,20 @@ struct Room {
 void keep_off_edges(const Scene& scene, const Vec2& at, Room& room) {
   const Stretch along_x = scene.domain.along_x(), along_y = scene.domain.along_y();
   const Obstacle below = scene.domain.bottom == Edge::symmetry ? Obstacle::symmetry_line : Obstacle::edge;
-  for (const auto& [distance, what] :
-       {std::pair{at.x() - along_x.from, Obstacle::edge}, std::pair{along_x.to - at.x(), Obstacle::edge},
-        std::pair{at.y() - along_y.from, below}, std::pair{along_y.to - at.y(), Obstacle::edge}}) {
-    room.keep_off(distance);
-    room.note(distance, what, trusted_cells);
-  }
+  room.keep_off(at.x() - along_x.from, Obstacle::edge);
+  room.keep_off(along_x.to - at.x(), Obstacle::edge);
+  room.keep_off(at.y() - along_y.from, below);
+  room.keep_off(along_y.to - at.y(), Obstacle::edge);
 }
 
 // The other tip, and where the path comes back to the tip: farther along it than any that only bends on its way.
 void keep_off_fracture(const State& state, const Tip& tip, const Vec2& at, Room& room) {
   const Surface& fracture = state.fracture();
-  for (const Tip& other : state.tips) {
-    if (other.at_back == tip.at_back) continue;
-    room.keep_off(0.5 * fracture.length());
-    room.note(0.5 * fracture.length(), Obstacle::fracture, trusted_cells);
-  }
+  if (state.tips.size() > 1) room.keep_off(0.5 * fracture.length(), Obstacle::fracture);
   for (const SurfacePoint& s : fracture.points) {
     const double along = tip.at_back ? fracture.length() - s.arc : s.arc, distance = (s.x - at).norm();
     if (along < 2.0 * distance || along < 2.0 * trusted_cells * room.h) continue;
-    room.keep_off(distance);
-    room.note(distance, Obstacle::fracture, trusted_cells);
+    room.keep_off(distance, Obstacle::fracture);
   }
 }
 
@@ -134,7 +126,7 @@ double Ring::at_node(double r) const {
 TipGeometry tip_geometry(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Tip& tip) {
   const Surface& fracture = state.fracture();
   TipGeometry at;
-  at.frame.tip = tip.at_back ? fracture.vertices.back().x : fracture.vertices.front().x;
+  at.frame.tip = tip_position(state, tip);
   at.frame.sign = tip.at_back ? 1.0 : -1.0;
   const Room room = ring_room(scene, state, tip, at.frame.tip);
   const double radius = std::max(room.radius, narrowest_ring_cells * state.grid.h);
@@ -151,36 +143,30 @@ TipGeometry tip_geometry(const Scene& scene, const std::vector<Elasticity>& rock
   return at;
 }
 
-NodalWeights nodal_weights(const Grid& g, const Vec2& tip, const Ring& ring, int i, int j) {
-  NodalWeights q{};
-  for (int n = 0; n < 9; ++n) {
-    const Vec2 x{g.x(i + n % 3 - 1), g.y(j + n / 3 - 1)};
-    q[static_cast<std::size_t>(n)] = ring.at_node((x - tip).norm());
+std::optional<RingNodes> ring_nodes(const Grid& g, const TipGeometry& at, int i, int j) {
+  const Vec2& tip = at.frame.tip;
+  const double reach = at.rings.back().outer;
+  if (g.x(i + 1) < tip.x() - reach || g.x(i - 1) > tip.x() + reach || g.y(j + 1) < tip.y() - reach ||
+      g.y(j - 1) > tip.y() + reach)
+    return std::nullopt;
+  RingNodes q{};
+  for (std::size_t n = 0; n < 9; ++n) {
+    const Vec2 x{g.x(i + static_cast<int>(n % 3) - 1), g.y(j + static_cast<int>(n / 3) - 1)};
+    for (std::size_t k = 0; k < q.size(); ++k) q[k][n] = at.rings[k].at_node((x - tip).norm());
   }
   return q;
 }
 
-Weight weight_at(const Grid& g, const Frame& frame, const NodalWeights& nodes, int i, int j, const Vec2& x) {
-  const Weights X = weights_x<QuadraticBspline>(g, i, x.x(), 0.0), Y = weights_y<QuadraticBspline>(g, j, x.y(), 0.0);
-  const double s_x = g.span_x(i), s_y = g.span_y(j);  // rings may reach into growing cells
-  double q = 0.0;
-  Vec2 grad = Vec2::Zero();
-  for (std::size_t n = 0; n < 9; ++n) {
-    q += X.N[n % 3] * Y.N[n / 3] * nodes[n];
-    grad += Vec2{nodes[n] / s_x * (X.dN[n % 3] * Y.N[n / 3]), nodes[n] / s_y * (X.N[n % 3] * Y.dN[n / 3])};
+RingWeights ring_weights(const Grid& g, const RingNodes& nodes, int i, int j, const Vec2& x) {
+  const Gradients w = gradients_of<QuadraticBspline>(g, i, j, x, Vec2::Zero());
+  RingWeights out;
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    for (std::size_t n = 0; n < 9; ++n) {
+      out[k].q += w.N[n] * nodes[k][n];
+      out[k].grad += nodes[k][n] * Vec2{w.N_x[n], w.N_y[n]};
+    }
   }
-  return {q, frame.local(grad)};
-}
-
-bool weigh_bin(const Grid& g, const TipGeometry& at, const Bin& bin,
-               std::array<NodalWeights, ring_fractions.size()>& nodes) {
-  if (out_of_reach(g, at.frame.tip, at.rings.back(), bin)) return false;
-  bool any = false;
-  for (std::size_t k = 0; k < at.rings.size(); ++k) {
-    nodes[k] = nodal_weights(g, at.frame.tip, at.rings[k], bin.i, bin.j);
-    any = any || *std::max_element(nodes[k].begin(), nodes[k].end()) > 0.0;
-  }
-  return any;
+  return out;
 }
 
 double angle_at(const Vec2& local, bool above) {
@@ -211,45 +197,6 @@ AuxiliaryFields williams(const Elasticity& rock, int mode, double r, double thet
   return aux;
 }
 
-std::optional<FacePlace> face_place(const State& state, const TipGeometry& at, bool at_back, std::size_t point) {
-  const Grid& grid = state.grid;
-  const Surface& fracture = state.fracture();
-  const auto& points = fracture.points;
-  const SurfacePoint& s = points[point];
-  const double from_tip = at_back ? fracture.length() - s.arc : s.arc;
-  if (from_tip > 1.5 * at.rings.back().outer + 2.0 * grid.h) return std::nullopt;
-  const auto k = static_cast<std::ptrdiff_t>(point), last = static_cast<std::ptrdiff_t>(points.size()) - 1;
-  FacePlace place;
-  place.point = point;
-  place.ahead = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k + (at_back ? 1 : -1), 0, last));
-  place.behind = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k + (at_back ? -1 : 1), 0, last));
-  place.span = std::abs(points[place.ahead].arc - points[place.behind].arc);
-  const double near = from_tip - 0.5 * s.A, far = from_tip + 0.5 * s.A;
-  place.root = 4.0 / at.rock.E_prime * 2.0 * (std::sqrt(far) - std::sqrt(std::max(near, 0.0))) / std::sqrt(2.0 * pi);
-  const Vec2 forward = at.frame.local(at_back ? Vec2{s.n.y(), -s.n.x()} : Vec2{-s.n.y(), s.n.x()});
-  const int i = grid.column_at(s.x.x()), j = grid.row_at(s.x.y());
-  for (std::size_t r = 0; r < at.rings.size(); ++r) {
-    const Weight weight = weight_at(grid, at.frame, nodal_weights(grid, at.frame.tip, at.rings[r], i, j), i, j, s.x);
-    place.q[r] = weight.q, place.dq_ds[r] = weight.grad.dot(forward);
-  }
-  return place;
-}
-
-void add_face(const Surface& fracture, const Frame& frame, const FacePlace& place, RingSums& sums) {
-  const auto net = [&](std::size_t k) -> Vec2 {
-    const SurfacePoint& s = fracture.points[k];
-    return frame.sign * frame.local(s.P * s.n - s.in_situ + s.reaction);
-  };
-  const SurfacePoint& s = fracture.points[place.point];
-  const Vec2 w = frame.sign * frame.local(s.w), t = net(place.point);
-  const Vec2 dt_ds = place.span > 0.0 ? Vec2{(net(place.ahead) - net(place.behind)) / place.span} : Vec2{Vec2::Zero()};
-  for (std::size_t j = 0; j < sums.size(); ++j) {
-    sums[j].J += s.A * (w.dot(t) * place.dq_ds[j] + place.q[j] * w.dot(dt_ds));
-    sums[j].I[0] += t.y() * place.q[j] * place.root;
-    sums[j].I[1] += t.x() * place.q[j] * place.root;
-  }
-}
-
 namespace {
 
 // Faces that touch at the tip, and so do not open there, have no K_I; what drives such a tip is their sliding alone, J
@@ -265,21 +212,17 @@ void close_where_faces_touch(const Scene& scene, const State& state, const TipGe
   double largest = 0.0;
   for (const SurfacePoint& s : points) largest = std::max(largest, s.w.norm());
   tip.K_I = 0.0;
-  if (std::abs(last.w.dot(Vec2{last.n.y(), -last.n.x()})) <= slides * largest) tip.K_II = 0.0;
+  if (std::abs(last.w.dot(tangent_of(last.n))) <= slides * largest) tip.K_II = 0.0;
   tip.J = tip.K_II * tip.K_II / at.rock.E_prime;
   tip.J_spread = 0.0;
 }
 
 }  // namespace
 
-void finish_tip(const Scene& scene, const TipGeometry& at, const State& state, const RingSums& sums, Tip& tip) {
-  double mean = 0.0, K_I = 0.0, K_II = 0.0, least = sums[0].J, most = sums[0].J;
-  for (const RingSum& sum : sums) {
-    mean += sum.J / static_cast<double>(sums.size());
-    K_I += 0.5 * at.rock.E_prime * sum.I[0] / static_cast<double>(sums.size());
-    K_II += 0.5 * at.rock.E_prime * sum.I[1] / static_cast<double>(sums.size());
-    least = std::min(least, sum.J), most = std::max(most, sum.J);
-  }
+void finish_tip(const Scene& scene, const TipGeometry& at, const State& state, const TipSums& sums, Tip& tip) {
+  const auto [least, most] = std::minmax_element(sums.J.begin(), sums.J.end());
+  const double mean = std::accumulate(sums.J.begin(), sums.J.end(), 0.0) / static_cast<double>(sums.J.size());
+  const double K_I = 0.5 * at.rock.E_prime * sums.I[0], K_II = 0.5 * at.rock.E_prime * sums.I[1];
   if (!std::isfinite(mean) || !std::isfinite(K_I) || !std::isfinite(K_II)) {
     throw NumericalFailure(
         "step " + std::to_string(state.step) +
@@ -287,7 +230,7 @@ void finish_tip(const Scene& scene, const TipGeometry& at, const State& state, c
         std::to_string(scene.numerics.courant) + ")");
   }
   tip.J = mean;
-  tip.J_spread = mean != 0.0 ? (most - least) / std::abs(mean) : 0.0;
+  tip.J_spread = mean != 0.0 ? (*most - *least) / std::abs(mean) : 0.0;
   tip.K_I = K_I, tip.K_II = K_II;
   tip.near = at.near, tip.crossed = at.crossed, tip.no_length = at.no_length;
   close_where_faces_touch(scene, state, at, tip);

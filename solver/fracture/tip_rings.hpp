@@ -37,15 +37,17 @@ struct Ring {
 
 using Rings = std::array<Ring, ring_fractions.size()>;
 
-// q and its gradient in the tip's frame at a place.
+// q and its gradient (1/m) at a place, by ring.
 struct Weight {
   double q = 0.0;
   Vec2 grad = Vec2::Zero();
 };
+using RingWeights = std::array<Weight, ring_fractions.size()>;
 
-// q at the nine nodes around a place.
-using NodalWeights = std::array<double, 9>;
+// q at the nine nodes around a place, by ring.
+using RingNodes = std::array<std::array<double, 9>, ring_fractions.size()>;
 
+// In the tip's frame.
 struct AuxiliaryFields {
   Stress s;  // stress for unit K
   Vec2 u_1;  // derivative of displacement along the fracture
@@ -64,15 +66,11 @@ struct TipGeometry {
 /// Frame, rings and rock of a tip. Throws nothing.
 TipGeometry tip_geometry(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Tip& tip);
 
-/// Weights of a ring around a tip (m) at the nodes around the grid's node (i, j). Throws nothing.
-NodalWeights nodal_weights(const Grid& g, const Vec2& tip, const Ring& ring, int i, int j);
+/// q at the nodes around the grid's node (i, j); nothing where no ring reaches them. Throws nothing.
+std::optional<RingNodes> ring_nodes(const Grid& g, const TipGeometry& at, int i, int j);
 
-/// Weight at a place x (m) near that node. Throws nothing.
-Weight weight_at(const Grid& g, const Frame& frame, const NodalWeights& nodes, int i, int j, const Vec2& x);
-
-/// The weights of all rings at the nodes around a bin; false where none weighs it. Throws nothing.
-bool weigh_bin(const Grid& g, const TipGeometry& at, const Bin& bin,
-               std::array<NodalWeights, ring_fractions.size()>& nodes);
+/// q at a place x (m) whose spans are those of that node. Throws nothing.
+RingWeights ring_weights(const Grid& g, const RingNodes& nodes, int i, int j, const Vec2& x);
 
 /// Angle of a place from the tip (rad), in the tip's frame (m), on the side of the fracture that the particle belongs
 /// to: behind a kink the straight extension and the fracture differ, and the side, not the angle, tells the face.
@@ -81,30 +79,14 @@ double angle_at(const Vec2& local, bool above);
 /// Williams' field of mode I (mode = 0) or II (1) for unit K, plane strain, in the tip's frame at r (m), theta (rad).
 AuxiliaryFields williams(const Elasticity& rock, int mode, double r, double theta);
 
-// The place of a point of the fracture among a tip's faces.
-struct FacePlace {
-  std::size_t point = 0, ahead = 0, behind = 0;            // its neighbours towards the tip and away
-  double span = 0.0;                                       // between these (m)
-  double root = 0.0;                                       // 4/E' int dr/sqrt(2 pi r) over its piece (sqrt(m)/Pa)
-  std::array<double, ring_fractions.size()> q{}, dq_ds{};  // weights and their slope towards the tip (1/m)
-};
-
-/// The place of a point of the fracture, if rings around a tip may weigh it. Throws nothing.
-std::optional<FacePlace> face_place(const State& state, const TipGeometry& at, bool at_back, std::size_t point);
-
-// J (N/m) and what the interaction with unit K_I and K_II gives, of one ring.
-struct RingSum {
-  double J = 0.0;
+// J (N/m) of each ring, and the mean over rings of what the interaction with unit K_I and K_II gives.
+struct TipSums {
+  std::array<double, ring_fractions.size()> J{};
   std::array<double, 2> I{};
 };
-using RingSums = std::array<RingSum, ring_fractions.size()>;
-
-/// Adds a face's terms: w . d(t q)/ds of J, and of the interaction integral + t 4/E' q/sqrt(2 pi r) dr, exact for t
-/// constant on a piece. Throws nothing.
-void add_face(const Surface& fracture, const Frame& frame, const FacePlace& place, RingSums& sums);
 
 /// J, K and the next direction of growth from the sums of all rings. Throws NumericalFailure where they are not finite.
-void finish_tip(const Scene& scene, const TipGeometry& at, const State& state, const RingSums& sums, Tip& tip);
+void finish_tip(const Scene& scene, const TipGeometry& at, const State& state, const TipSums& sums, Tip& tip);
 
 /// What a tip turns by in `times` increments at once (rad); in one: tip.turn. Throws nothing.
 double turn_over(const Scene& scene, const Tip& tip, double times);

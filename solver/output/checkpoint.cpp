@@ -15,7 +15,7 @@ namespace strata {
 namespace {
 
 constexpr std::string_view magic = "strata-checkpoint\n";
-constexpr std::uint32_t format_version = 11;  // to be raised with every change of what is saved
+constexpr std::uint32_t format_version = 12;  // to be raised with every change of what is saved
 constexpr std::uint32_t byte_order = 0x01020304;
 
 // Values that are saved as the bytes they are.
@@ -59,8 +59,8 @@ void fields(Archive& ar, Is<FluidLine> auto& fluid) {
 
 template <class Archive>
 void fields(Archive& ar, Is<ReynoldsLine> auto& line) {
-  auto& [length, P, phi, content, w, w_rate, P_rate, rates_known, inlet, inlet_Pa] = line;
-  ar(length, P, phi, content, w, w_rate, P_rate, rates_known, inlet, inlet_Pa);
+  auto& [length, P, phi, content, w, w_rate, rates_known, inlet, inlet_Pa] = line;
+  ar(length, P, phi, content, w, w_rate, rates_known, inlet, inlet_Pa);
 }
 
 template <class Archive>
@@ -78,11 +78,11 @@ void fields(Archive& ar, Is<TipTie> auto& tie) {
 template <class Archive>
 void fields(Archive& ar, Is<Tip> auto& tip) {
   auto& [at_back, growing, stopped_by, K_I, K_II, J, J_spread, ring_m, kink, turn, closed, near, crossed, no_length,
-         last_growth_s, last_growth_Pa, due_s, runs_until_s, J_at_growth, J_spread_at_growth, G_trial, G, G_by_J,
-         criterion, grew_by, has_grown, arrested, reached] = tip;
+         last_growth_s, last_growth_Pa, due_s, runs_until_s, G_trial, G, G_by_J, criterion, grew_by, has_grown,
+         arrested, reached] = tip;
   ar(at_back, growing, stopped_by, K_I, K_II, J, J_spread, ring_m, kink, turn, closed, near, crossed, no_length,
-     last_growth_s, last_growth_Pa, due_s, runs_until_s, J_at_growth, J_spread_at_growth, G_trial, G, G_by_J, criterion,
-     grew_by, has_grown, arrested, reached);
+     last_growth_s, last_growth_Pa, due_s, runs_until_s, G_trial, G, G_by_J, criterion, grew_by, has_grown, arrested,
+     reached);
 }
 
 template <class Archive>

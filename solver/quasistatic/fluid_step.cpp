@@ -11,12 +11,6 @@ namespace strata {
 
 namespace {
 
-// Pressure of the fracture's points from that of its vertices.
-void pass_to_points(State& state) {
-  auto& points = state.fracture().points;
-  for (std::size_t k = 0; k < points.size(); ++k) points[k].P = 0.5 * (state.fluid.P[k] + state.fluid.P[k + 1]);
-}
-
 void set_point_pressures(const Eigen::VectorXd& P, State& state) {
   auto& points = state.fracture().points;
   for (std::size_t k = 0; k < points.size(); ++k) points[k].P = P[static_cast<Eigen::Index>(k)];
@@ -50,7 +44,7 @@ void diffuse_in_steps(const Scene& scene, const State& state, const std::vector<
   const int steps = std::clamp(static_cast<int>(std::ceil(std::min(dt / shortest, 1.0 * most))), 1, most);
   const double step = dt / steps;
   const auto inlet_Pa = [&](int k) { return fluid.start_Pa + fluid.rate_Pa_s * (time + k * step); };
-  Diffusion(channel, mobility, fluid.time_rule, step).steps(steps, inlet_Pa, line.P);
+  diffuse(channel, mobility, fluid.time_rule, step, steps, inlet_Pa, line.P);
   line.inlet_Pa = inlet_Pa(steps);
 }
 
@@ -133,7 +127,7 @@ FluidStep couple(const Scene& scene, double dt, State& state, QuasistaticModel& 
       Eigen::Map<const Eigen::VectorXd>(state.reynolds.P.data(), static_cast<Eigen::Index>(state.reynolds.P.size())),
       state);
   state.monitors.volume_balance = state.balance.closure();
-  return {true, report.estimated ? report.error_w / allowed : 0.0, ""};
+  return {true, report.error_w / allowed, ""};
 }
 
 }  // namespace
@@ -193,15 +187,13 @@ FluidStep advance_fluid(const Scene& scene, double dt, State& state, Quasistatic
     return {};
   }
   if (scene.fluid.law == Fluid::Law::reynolds) return couple(scene, dt, state, model);
-  if (dt > 0.0) {
-    if (scene.fluid.law == Fluid::Law::paper)
-      diffuse_in_steps(scene, state, openings_midway(scene, dt, state, model), state.time, dt, state.fluid);
-    state.dt = dt;
-    if (scene.fluid.law == Fluid::Law::uniform) advance_pressure(scene, state);
-    state.time += dt;
-  } else if (scene.fluid.law == Fluid::Law::uniform) {
+  if (scene.fluid.law == Fluid::Law::uniform) {
+    if (dt > 0.0) state.fluid.inlet_Pa = scene.fluid.start_Pa + scene.fluid.rate_Pa_s * (state.time + dt);
     std::fill(state.fluid.P.begin(), state.fluid.P.end(), state.fluid.inlet_Pa);
+  } else if (dt > 0.0) {
+    diffuse_in_steps(scene, state, openings_midway(scene, dt, state, model), state.time, dt, state.fluid);
   }
+  state.time += dt;
   pass_to_points(state);
   return {};
 }

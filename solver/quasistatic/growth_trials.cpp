@@ -49,7 +49,7 @@ double energy_of(const QuasistaticModel& model, const Equilibrium& equilibrium) 
 }  // namespace
 
 bool may_grow(const Scene& scene, const State& state, const Tip& tip) {
-  return scene.fracture->growth != Fracture::Growth::none && tip.growing && !stopped_by_edge(scene, state, tip);
+  return scene.fracture->growth != Fracture::Growth::none && tip.growing && what_stops(scene, state, tip).empty();
 }
 
 std::vector<GrowthTrial> make_trials(const Scene& scene, const std::vector<Elasticity>& rocks, State& state,

@@ -9,7 +9,6 @@
 #include "flow/flow_monitors.hpp"
 #include "flow/paper_flow.hpp"
 #include "fracture/growth.hpp"
-#include "fracture/j_integral.hpp"
 #include "interfaces/failure.hpp"
 #include "interfaces/monitors.hpp"
 #include "quasistatic/fluid_step.hpp"
@@ -79,20 +78,11 @@ double margin_of(const Scene& scene, const std::vector<Elasticity>& rocks, State
   return std::max(run.tip_margin, run.model.bonds.worst);
 }
 
-void look_at_tips(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, const Quasistatic& run) {
-  if (scene.body.acceleration_m_s2) {
-    measure_tips(scene, rocks, state);
-  } else {
-    measure_tips(scene, run.rules, state);
-  }
-}
-
 // Equilibrium at the state's pressures, its fields, and how near the next event is.
 void equilibrate(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
   run.equilibrium = find_equilibrium(scene, state.time, state, run.model);
   set_fields(scene, state, run.model, run.equilibrium);
-  if (state.dt <= 0.0) state.dt = 1.0;  // J's inertia divides by it; there is none
-  look_at_tips(scene, rocks, state, run);
+  measure_tips(scene, rocks, run.rules, state);
   if (!trials_hold(scene, state, run.trials))
     run.trials = make_trials(scene, rocks, state, run.model, std::move(run.trials));
   run.margin = margin_of(scene, rocks, state, run);
@@ -204,7 +194,7 @@ void measure_release(const Scene& scene, const std::vector<Elasticity>& rocks, d
                      const std::vector<Growing>& growing, State& state, Quasistatic& run) {
   run.equilibrium = find_equilibrium(scene, state.time, state, run.model);
   set_fields(scene, state, run.model, run.equilibrium);
-  look_at_tips(scene, rocks, state, run);
+  measure_tips(scene, rocks, run.rules, state);
   const double energy = run.equilibrium.energy + dissipated_by_friction(run.model, run.equilibrium);
   double length = 0.0;
   for (const Growing& g : growing) length += g.increment;

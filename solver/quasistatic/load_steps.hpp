@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "quasistatic/growth_trials.hpp"
-#include "fracture/tip_rules.hpp"
+#include "fracture/j_integral.hpp"
 #include "quasistatic/model.hpp"
 #include "state/elasticity.hpp"
 #include "state/state.hpp"
@@ -15,7 +15,7 @@ namespace strata {
 struct Quasistatic {
   QuasistaticModel model;
   Equilibrium equilibrium;
-  std::vector<TipRule> rules;       // of all tips; none under a body force
+  std::vector<TipRule> rules;       // of all tips
   std::vector<GrowthTrial> trials;  // of the tips that energy decides about
   double margin = 0.0;              // the nearest event: it happens at 1
   double tip_margin = 0.0;          // the nearest growth

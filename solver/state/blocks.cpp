@@ -1,8 +1,8 @@
 #include "state/blocks.hpp"
 
 #include <algorithm>
+#include <compare>
 #include <numeric>
-#include <tuple>
 
 #include "state/lanes.hpp"
 
@@ -13,7 +13,7 @@ namespace {
 struct Numbering {
   SideWord key;
   int node, record;
-  auto order() const { return std::tie(key, node); }
+  auto operator<=>(const Numbering&) const = default;
 };
 
 bool beside(const Bin& bin, const Bin& next) {
@@ -111,7 +111,7 @@ void number_along_rows(Copies& copies, std::vector<Bin>& bins) {
       further.push_back({cut.keys[k], copies.node_of_record[static_cast<std::size_t>(cut.records[k])], cut.records[k]});
     }
   }
-  std::sort(further.begin(), further.end(), [](const auto& a, const auto& b) { return a.order() < b.order(); });
+  std::ranges::sort(further);
   std::vector<int> number(copies.node_of_record.size());
   std::iota(number.begin(), number.end(), 0);
   for (std::size_t k = 0; k < further.size(); ++k) {

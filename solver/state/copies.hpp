@@ -44,6 +44,16 @@ struct alignas(line_bytes) Bin {
   int i = 0, j = 0;         // column and row of the middle node of the 3 x 3 stencil
   int like = -1;  // the first of particles side by side that have the mass, area and sides of all its block's; -1: none
   std::array<int, 9> record{};  // records of the stencil's nodes, row by row from the lower left
+
+  // for (const std::size_t q : bin) goes through its particles.
+  struct Iterator {
+    int at, stride;
+    std::size_t operator*() const { return static_cast<std::size_t>(at); }
+    bool operator!=(const Iterator& end) const { return at < end.at; }
+    void operator++() { at += stride; }
+  };
+  Iterator begin() const { return {first, stride}; }
+  Iterator end() const { return {last, stride}; }
 };
 static_assert(sizeof(Bin) == line_bytes);
 
@@ -80,11 +90,6 @@ struct SurfaceStencil {
   std::array<int, 9> plus{}, minus{};
   std::array<double, 9> N{};
 };
-
-/// Whether a record is a copy of a cut node.
-inline bool is_cut(const Copies& copies, int record) {
-  return copies.cut_of_node[static_cast<std::size_t>(copies.node_of_record[static_cast<std::size_t>(record)])] >= 0;
-}
 
 /// The copy of a node that a place with these sides belongs to: index of its record, or -1 where no such copy exists.
 int record_of(const Copies& copies, int node, SideWord sides);

@@ -29,10 +29,6 @@ Elasticity make_elasticity(const Rock& rock);
 /// The same for all rocks of a scene, in their order.
 std::vector<Elasticity> make_elasticities(const Scene& scene);
 
-// How far ahead of a tip its rock is looked up (cells). A tip that stands on an interface follows the rock, by about a
-// millimetre per MPa, while the layers' borders stay: the rock ahead must not be taken for the one behind.
-constexpr double ahead_cells = 0.1;
-
 /// Index of the rock of the layer at a place (m).
 std::size_t rock_at(const Scene& scene, const Vec2& x);
 

@@ -21,8 +21,7 @@ struct ReynoldsLine {
   std::vector<double> phi;      // filled part of the opening
   std::vector<double> content;  // theta w A: volume of the fluid at the cavitation pressure (m^2)
   std::vector<double> w;        // opening at the end of the last step (m)
-  std::vector<double> w_rate;   // (m/s) and
-  std::vector<double> P_rate;   // (Pa/s) over the last step, for the estimate of its error
+  std::vector<double> w_rate;   // over the last step (m/s), for the estimate of its error
   bool rates_known = false;     // false before the first step and after growth
   std::size_t inlet = 0;        // vertex at which the fluid enters
   double inlet_Pa = 0.0;        // pressure there

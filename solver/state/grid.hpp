@@ -9,6 +9,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -29,6 +30,14 @@ struct Grid {
   int node(int i, int j) const { return (j + 1) * columns() + i + 1; }
   int column(int node) const { return node % columns() - 1; }
   int row(int node) const { return node / columns() - 1; }
+
+  // The nodes of columns i - 1 ... i + 1 and rows j - 1 ... j + 1, row by row from the lower left.
+  std::array<int, 9> around(int i, int j) const {
+    std::array<int, 9> nodes{};
+    for (std::size_t n = 0; n < 9; ++n)
+      nodes[n] = node(i - 1 + static_cast<int>(n % 3), j - 1 + static_cast<int>(n / 3));
+    return nodes;
+  }
 
   // Coordinate (m) of the nodes of column i (-1 ... nx + 1) or row j.
   double x(int i) const { return node_at(x_knots, i); }

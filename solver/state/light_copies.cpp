@@ -47,8 +47,7 @@ std::vector<double> worth_of_particles(const Scene& scene, const State& state, c
     const Bin& bin = state.bins[b];
     if (std::none_of(bin.record.begin(), bin.record.end(), [&](int r) { return reached[master_of(state, r)] >= 0.0; }))
       continue;
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
-         q += static_cast<std::size_t>(bin.stride)) {
+    for (const std::size_t q : bin) {
       const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
       for (std::size_t n = 0; n < 9; ++n) worth[master_of(state, bin.record[n])] += p.V[q] * slope(g, n);
     }
@@ -83,46 +82,38 @@ bool larger(const Corner& a, const Corner& b) {
 
 using Corners = std::vector<Corner>;  // of a cut node
 
-// By cut node, whether it has corners that a leaning fracture makes, and by node whether one of those is among the
-// 3 x 3 around it.
-struct Leaning {
-  std::vector<char> cut, near;
-};
-
-Leaning leaning_corners(const State& state) {
-  const Grid& g = state.grid;
-  Leaning leaning{std::vector<char>(state.copies.cut.size(), 0), {}};
-  leaning.near.assign(static_cast<std::size_t>(g.nodes()), 0);
-  for (int node = 0; node < g.nodes(); ++node) {
+// By cut node, whether it has corners that a leaning fracture makes.
+std::vector<char> leaning_corners(const State& state) {
+  std::vector<char> leaning(state.copies.cut.size(), 0);
+  for (int node = 0; node < state.grid.nodes(); ++node) {
     const int c = state.copies.cut_of_node[static_cast<std::size_t>(node)];
-    if (c < 0 || !has_corners(state.copies.cut[static_cast<std::size_t>(c)]) || !leans_at(state, node)) continue;
-    leaning.cut[static_cast<std::size_t>(c)] = 1;
-    for (int j = std::max(g.row(node) - 1, 0); j <= std::min(g.row(node) + 1, g.ny); ++j) {
-      for (int i = std::max(g.column(node) - 1, 0); i <= std::min(g.column(node) + 1, g.nx); ++i)
-        leaning.near[static_cast<std::size_t>(g.node(i, j))] = 1;
-    }
+    if (c >= 0 && has_corners(state.copies.cut[static_cast<std::size_t>(c)]) && leans_at(state, node))
+      leaning[static_cast<std::size_t>(c)] = 1;
   }
   return leaning;
 }
 
 // sum_p V_p |grad N_i| of each corner of each cut node that has some.
-std::vector<Corners> corners_of(const Scene& scene, const State& state, const Leaning& leaning) {
+std::vector<Corners> corners_of(const Scene& scene, const State& state, const std::vector<char>& leaning) {
   std::vector<Corners> corners(state.copies.cut.size());
   const Particles& p = state.particles;
   const Grid& grid = state.grid;
   for (std::size_t q = 0; q < p.size(); ++q) {
     const int i = grid.column_at(p.x[q]), j = grid.row_at(p.y[q]);
-    if (i < 0 || i > grid.nx || j < 0 || j > grid.ny || leaning.near[static_cast<std::size_t>(grid.node(i, j))] == 0)
-      continue;
+    if (i < 0 || i > grid.nx || j < 0 || j > grid.ny) continue;
+    std::array<int, 9> cut = grid.around(i, j);
+    for (int& c : cut) {
+      c = state.copies.cut_of_node[static_cast<std::size_t>(c)];
+      if (c >= 0 && leaning[static_cast<std::size_t>(c)] == 0) c = -1;
+    }
+    if (std::ranges::count(cut, -1) == 9) continue;
     const Gradients g = gradients_at(scene, grid, i, j, {p.x[q], p.y[q]}, p.half(q));
     for (std::size_t n = 0; n < 9; ++n) {
-      const int node = grid.node(i + static_cast<int>(n % 3) - 1, j + static_cast<int>(n / 3) - 1);
-      const int c = state.copies.cut_of_node[static_cast<std::size_t>(node)];
-      if (c < 0 || leaning.cut[static_cast<std::size_t>(c)] == 0) continue;
-      const SideWord key = state.copies.cut[static_cast<std::size_t>(c)].key(p.sides[q]);
-      Corners& of_node = corners[static_cast<std::size_t>(c)];
-      auto at = std::find_if(of_node.begin(), of_node.end(), [key](const Corner& corner) { return corner.key == key; });
-      if (at == of_node.end()) at = of_node.insert(of_node.end(), Corner{key});
+      if (cut[n] < 0) continue;
+      const auto c = static_cast<std::size_t>(cut[n]);
+      const SideWord key = state.copies.cut[c].key(p.sides[q]);
+      auto at = std::ranges::find(corners[c], key, &Corner::key);
+      if (at == corners[c].end()) at = corners[c].insert(at, Corner{key});
       at->worth += p.V[q] * slope(g, n);
     }
   }
@@ -133,8 +124,8 @@ std::vector<Corners> corners_of(const Scene& scene, const State& state, const Le
 
 void join_corners(const Scene& scene, State& state) {
   auto& cuts = state.copies.cut;
-  const Leaning leaning = leaning_corners(state);
-  if (std::ranges::count(leaning.cut, 1) == 0) return;
+  const std::vector<char> leaning = leaning_corners(state);
+  if (std::ranges::count(leaning, 1) == 0) return;
   const std::vector<Corners> corners = corners_of(scene, state, leaning);
   for (std::size_t c = 0; c < cuts.size(); ++c) {
     const Corners& own = corners[c];

@@ -28,21 +28,6 @@ std::vector<GridPoint> points_along(const std::vector<double>& t, int n, double 
   return points;
 }
 
-// node(i) and span(i) for i from -1 to n + 1; the outermost spans have no other beside them, and no place is in them.
-template <class Node, class Length>
-SpanTable make_table(int n, Node node, Length span) {
-  SpanTable table;
-  const auto share = [&](int i, int beside) {
-    return beside < -1 || beside > n + 1 ? 0.5 : 1.0 / (1.0 + span(beside) / span(i));
-  };
-  for (int i = -1; i <= n + 1; ++i) {
-    table.node.push_back(node(i));
-    table.per_length.push_back(1.0 / span(i));
-    table.share_before.push_back(share(i, i - 1)), table.share_after.push_back(share(i, i + 1));
-  }
-  return table;
-}
-
 }  // namespace
 
 Grid make_grid(const Scene& scene) {
@@ -63,14 +48,20 @@ std::vector<GridPoint> points_along_y(const Grid& grid, int across) {
   return points_along(grid.y_knots, grid.ny, grid.h, across);
 }
 
-SpanTable spans_along_x(const Grid& grid) {
-  return make_table(
-      grid.nx, [&](int i) { return grid.x(i); }, [&](int i) { return grid.span_x(i); });
-}
-
-SpanTable spans_along_y(const Grid& grid) {
-  return make_table(
-      grid.ny, [&](int j) { return grid.y(j); }, [&](int j) { return grid.span_y(j); });
+SpanTable spans_along(const Grid& grid, Axis axis) {
+  const int n = axis == Axis::x ? grid.nx : grid.ny;
+  const auto span = [&](int i) { return axis == Axis::x ? grid.span_x(i) : grid.span_y(i); };
+  // The outermost spans have no other beside them, and no place is in them.
+  const auto share = [&](int i, int beside) {
+    return beside < -1 || beside > n + 1 ? 0.5 : 1.0 / (1.0 + span(beside) / span(i));
+  };
+  SpanTable table;
+  for (int i = -1; i <= n + 1; ++i) {
+    table.node.push_back(axis == Axis::x ? grid.x(i) : grid.y(i));
+    table.per_length.push_back(1.0 / span(i));
+    table.share_before.push_back(share(i, i - 1)), table.share_after.push_back(share(i, i + 1));
+  }
+  return table;
 }
 
 }  // namespace strata

@@ -26,10 +26,8 @@ std::vector<GridPoint> points_along_x(const Grid& grid, int across);
 /// The same along y.
 std::vector<GridPoint> points_along_y(const Grid& grid, int across);
 
-/// The spans of the grid's columns. Throws nothing.
-SpanTable spans_along_x(const Grid& grid);
-
-/// And of its rows.
-SpanTable spans_along_y(const Grid& grid);
+/// The spans of the grid's columns (x) or rows (y). Throws nothing.
+enum class Axis { x, y };
+SpanTable spans_along(const Grid& grid, Axis axis);
 
 }  // namespace strata

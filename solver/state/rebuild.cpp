@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <numeric>
 #include <tuple>
 #include <type_traits>
@@ -37,34 +38,39 @@ bool segment_meets_box(const Vec2& a, const Vec2& b, const Vec2& centre, double 
   return from < to;
 }
 
-bool has_tip(const State& state, bool at_back) {
-  return std::any_of(state.tips.begin(), state.tips.end(), [&](const Tip& tip) { return tip.at_back == at_back; });
+// Calls visit(index of node, its place) for the nodes around which the segment from a to b meets a square of side
+// 2 half, less than two cells.
+template <class Visit>
+void for_each_node_near(const Grid& g, const Vec2& a, const Vec2& b, double half, Visit visit) {
+  const Vec2 low = a.cwiseMin(b), high = a.cwiseMax(b);
+  const int i0 = std::max(-1, g.column_at(low.x()) - 2), i1 = std::min(g.nx + 1, g.column_at(high.x()) + 2);
+  const int j0 = std::max(-1, g.row_at(low.y()) - 2), j1 = std::min(g.ny + 1, g.row_at(high.y()) + 2);
+  for (int j = j0; j <= j1; ++j) {
+    for (int i = i0; i <= i1; ++i) {
+      const Vec2 x{g.x(i), g.y(j)};
+      if (segment_meets_box(a, b, x, half)) visit(static_cast<std::size_t>(g.node(i, j)), x);
+    }
+  }
 }
 
-// The tip rule: the fracture splits a node within reach whose projection lies strictly behind the tip. Reach is a
-// number of cells, since all cells beside a surface are of h across it.
+// How far from a surface nodes are split (m): a number of cells, since all cells beside a surface are of h across it.
+double split_reach(const Scene& scene, const Grid& g) {
+  return (support_in_cells(scene) - slack_cells) * g.h;
+}
+
+// The tip rule: the fracture splits a node within reach whose projection lies strictly behind the tip.
 void mark_fracture(const Scene& scene, const State& state, std::vector<SideWord>& mask) {
   const Surface& s = state.fracture();
-  const Grid& g = state.grid;
-  const double half = (support_in_cells(scene) - slack_cells) * g.h;
-  const bool front = has_tip(state, false), back = has_tip(state, true);
+  const double reach = extension(state.grid), slack = slack_cells * state.grid.h;
+  double from = -HUGE_VAL, to = HUGE_VAL;
+  for (const Tip& tip : state.tips) (tip.at_back ? to : from) = tip.at_back ? s.length() - slack : slack;
   for (std::size_t k = 0; k + 1 < s.vertices.size(); ++k) {
-    const Vec2 a = s.vertices[k].x, b = s.vertices[k + 1].x;
-    const int i0 = std::max(-1, g.column_at(std::min(a.x(), b.x())) - 2),
-              i1 = std::min(g.nx + 1, g.column_at(std::max(a.x(), b.x())) + 2);
-    const int j0 = std::max(-1, g.row_at(std::min(a.y(), b.y())) - 2),
-              j1 = std::min(g.ny + 1, g.row_at(std::max(a.y(), b.y())) + 2);
-    for (int j = j0; j <= j1; ++j) {
-      for (int i = i0; i <= i1; ++i) {
-        const Vec2 x{g.x(i), g.y(j)};
-        auto& word = mask[static_cast<std::size_t>(g.node(i, j))];
-        if ((word & s.mask()) != 0 || !segment_meets_box(a, b, x, half)) continue;
-        const double arc = project(s, x, extension(g)).arc;
-        const bool behind_back = !back || arc < s.length() - slack_cells * g.h;
-        const bool behind_front = !front || arc > slack_cells * g.h;
-        if (behind_back && behind_front) word |= s.mask();
-      }
-    }
+    for_each_node_near(state.grid, s.vertices[k].x, s.vertices[k + 1].x, split_reach(scene, state.grid),
+                       [&](std::size_t node, const Vec2& x) {
+                         if ((mask[node] & s.mask()) != 0) return;
+                         const double arc = project(s, x, reach).arc;
+                         if (arc > from && arc < to) mask[node] |= s.mask();
+                       });
   }
 }
 
@@ -77,7 +83,7 @@ void mark_interface(const Scene& scene, const State& state, const Surface& s, st
   for (const SurfacePoint& point : s.points) {
     if (point.split) split[static_cast<std::size_t>(point.column)] = 1;
   }
-  const double half = (support_in_cells(scene) - slack_cells) * g.h;
+  const double half = split_reach(scene, g);
   const double at = along_x ? s.vertices[0].x.y() : s.vertices[0].x.x();
   const int middle = along_x ? g.row_at(at) : g.column_at(at);
   const int last = std::min(middle + 2, (along_x ? g.ny : g.nx) + 1);
@@ -92,26 +98,22 @@ void mark_interface(const Scene& scene, const State& state, const Surface& s, st
   }
 }
 
-struct Mirrors {
-  bool sides, bottom, top;
-};
-
-Mirrors mirrored_edges(const Scene& scene) {
-  return {scene.domain.sides != Edge::traction, scene.domain.bottom != Edge::traction,
-          scene.domain.top != Edge::traction};
-}
-
-// The node that a ghost outside a symmetric or fixed edge mirrors, across x first; -1 if `node` is no such ghost.
-int mirror_of(const Grid& g, const Mirrors& m, int node, bool across_x) {
-  const int i = g.column(node), j = g.row(node);
-  if (across_x) {
-    if (m.sides && i < 0) return g.node(1, j);
-    if (m.sides && i > g.nx) return g.node(g.nx - 1, j);
-  } else {
-    if (m.bottom && j < 0) return g.node(i, 1);
-    if (m.top && j > g.ny) return g.node(i, g.ny - 1);
-  }
-  return -1;
+// The node inside that a ghost outside symmetric or fixed edges mirrors, any other node itself, and what the edges make
+// of its displacement: -1 mirrored, 0 held.
+Master mirror_of(const Scene& scene, const Grid& g, int node) {
+  const auto mirrors = [](Edge edge) { return edge != Edge::traction; };
+  const auto fold = [](bool low, bool high, int n, int& k) {
+    const int at = k;
+    if (low && k < 0) k = 1;
+    if (high && k > n) k = n - 1;
+    if ((low && k == 0) || (high && k == n)) return 0.0;
+    return k == at ? 1.0 : -1.0;
+  };
+  int i = g.column(node), j = g.row(node);
+  const bool sides = mirrors(scene.domain.sides);
+  const double x = fold(sides, sides, g.nx, i);
+  const double y = fold(mirrors(scene.domain.bottom), mirrors(scene.domain.top), g.ny, j);
+  return {g.node(i, j), x, y};
 }
 
 // What splits each node, and which of them the fracture splits ahead of a tip: the number of that tip + 1.
@@ -136,22 +138,15 @@ std::vector<SideWord> entered_sides(const State& state, SideWord interfaces, con
 // through, by the fracture's straight extension where its copies belong to nodes that are not behind the tip.
 void mark_ahead(const Scene& scene, const State& state, NodeMasks& masks) {
   const Surface& s = state.fracture();
-  const Grid& g = state.grid;
-  const double half = (support_in_cells(scene) - slack_cells) * g.h;
   for (std::size_t t = 0; t < state.tips.size(); ++t) {
     const Vec2 at = tip_position(state, state.tips[t]);
-    const Vec2 to = at + extension(g) * tip_direction(s, state.tips[t].at_back);
-    const int i = g.column_at(at.x()), j = g.row_at(at.y()), reach = static_cast<int>(extension(g) / g.h) + 2;
-    for (int b = std::max(j - reach, -1); b <= std::min(j + reach, g.ny + 1); ++b) {
-      for (int a = std::max(i - reach, -1); a <= std::min(i + reach, g.nx + 1); ++a) {
-        const auto node = static_cast<std::size_t>(g.node(a, b));
-        SideWord& word = masks.word[node];
-        if (word == 0 || (word & s.mask()) != 0 || !segment_meets_box(at, to, {g.x(a), g.y(b)}, half)) continue;
-        if (entered_sides(state, word, &state.tips[t]).empty()) continue;
-        word |= s.mask();
-        masks.ahead[node] = static_cast<char>(t + 1);
-      }
-    }
+    const Vec2 to = at + extension(state.grid) * tip_direction(s, state.tips[t].at_back);
+    for_each_node_near(state.grid, at, to, split_reach(scene, state.grid), [&](std::size_t node, const Vec2&) {
+      SideWord& word = masks.word[node];
+      if (word == 0 || (word & s.mask()) != 0 || entered_sides(state, word, &state.tips[t]).empty()) return;
+      word |= s.mask();
+      masks.ahead[node] = static_cast<char>(t + 1);
+    });
   }
 }
 
@@ -163,14 +158,9 @@ NodeMasks node_masks(const Scene& scene, const State& state) {
     if (s.kind == Surface::Kind::interface) mark_interface(scene, state, s, masks.word);
   }
   if (state.has_fracture) mark_ahead(scene, state, masks);
-  const Mirrors mirrors = mirrored_edges(scene);
-  for (const bool across_x : {true, false}) {
-    for (int node = 0; node < state.grid.nodes(); ++node) {
-      const int inside = mirror_of(state.grid, mirrors, node, across_x);
-      if (inside < 0) continue;
-      const auto ghost = static_cast<std::size_t>(node), image = static_cast<std::size_t>(inside);
-      masks.word[ghost] = masks.word[image], masks.ahead[ghost] = masks.ahead[image];
-    }
+  for (std::size_t node = 0; node < nodes; ++node) {
+    const auto image = static_cast<std::size_t>(mirror_of(scene, state.grid, static_cast<int>(node)).record);
+    masks.word[node] = masks.word[image], masks.ahead[node] = masks.ahead[image];
   }
   return masks;
 }
@@ -209,20 +199,12 @@ int record_for(Copies& copies, int node, SideWord sides) {
   return record;
 }
 
-std::array<int, 9> stencil_nodes(const Grid& g, int i, int j) {
-  std::array<int, 9> nodes{};
-  for (int b = 0; b < 3; ++b) {
-    for (int a = 0; a < 3; ++a) nodes[static_cast<std::size_t>(3 * b + a)] = g.node(i + a - 1, j + b - 1);
-  }
-  return nodes;
-}
-
 struct SortKey {
   int j, i;
   SideWord sides;
   std::int32_t id;
   std::size_t from;
-  auto order() const { return std::tie(j, i, sides, id); }
+  auto operator<=>(const SortKey&) const = default;
 };
 
 // Which surfaces split any node of the stencil around a node.
@@ -254,19 +236,18 @@ std::vector<SortKey> sort_keys(const State& state, const std::vector<SideWord>& 
 // Keys in their order. Particles stay in or near their cells, so that most often nothing is to be done, and a count of
 // each cell's tells where those of another begin.
 std::vector<SortKey> sorted(const Grid& g, std::vector<SortKey> keys) {
-  const auto before = [](const SortKey& a, const SortKey& b) { return a.order() < b.order(); };
-  if (std::is_sorted(keys.begin(), keys.end(), before)) return keys;
+  if (std::ranges::is_sorted(keys)) return keys;
   const auto cell = [&](const SortKey& key) { return static_cast<std::size_t>(key.j * (g.nx + 1) + key.i); };
-  std::vector<std::size_t> first(static_cast<std::size_t>((g.nx + 1) * (g.ny + 1)) + 1, 0);
-  for (const SortKey& key : keys) ++first[cell(key) + 1];
-  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::size_t> next(static_cast<std::size_t>((g.nx + 1) * (g.ny + 1)) + 1, 0);
+  for (const SortKey& key : keys) ++next[cell(key) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
   std::vector<SortKey> out(keys.size());
-  std::vector<std::size_t> next(first.begin(), first.end() - 1);
   for (const SortKey& key : keys) out[next[cell(key)]++] = key;
-  for (std::size_t c = 0; c < next.size(); ++c) {
-    const auto from = out.begin() + static_cast<std::ptrdiff_t>(first[c]),
-               to = out.begin() + static_cast<std::ptrdiff_t>(first[c + 1]);
-    if (!std::is_sorted(from, to, before)) std::sort(from, to, before);
+  auto from = out.begin();
+  for (std::size_t c = 0; c + 1 < next.size(); ++c) {  // next is now where the cell's keys end
+    const auto to = out.begin() + static_cast<std::ptrdiff_t>(next[c]);
+    if (!std::is_sorted(from, to)) std::sort(from, to);
+    from = to;
   }
   return out;
 }
@@ -293,7 +274,7 @@ void make_bins(State& state, const std::vector<SideWord>& reach, const std::vect
       Bin bin;
       bin.first = static_cast<int>(k);
       bin.i = keys[k].i, bin.j = keys[k].j;
-      bin.record = stencil_nodes(state.grid, bin.i, bin.j);
+      bin.record = state.grid.around(bin.i, bin.j);
       if (reach[static_cast<std::size_t>(state.grid.node(bin.i, bin.j))] != 0) {
         for (int& record : bin.record) record = record_for(state.copies, record, keys[k].sides);
       }
@@ -303,22 +284,15 @@ void make_bins(State& state, const std::vector<SideWord>& reach, const std::vect
   }
 }
 
-void find_cut_bins(State& state, const std::vector<SideWord>& reach) {
+void list_bins(const std::vector<SideWord>& reach, State& state) {
   state.cut_bins.clear();
-  for (std::size_t b = 0; b < state.bins.size(); ++b) {
-    if (reach[static_cast<std::size_t>(state.grid.node(state.bins[b].i, state.bins[b].j))] != 0)
-      state.cut_bins.push_back(b);
-  }
-}
-
-void make_strips(State& state) {
   state.strips.clear();
-  for (int j = 0, b = 0; j <= state.grid.ny; j += rows_per_strip) {
-    Strip strip{b, b};
-    while (b < static_cast<int>(state.bins.size()) && state.bins[static_cast<std::size_t>(b)].j < j + rows_per_strip)
-      ++b;
-    strip.last = b;
-    state.strips.push_back(strip);
+  for (std::size_t b = 0; b < state.bins.size(); ++b) {
+    const Bin& bin = state.bins[b];
+    if (reach[static_cast<std::size_t>(state.grid.node(bin.i, bin.j))] != 0) state.cut_bins.push_back(b);
+    const auto strip = static_cast<std::size_t>(bin.j / rows_per_strip), at = b;
+    while (state.strips.size() <= strip) state.strips.push_back({static_cast<int>(at), static_cast<int>(at)});
+    state.strips.back().last = static_cast<int>(b) + 1;
   }
 }
 
@@ -334,32 +308,20 @@ bool key_of(const Copies& copies, int record, SideWord& key) {
   return true;
 }
 
-Master master_of(const Mirrors& edges, State& state, int record) {
-  const Grid& g = state.grid;
-  Master master{record, 1.0, 1.0};
-  int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
+Master master_of(const Scene& scene, State& state, int record) {
+  const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
   SideWord key = 0;
-  if (!key_of(state.copies, record, key)) return master;
-  for (const bool across_x : {true, false}) {
-    const int inside = mirror_of(g, edges, node, across_x);
-    if (inside < 0) continue;
-    node = inside;
-    (across_x ? master.x : master.y) *= -1.0;
-  }
-  if (node != state.copies.node_of_record[static_cast<std::size_t>(record)])
-    master.record = record_for(state.copies, node, key);
-  const int i = g.column(node), j = g.row(node);
-  if (edges.sides && (i == 0 || i == g.nx)) master.x = 0.0;
-  if ((edges.bottom && j == 0) || (edges.top && j == g.ny)) master.y = 0.0;
+  if (!key_of(state.copies, record, key)) return {record};
+  Master master = mirror_of(scene, state.grid, node);
+  master.record = master.record == node ? record : record_for(state.copies, master.record, key);
   return master;
 }
 
 void make_masters(const Scene& scene, State& state) {
   state.masters.clear();
   state.tied.clear();
-  const Mirrors edges = mirrored_edges(scene);
   for (int record = 0; record < state.copies.records(); ++record) {
-    const Master master = master_of(edges, state, record);  // may add the record it mirrors
+    const Master master = master_of(scene, state, record);  // may add the record it mirrors
     state.masters.push_back(master);
     if (master.record != record || master.x == 0.0 || master.y == 0.0) state.tied.push_back(record);
   }
@@ -379,7 +341,7 @@ SurfaceStencil stencil_at(const State& state, const Surface& s, const SurfacePoi
   const Grid& g = state.grid;
   stencil.i = std::clamp(g.column_at(point.x.x()), 0, g.nx);
   stencil.j = std::clamp(g.row_at(point.x.y()), 0, g.ny);
-  const auto nodes = stencil_nodes(g, stencil.i, stencil.j);
+  const auto nodes = g.around(stencil.i, stencil.j);
   for (std::size_t n = 0; n < 9; ++n) {
     const int minus = record_of(state.copies, nodes[n], point.sides);
     const int plus = record_of(state.copies, nodes[n], point.sides | s.mask());
@@ -394,26 +356,24 @@ void make_surface_stencils(State& state) {
   state.point_stencils.clear();
   state.vertex_stencils.clear();
   for (const Surface& s : state.surfaces) {
-    auto& points = state.point_stencils.emplace_back();
-    for (const SurfacePoint& point : s.points) points.push_back(stencil_at(state, s, point));
-    auto& vertices = state.vertex_stencils.emplace_back();
-    for (const SurfacePoint& vertex : s.vertices) vertices.push_back(stencil_at(state, s, vertex));
+    for (const auto& [places, stencils] :
+         {std::pair{&s.points, &state.point_stencils}, {&s.vertices, &state.vertex_stencils}}) {
+      auto& of_surface = stencils->emplace_back();
+      for (const SurfacePoint& place : *places) of_surface.push_back(stencil_at(state, s, place));
+    }
   }
 }
 
 }  // namespace
 
 SideWord sides_ahead(const State& state, const Tip& tip) {
-  const Surface& fracture = state.fracture();
-  const Vec2 step = ahead_cells * state.grid.h * tip_direction(fracture, tip.at_back);
-  return sides_at(state, tip_position(state, tip) + step, fracture.bit);
+  return sides_at(state, place_ahead(state, tip), state.fracture().bit);
 }
 
 std::vector<std::size_t> bins_of_particles(const State& state) {
   std::vector<std::size_t> of(state.particles.size());
   for (std::size_t b = 0; b < state.bins.size(); ++b) {
-    const Bin& bin = state.bins[b];
-    for (int q = bin.first; q < bin.last; q += bin.stride) of[static_cast<std::size_t>(q)] = b;
+    for (const std::size_t q : state.bins[b]) of[q] = b;
   }
   return of;
 }
@@ -445,12 +405,11 @@ void rebuild_copies(const Scene& scene, State& state) {
   }
   sort_particles(state.particles, order);
   if (scene.numerics.in_lanes()) find_like(state.particles, state.bins);
-  find_cut_bins(state, reach);
-  make_strips(state);
+  list_bins(reach, state);
   make_masters(scene, state);
   make_surface_stencils(state);
   join_light_copies(scene, state);
-  state.x_spans = spans_along_x(state.grid), state.y_spans = spans_along_y(state.grid);
+  state.x_spans = spans_along(state.grid, Axis::x), state.y_spans = spans_along(state.grid, Axis::y);
   const auto records = static_cast<std::size_t>(state.copies.records());
   state.sums.clear(records), state.motion.clear(records);
   state.gathered = false;

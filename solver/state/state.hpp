@@ -1,4 +1,4 @@
-// The whole state of a run as plain data: what is saved in a checkpoint is what is here.
+// The whole state of a run as plain data: what a checkpoint saves, what follows from it, and what a step works in.
 #pragma once
 
 #include <cmath>
@@ -54,11 +54,9 @@ struct Tip {
   double last_growth_Pa = 0.0;     // inlet pressure then
   double due_s = -1.0;             // explicit: no increment before this time (s), since Rayleigh waves are no faster
   double runs_until_s = -1.0;      // and until then J still answers to the last one
-  double J_at_growth = 0.0;
-  double J_spread_at_growth = 0.0;
-  double G_trial = 0.0;                // what growth by energy would release now, by the increment's length (N/m)
-  double G = 0.0;                      // what its last increment released, by its length (N/m)
-  double G_by_J = 0.0;                 // the same from J along it (N/m); 0 where that does not tell
+  double G_trial = 0.0;            // what growth by energy would release now, by the increment's length (N/m)
+  double G = 0.0;                  // what its last increment released, by its length (N/m)
+  double G_by_J = 0.0;             // the same from J along it (N/m); 0 where that does not tell
   Criterion criterion = Criterion::J;  // what decides its growth where it stands
   std::string grew_by;                 // and what decided its last growth: "J", "K" or "energy"
   bool has_grown = false;
@@ -109,10 +107,11 @@ struct Ledger {
   }
 };
 
-struct State {
+// What a checkpoint writes.
+struct SavedState {
   double time = 0.0;  // s
   std::int64_t step = 0;
-  double dt = 0.0;  // s
+  double dt = 0.0;  // the time step of runs with inertia; without, the step that a flow tries next (s)
   Grid grid;
   Particles particles;
   std::vector<Surface> surfaces;  // the fracture first, where there is one
@@ -125,9 +124,13 @@ struct State {
   std::vector<Event> events;
   Ledger ledger;
   Monitors monitors;
-  TotalMotion total;  // of kinematics = "total" only
 
-  // Derived from the above by rebuild_copies(); not saved.
+  const Surface& fracture() const { return surfaces.front(); }
+  Surface& fracture() { return surfaces.front(); }
+};
+
+// What follows from it, by rebuild_copies() but for the last two.
+struct DerivedState {
   Copies copies;
   std::vector<Bin> bins;
   std::vector<std::size_t> cut_bins;  // of which a node is cut
@@ -137,23 +140,27 @@ struct State {
   // last end (see parts.hpp): a master's tied records are all in its part.
   std::vector<int> tied;
   std::vector<std::size_t> tied_of_part;
-  Bonds bonds;  // of runs with inertia, by explicit/interface_laws.hpp
   std::vector<std::vector<SurfaceStencil>> point_stencils, vertex_stencils;  // of each surface
   SpanTable x_spans, y_spans;
+  Bonds bonds;             // of runs with inertia, by explicit/interface_laws.hpp
+  std::vector<Vec2> body;  // force per mass of each particle (m/s^2), set anew at each time; empty: none
+};
+
+// What a step works in; all but sums and motion is kept for its memory alone, so that no step allocates any.
+struct ScratchState {
   NodalSums sums;
   NodalMotion motion;
-  bool gathered = false;   // sweep_particles() has left in sums what the particles now give
-  std::vector<Vec2> body;  // force per mass of each particle (m/s^2), set anew at each time; empty: none
-  NodalSums body_sums;     // what it gives the nodes: f_x, f_y
-  // Kept for their memory alone: no step allocates any.
+  bool gathered = false;                // sweep_particles() has left in sums what the particles now give
+  NodalSums body_sums;                  // what the body force gives the nodes: f_x, f_y
   NodalSums filtered;                   // of XPIC(2)
   SpreadArray take_x, take_y;           // the same
   std::vector<ParticleReport> reports;  // of each strip
   std::vector<SplitPlace> places;       // of the solve for reactions
   std::vector<InterfaceLaw> tie_laws;   // the same
+};
 
-  const Surface& fracture() const { return surfaces.front(); }
-  Surface& fracture() { return surfaces.front(); }
+struct State : SavedState, DerivedState, ScratchState {
+  TotalMotion total;  // of kinematics = "total" only: its velocity is saved, the rest derived
 };
 
 /// Whether equilibria decide about a tip's growth. Throws nothing.
@@ -171,18 +178,27 @@ inline Vec2 tip_position(const State& state, const Tip& tip) {
   return tip.at_back ? state.fracture().vertices.back().x : state.fracture().vertices.front().x;
 }
 
-/// Displacement of a record since the base (m), under kinematics = "total"; throws nothing.
-inline Vec2 total_displacement(const State& state, int record) {
-  const auto r = static_cast<std::size_t>(record);
-  const auto slot = static_cast<std::size_t>(state.total.op->slots.of_record[r]);
-  return {state.masters[r].x * state.total.u_x[slot], state.masters[r].y * state.total.u_y[slot]};
+// How far ahead of a tip its rock is looked up (cells). A tip that stands on an interface follows the rock, by about a
+// millimetre per MPa, while the layers' borders stay: the rock ahead must not be taken for the one behind.
+constexpr double ahead_cells = 0.1;
+
+/// A place (m) in the rock that a tip is about to enter; throws nothing.
+inline Vec2 place_ahead(const State& state, const Tip& tip) {
+  return tip_position(state, tip) + ahead_cells * state.grid.h * tip_direction(state.fracture(), tip.at_back);
 }
 
-/// And its velocity (m/s).
+/// Displacement of a record since the base (m), under kinematics = "total", or velocity (m/s): of v_x and v_y by slots.
+/// Throws nothing.
+inline Vec2 of_master(const State& state, int record, const SpreadArray& x, const SpreadArray& y) {
+  const Master& master = state.masters[static_cast<std::size_t>(record)];
+  const auto slot = static_cast<std::size_t>(state.total.op->slots.of_record[static_cast<std::size_t>(record)]);
+  return {master.x * x[slot], master.y * y[slot]};
+}
+inline Vec2 total_displacement(const State& state, int record) {
+  return of_master(state, record, state.total.u_x, state.total.u_y);
+}
 inline Vec2 total_velocity(const State& state, int record) {
-  const auto r = static_cast<std::size_t>(record);
-  const auto slot = static_cast<std::size_t>(state.total.op->slots.of_record[r]);
-  return {state.masters[r].x * state.total.v_x[slot], state.masters[r].y * state.total.v_y[slot]};
+  return of_master(state, record, state.total.v_x, state.total.v_y);
 }
 
 }  // namespace strata

@@ -27,8 +27,7 @@ Eigen::SparseMatrix<double> assemble_stiffness(const Scene& scene, const std::ve
   std::vector<char> used(2 * masters.size(), 0);
   for (const Bin& bin : state.bins) {
     LocalStiffness K = LocalStiffness::Zero();
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
-         q += static_cast<std::size_t>(bin.stride)) {
+    for (const std::size_t q : bin) {
       const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
       add_stiffness(rocks[p.rock[q]], g, p.V[q], K);
     }

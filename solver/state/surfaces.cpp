@@ -22,15 +22,6 @@ Foot foot_on_segment(const Vec2& a, const Vec2& b, const Vec2& x, double before,
   return {(x - a - d * (along / L)).squaredNorm(), along};
 }
 
-// The first of the segments before vertex k (but for the first of all, which may be extended) that are all nearer to it
-// along the path than `way` (m), as far as a guess tells; k itself where it fails.
-std::size_t skip_far(const Surface& surface, std::size_t k, double way) {
-  const double segments = std::floor(way / surface.points[k].A);
-  if (k < 2 || segments < 1.0) return k;
-  const std::size_t first = segments < static_cast<double>(k) ? k - static_cast<std::size_t>(segments) : 1;
-  return surface.vertices[k].arc - surface.vertices[first].arc <= way ? first : k;
-}
-
 }  // namespace
 
 Projection project(const Surface& surface, const Vec2& x, double reach) {
@@ -43,12 +34,7 @@ Projection project(const Surface& surface, const Vec2& x, double reach) {
   for (std::size_t k = n; k-- > 0;) {
     const double before = k == 0 ? reach : 0.0, after = k + 1 == n ? reach : 0.0;
     const double farthest = distance + (surface.points[k].A + before + after) * (1.0 + 1e-9);
-    const double away2 = (x - v[k].x).squaredNorm();
-    if (away2 > farthest * farthest) {
-      // A path between two places is no shorter than the straight line; a hundredth is left for round-off.
-      k = skip_far(surface, k, 0.99 * (std::sqrt(away2) - distance));
-      continue;
-    }
+    if ((x - v[k].x).squaredNorm() > farthest * farthest) continue;
     const Foot f = foot_on_segment(v[k].x, v[k + 1].x, x, before, after);
     if (f.distance2 <= foot.distance2) {
       foot = f;

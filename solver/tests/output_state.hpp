@@ -91,7 +91,6 @@ inline Tip made_tip(bool at_back, Numbers& number) {
   tip.near = at_back ? Obstacle::rock_border : Obstacle::none;
   tip.last_growth_s = number.next(), tip.last_growth_Pa = number.next(), tip.due_s = number.next();
   tip.runs_until_s = number.next();
-  tip.J_at_growth = number.next(), tip.J_spread_at_growth = number.next();
   tip.has_grown = !at_back, tip.closed = !at_back, tip.crossed = !at_back;
   tip.arrested = at_back;
   tip.reached = {2, 1};

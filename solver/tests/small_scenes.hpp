@@ -181,4 +181,9 @@ inline double top_speed(const Particles& p) {
 inline constexpr std::array shapes{Numerics::Shape::bspline2, Numerics::Shape::linear, Numerics::Shape::gimp};
 inline constexpr std::array transfers{Numerics::Transfer::flip, Numerics::Transfer::pic, Numerics::Transfer::xpic2};
 
+/// Whether a record is a copy of a cut node.
+inline bool is_cut(const Copies& copies, int record) {
+  return copies.cut_of_node[static_cast<std::size_t>(copies.node_of_record[static_cast<std::size_t>(record)])] >= 0;
+}
+
 }  // namespace strata::test

@@ -25,7 +25,6 @@ struct Statics {
     at = find_equilibrium(run.scene, run.state.time, run.state, model);
     set_fields(run.scene, run.state, model, at);
     set_all_particles(run.scene, run.state, model);
-    run.state.dt = 1.0;  // what J's inertia divides by
     if (run.state.has_fracture) measure_tips(run.scene, run.rocks, run.state);
   }
 };

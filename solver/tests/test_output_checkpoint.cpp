@@ -60,8 +60,6 @@ void require_same(const Tip& a, const Tip& b) {
   CHECK(a.due_s == b.due_s);
   CHECK(a.runs_until_s == b.runs_until_s);
   CHECK(a.last_growth_Pa == b.last_growth_Pa);
-  CHECK(a.J_at_growth == b.J_at_growth);
-  CHECK(a.J_spread_at_growth == b.J_spread_at_growth);
   CHECK(a.has_grown == b.has_grown);
   CHECK(a.arrested == b.arrested);
   CHECK(a.reached == b.reached);

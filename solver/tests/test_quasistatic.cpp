@@ -152,7 +152,7 @@ TEST_CASE("a step looks at all particles that J's rings weigh") {
     const auto strained = state.particles.g_yy;
     set_all_particles(s.run.scene, state, s.statics.model);
     CHECK(state.particles.g_yy != strained);
-    measure_tips(s.run.scene, s.statics.rules, state);
+    measure_tips(s.run.scene, s.run.rocks, s.statics.rules, state);
     State anew = state;
     measure_tips(s.run.scene, s.run.rocks, anew);
     for (std::size_t k = 0; k < tips.size(); ++k) {

@@ -180,11 +180,12 @@ TEST_CASE("a crack of fixed length fed at a rate") {
   Bench bench;
   const double rate = 5e-5, dt = 0.05;
   for (int k = 0; k < 40; ++k) {
+    const double before = bench.balance.injected, density = 1.0 + bench.line.P[0] / bench.fluid.bulk_modulus_Pa;
     const StepReport r =
         step_reynolds(bench.fluid, {Inlet::Drive::rate, rate}, dt, bench.rock, bench.line, bench.balance);
     REQUIRE(r.converged);
     CHECK(r.iterations <= 6);
-    CHECK(r.flux_m2_s == Approx(rate).epsilon(1e-12));
+    CHECK(bench.balance.injected - before == Approx(dt * density * rate).epsilon(1e-10));
     const double w = bench.line.w[0], drop = rate * 12.0 * 0.1 / (w * w * w) * 0.5 * bench.line.length[0];
     CHECK(r.inlet_Pa - bench.line.P[0] == Approx(drop).epsilon(1e-6));
     REQUIRE(std::abs(bench.balance.closure()) < 1e-10);
@@ -208,7 +209,7 @@ TEST_CASE("the estimated error of a step") {
   ReynoldsLine one = start.line, many = start.line;
   FluidBalance balance = start.balance;
   const StepReport r = step_reynolds(start.fluid, {Inlet::Drive::rate, 5e-5}, 0.25, start.rock, one, balance);
-  CHECK(r.estimated);
+  CHECK(r.error_w > 0.0);
   for (int k = 0; k < 64; ++k)
     step_reynolds(start.fluid, {Inlet::Drive::rate, 5e-5}, 0.25 / 64, start.rock, many, balance);
   const double off = (as_eigen(one.w) - as_eigen(many.w)).cwiseAbs().maxCoeff() / as_eigen(one.w).maxCoeff();
@@ -266,7 +267,7 @@ TEST_CASE("sudden growth leaves empty cells that fill") {
   for (int step = 0; step < 3000 && !filled; ++step) {
     const StepReport r = step_reynolds(fluid, {Inlet::Drive::rate, 2e-4}, 2e-3, rock, line, balance);
     REQUIRE(r.converged);
-    CHECK(r.estimated == (step > 0));
+    CHECK((r.error_w > 0.0) == (step > 0));
     require_lawful(line, fluid);
     REQUIRE(std::abs(balance.closure()) < 1e-10);
     REQUIRE(sum(line.content) == Approx(balance.stored).epsilon(1e-10));
@@ -301,7 +302,7 @@ TEST_CASE("a step of any length after growth") {
           grow(line, fluid, true, cell);
           const StepReport r = step_reynolds(
               fluid, {Inlet::Drive::rate, 5e-5}, dt, [&](const VectorXd& p) { return kernel(p); }, line, balance);
-          CAPTURE(mu, n, floor, dt, r.reason, r.residual);
+          CAPTURE(mu, n, floor, dt, r.reason);
           ++steps;
           iterations += r.iterations;
           most = std::max(most, r.iterations);
@@ -365,7 +366,7 @@ TEST_CASE("a crack that opens and closes") {
         const double P = 3e6 * std::sin(std::numbers::pi * k / 30.0);
         const StepReport r = step_reynolds(
             fluid, {Inlet::Drive::pressure, P}, dt, [&](const VectorXd& p) { return kernel(p); }, line, balance);
-        CAPTURE(floor, dt, k, r.reason, r.residual, r.iterations);
+        CAPTURE(floor, dt, k, r.reason, r.iterations);
         REQUIRE(r.converged);
         require_lawful(line, fluid);
         REQUIRE(std::abs(balance.closure()) < 1e-10);
