@@ -8,7 +8,6 @@
 
 #include "quasistatic/branch_products.hpp"
 #include "state/stiffness.hpp"
-#include "state/quarters.hpp"
 
 namespace strata {
 
@@ -267,7 +266,6 @@ bool holds_rigid_motion(const Scene& scene, bool halved) {
 void remove_rigid_motion(const Scene& scene, const State& state, bool halved, std::vector<Vec2>& u) {
   if (holds_rigid_motion(scene, halved)) return;
   const bool x_held = halved || scene.domain.holds_x(), y_held = scene.domain.holds_y();
-  const Quarters quarters(scene, state.grid);
   // Mean over the block's area: with 0.5 (u_y,x - u_x,y) as rotation, from the particles' own fields.
   const Particles& p = state.particles;
   const Vec2 centre{0.5 * scene.domain.width_m, 0.5 * scene.domain.height_m};
@@ -276,15 +274,14 @@ void remove_rigid_motion(const Scene& scene, const State& state, bool halved, st
   for (const Bin& bin : state.bins) {
     for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
          q += static_cast<std::size_t>(bin.stride)) {
-      quarters.for_each_point(p, q, [&](const Vec2& x, const Vec2& half, double V) {
-        const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, x, half);
-        Vec2 u_p = Vec2::Zero();
-        for (std::size_t n = 0; n < 9; ++n) u_p += g.N[n] * u[static_cast<std::size_t>(bin.record[n])];
-        mean += V * u_p;
-        turn += V * cross(x - centre, u_p);
-        polar += V * (x - centre).squaredNorm();
-        area += V;
-      });
+      const Vec2 x{p.x[q], p.y[q]};
+      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, x, p.half(q));
+      Vec2 u_p = Vec2::Zero();
+      for (std::size_t n = 0; n < 9; ++n) u_p += g.N[n] * u[static_cast<std::size_t>(bin.record[n])];
+      mean += p.V[q] * u_p;
+      turn += p.V[q] * cross(x - centre, u_p);
+      polar += p.V[q] * (x - centre).squaredNorm();
+      area += p.V[q];
     }
   }
   mean /= area;

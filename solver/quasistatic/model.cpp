@@ -10,7 +10,6 @@
 #include "interfaces/surface_tractions.hpp"
 #include "interfaces/tip_ties.hpp"
 #include "scene/graded_cells.hpp"
-#include "state/quarters.hpp"
 
 namespace strata {
 
@@ -194,7 +193,7 @@ void update_equations(const Scene& scene, const std::vector<Elasticity>& rocks, 
   weigh_copies(scene, state);
   update_stencil_weights(scene, state);
   const bool halved = halve && mirror_symmetric(scene);
-  const bool same_body = model.body && model.body->points() == Quarters(scene, state.grid).points(state.particles);
+  const bool same_body = model.body && model.body->points() == state.particles.size();
   if (!same_body) {
     std::vector<int> order;
     if (model.body && model.body->halved() == halved) order = model.body->factor().order();
@@ -223,11 +222,9 @@ Equilibrium find_equilibrium(const Scene& scene, double time, State& state, Quas
   return found;
 }
 
-std::vector<Vec2> set_all_particles(const Scene& scene, State& state, const QuasistaticModel& model) {
+void set_all_particles(const Scene& scene, State& state, const QuasistaticModel& model) {
   const Asked all = ask_for_all(state, *model.body);
-  std::vector<Vec2> u = displacements(scene, state, *model.body, model.condensed, model.shown, all);
-  set_particles(scene, u, state);
-  return u;
+  set_particles(scene, displacements(scene, state, *model.body, model.condensed, model.shown, all), state);
 }
 
 void set_fields(const Scene& scene, State& state, QuasistaticModel& model, const Equilibrium& equilibrium) {

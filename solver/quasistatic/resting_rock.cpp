@@ -32,7 +32,7 @@ std::ptrdiff_t split_points(const State& state) {
   return n;
 }
 
-// The same particles without inertia. They are all of one lattice already: none stands for four (see refines_ahead()).
+// The same particles without inertia.
 Scene without_inertia(const Scene& scene) {
   Scene resting = scene;
   resting.numerics.mechanics = Numerics::Mechanics::quasistatic;
