@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "state/stiffness.hpp"
 #include "state/rebuild.hpp"
+#include "state/stiffness.hpp"
 
 namespace strata {
 

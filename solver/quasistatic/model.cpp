@@ -5,11 +5,11 @@
 #include <memory>
 #include <utility>
 
-#include "quasistatic/body_load.hpp"
-#include "state/stiffness.hpp"
 #include "interfaces/surface_tractions.hpp"
 #include "interfaces/tip_ties.hpp"
+#include "quasistatic/body_load.hpp"
 #include "scene/graded_cells.hpp"
+#include "state/stiffness.hpp"
 
 namespace strata {
 
@@ -202,7 +202,7 @@ void update_equations(const Scene& scene, const std::vector<Elasticity>& rocks, 
   }
   model.condensed = condense(scene, rocks, state, *model.body, same_body ? &model.condensed : nullptr);
   model.places = contact_places(scene, rocks, state, model.condensed);
-  model.factor.outdate();
+  model.factor = TangentFactor{};
   model.j.resize(0);
   model.dw_dP.resize(0, 0);
 }

@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "quasistatic/contact_equilibrium.hpp"
 #include "interfaces/failure.hpp"
+#include "quasistatic/contact_equilibrium.hpp"
 
 namespace strata {
 
