@@ -5,7 +5,6 @@
 
 #include "explicit/transfers.hpp"
 #include "interfaces/surface_tractions.hpp"
-#include "state/quarter_forces.hpp"
 #include "state/round_off.hpp"
 
 namespace strata {
@@ -29,10 +28,9 @@ void add_reactions(State& state) {
 
 }  // namespace
 
-void watch_forces(const Scene& scene, const std::vector<Elasticity>& rocks, const std::vector<Vec2>& u, State& state) {
+void watch_forces(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
   const NodalSums kept = state.sums;
   particles_to_grid(scene, rocks, state);
-  exert_quarters(scene, rocks, u, state);
   update_stencil_weights(scene, state);
   NodalSums rock = state.sums;
   for (std::size_t r = 0; r < rock.size(); ++r) state.sums[r].f_x = state.sums[r].f_y = 0.0;

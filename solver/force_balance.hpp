@@ -11,7 +11,7 @@ namespace strata {
 /// Balance of forces at every node of an equilibrium, by the loops over particles that runs with inertia use and the
 /// condensed block does not: f_i = -sum V sigma grad N_i of the particles' stress against D^T (P n - t_in_situ + r) A
 /// of surfaces, springs of tips and the body force. Notes the largest force left over the largest load. All particles
-/// must be up to date; u: displacements of all records (m), of use where particles stand for four. Throws nothing.
-void watch_forces(const Scene& scene, const std::vector<Elasticity>& rocks, const std::vector<Vec2>& u, State& state);
+/// must be up to date. Throws nothing.
+void watch_forces(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
 
 }  // namespace strata

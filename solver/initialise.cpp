@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "fracture/growth.hpp"
-#include "fracture/refine_beside.hpp"
 #include "interfaces/columns.hpp"
 #include "quasistatic/loaded_stress.hpp"
 #include "explicit/momentum.hpp"
@@ -38,14 +37,9 @@ void append_particle(const Scene& scene, const std::vector<Elasticity>& rocks, c
 Particles make_particles(const Scene& scene, const std::vector<Elasticity>& rocks, const Grid& grid) {
   const int across = points_across(scene);
   const std::vector<GridPoint> columns = points_along_x(grid, across), rows = points_along_y(grid, across);
-  const std::int32_t step = refines_ahead(scene) ? 2 : 1;  // of ids, which are those of the lattice of quarters
   Particles particles;
   for (const GridPoint& y : rows) {
-    for (const GridPoint& x : columns) {
-      append_particle(scene, rocks, x, y, particles);
-      particles.next_id += step - 1;
-    }
-    particles.next_id += (step - 1) * step * static_cast<std::int32_t>(columns.size());
+    for (const GridPoint& x : columns) append_particle(scene, rocks, x, y, particles);
   }
   return particles;
 }
@@ -137,7 +131,6 @@ State initialise(const Scene& scene, const std::vector<Elasticity>& rocks) {
   make_fracture(scene, state);
   make_interfaces(scene, state);
   Particles& p = state.particles;
-  refine_beside_all(scene, rocks, state);
   if (state.has_fracture) refine_particles(scene, state, 0, state.fracture().points.size());
   for (std::size_t q = 0; q < p.size(); ++q) p.sides[q] = sides_at(state, {p.x[q], p.y[q]}, -1);
   for (Surface& surface : state.surfaces) place_points(scene, state, surface);

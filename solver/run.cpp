@@ -120,8 +120,8 @@ std::size_t fracture_points(const State& state) {
 // Strain energy and fields as they are now; without inertia only those that decide what happens next are kept.
 void complete_fields(Run& run) {
   if (run.statics) {
-    const std::vector<Vec2> u = set_all_particles(run.scene, run.state, run.statics->model);
-    watch_forces(run.scene, run.rocks, u, run.state);
+    set_all_particles(run.scene, run.state, run.statics->model);
+    watch_forces(run.scene, run.rocks, run.state);
   } else {
     complete_particles(run.scene, run.state);
     run.state.ledger.strain = strain_energy(run.rocks, run.state.particles);

@@ -8,10 +8,8 @@
 
 #include "fracture/criterion.hpp"
 #include "fracture/j_integral.hpp"
-#include "fracture/refine_beside.hpp"
 #include "fracture/tip_rings.hpp"
 #include "scene/path_geometry.hpp"
-#include "state/quarters.hpp"
 #include "state/rebuild.hpp"
 
 namespace strata {
@@ -204,6 +202,27 @@ std::vector<std::size_t> particles_beside(const Particles& p, std::span<const Su
   return beside;
 }
 
+// Divides particle q into its quarters, which continue its displacement linearly. The lower left one keeps its place in
+// the arrays and its id; the upper right, upper left and lower right ones follow at the arrays' end with new ids.
+void split_in_four(Particles& p, std::size_t q) {
+  p.m[q] *= 0.25, p.V[q] *= 0.25, p.half_x[q] *= 0.5, p.half_y[q] *= 0.5;
+  const Vec2 quarter = p.half(q);
+  const double x = p.x[q], y = p.y[q], u_x = p.u_x[q], u_y = p.u_y[q];
+  for (int child = 3; child >= 0; --child) {
+    std::size_t c = q;
+    if (child > 0) {
+      for_each_array(p, [q](auto& array) { array.push_back(array[q]); });
+      c = p.size() - 1;
+      p.id[c] = p.next_id++;
+    }
+    const double d_x = (child & 1) != 0 ? quarter.x() : -quarter.x(),
+                 d_y = (child & 2) != 0 ? quarter.y() : -quarter.y();
+    p.x[c] = x + d_x, p.y[c] = y + d_y;
+    p.u_x[c] = u_x + p.g_xx[q] * d_x + p.g_xy[q] * d_y;
+    p.u_y[c] = u_y + p.g_yx[q] * d_x + p.g_yy[q] * d_y;
+  }
+}
+
 }  // namespace
 
 void refine_particles(const Scene& scene, State& state, std::size_t first, std::size_t last) {
@@ -227,8 +246,7 @@ void refine_particles(const Scene& scene, State& state, std::size_t first, std::
       const SurfacePoint& s = state.fracture().points[k];
       const bool hit = passes_through(p, q, s, h) && !(fine && whole[k - first] != 0);
       if (!hit && (fine || !near_point(p, q, s, 1.5 * h) || !off_grid(s, h))) continue;
-      split_in_four(p, q, {p.next_id, p.next_id + 1, p.next_id + 2});
-      p.next_id += 3;
+      split_in_four(p, q);
       split.insert(split.end(), {q, p.size() - 3, p.size() - 2, p.size() - 1});
       break;
     }
@@ -275,7 +293,6 @@ double extend_tip(const Scene& scene, State& state, Tip& tip, double increment, 
   if (scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics && scene.numerics.keeps_places())
     displace_new(state, tip.at_back, pieces);
   const std::size_t first = tip.at_back ? old_points : 0;
-  refine_beside(scene, state, first, first + pieces);
   update_particle_sides(state, tip, from, old_length);
   refine_particles(scene, state, first, first + pieces);
   for (Surface& surface : state.surfaces) place_points(scene, state, surface);

@@ -6,9 +6,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "quasistatic/branch_products.hpp"
 #include "state/stiffness.hpp"
-#include "state/quarters.hpp"
 
 namespace strata {
 
@@ -80,9 +78,8 @@ std::vector<Eigen::Index> origins(const Condensed& before, const Condensed& now)
   return from;
 }
 
-// Takes columns and entries over from `before`, runs of unknowns that follow each other there too at once; returns the
-// place of each new unknown among these, -1 for others.
-std::vector<int> take_over(const Condensed* before, Condensed& out) {
+// Takes columns and entries over from `before`; returns the place of each new unknown among these, -1 for others.
+std::vector<int> reuse_columns(const Condensed* before, Condensed& out) {
   const std::size_t n = out.columns.size();
   out.S.resize(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
   std::vector<int> fresh(n, -1);
@@ -91,10 +88,7 @@ std::vector<int> take_over(const Condensed* before, Condensed& out) {
     return fresh;
   }
   const std::vector<Eigen::Index> from = origins(*before, out);
-  struct Run {
-    Eigen::Index first, from, count;
-  };
-  std::vector<Run> runs;
+  std::vector<Eigen::Index> old;  // unknowns that were there before
   int next = 0;
   for (std::size_t k = 0; k < n; ++k) {
     if (from[k] < 0) {
@@ -102,18 +96,12 @@ std::vector<int> take_over(const Condensed* before, Condensed& out) {
       continue;
     }
     out.columns[k] = before->columns[static_cast<std::size_t>(from[k])];
-    if (k > 0 && from[k - 1] >= 0 && from[k] == from[k - 1] + 1) {
-      ++runs.back().count;
-    } else {
-      runs.push_back({static_cast<Eigen::Index>(k), from[k], 1});
-    }
+    old.push_back(static_cast<Eigen::Index>(k));
   }
-  for (std::size_t k = 0; k < n; ++k) {
-    if (from[k] < 0) continue;
-    for (const Run& run : runs) {
-      out.S.col(static_cast<Eigen::Index>(k)).segment(run.first, run.count) =
-          before->S.col(from[k]).segment(run.from, run.count);
-    }
+  for (const Eigen::Index column : old) {
+    const Eigen::Index column_before = from[static_cast<std::size_t>(column)];
+    for (const Eigen::Index row : old)
+      out.S(row, column) = before->S(from[static_cast<std::size_t>(row)], column_before);
   }
   return fresh;
 }
@@ -217,21 +205,28 @@ void condense_new(const IntactBody& body, const std::vector<int>& place, const N
   for (std::size_t k = 0; k < place.size(); ++k) {
     if (place[k] >= 0) fresh.push_back(k);
   }
-  SideBySide dense(body.factor());
-  std::vector<const BranchVector*> columns;
+  SideBySide dense(body.factor().size());
   for (std::size_t from = 0; from < fresh.size(); from += SideBySide::most) {
     const std::size_t count = std::min(SideBySide::most, fresh.size() - from);
-    columns.clear();
-    for (std::size_t c = 0; c < count; ++c) columns.push_back(&out.columns[fresh[from + c]]->Y);
-    dense.put(columns);
+    dense.clear();
+    for (std::size_t c = 0; c < count; ++c) {
+      const SparseVector& Y = out.columns[fresh[from + c]]->Y;
+      for (std::size_t e = 0; e < Y.index.size(); ++e) {
+        dense.add_rows(Y.index[e], Y.index[e] + 1);
+        dense[Y.index[e]][static_cast<Eigen::Index>(c)] = Y.value[e];
+      }
+    }
     for (std::size_t b = 0; b < place.size(); ++b) {
       if (place[b] >= 0 && b < fresh[from]) continue;  // done with b among the dense ones
-      const auto product = dense.times(out.columns[b]->Y);
+      const SparseVector& Y = out.columns[b]->Y;
+      SideBySide::Row product = SideBySide::Row::Zero();
+      for (std::size_t e = 0; e < Y.index.size(); ++e) product += Y.value[e] * dense[Y.index[e]];
       for (std::size_t c = 0; c < count; ++c) {
         const auto i = static_cast<Eigen::Index>(fresh[from + c]), j = static_cast<Eigen::Index>(b);
         const auto f = static_cast<Eigen::Index>(from + c);
         // K_jj is symmetric but for round-off, and which of two unknowns is new depends on what came before.
-        out.S(i, j) = out.S(j, i) = 0.5 * (K_jj.rows(j, f) + K_jj.columns(j, f)) - product[c];
+        out.S(i, j) = out.S(j, i) =
+            0.5 * (K_jj.rows(j, f) + K_jj.columns(j, f)) - product[static_cast<Eigen::Index>(c)];
       }
     }
   }
@@ -243,7 +238,7 @@ void factor_columns(const IntactBody& body, const std::vector<int>& place, std::
   for (std::size_t k = 0; k < place.size(); ++k) {
     if (place[k] >= 0) fresh.push_back(summed(std::move(G[k])));
   }
-  std::vector<BranchVector> Y = body.factor().forward(fresh);
+  std::vector<SparseVector> Y = body.factor().forward(fresh);
   std::size_t next = 0;
   std::vector<int> loaded;
   for (std::size_t k = 0; k < place.size(); ++k) {
@@ -267,7 +262,6 @@ bool holds_rigid_motion(const Scene& scene, bool halved) {
 void remove_rigid_motion(const Scene& scene, const State& state, bool halved, std::vector<Vec2>& u) {
   if (holds_rigid_motion(scene, halved)) return;
   const bool x_held = halved || scene.domain.holds_x(), y_held = scene.domain.holds_y();
-  const Quarters quarters(scene, state.grid);
   // Mean over the block's area: with 0.5 (u_y,x - u_x,y) as rotation, from the particles' own fields.
   const Particles& p = state.particles;
   const Vec2 centre{0.5 * scene.domain.width_m, 0.5 * scene.domain.height_m};
@@ -276,15 +270,14 @@ void remove_rigid_motion(const Scene& scene, const State& state, bool halved, st
   for (const Bin& bin : state.bins) {
     for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
          q += static_cast<std::size_t>(bin.stride)) {
-      quarters.for_each_point(p, q, [&](const Vec2& x, const Vec2& half, double V) {
-        const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, x, half);
-        Vec2 u_p = Vec2::Zero();
-        for (std::size_t n = 0; n < 9; ++n) u_p += g.N[n] * u[static_cast<std::size_t>(bin.record[n])];
-        mean += V * u_p;
-        turn += V * cross(x - centre, u_p);
-        polar += V * (x - centre).squaredNorm();
-        area += V;
-      });
+      const Vec2 x{p.x[q], p.y[q]};
+      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, x, p.half(q));
+      Vec2 u_p = Vec2::Zero();
+      for (std::size_t n = 0; n < 9; ++n) u_p += g.N[n] * u[static_cast<std::size_t>(bin.record[n])];
+      mean += p.V[q] * u_p;
+      turn += p.V[q] * cross(x - centre, u_p);
+      polar += p.V[q] * (x - centre).squaredNorm();
+      area += p.V[q];
     }
   }
   mean /= area;
@@ -314,7 +307,7 @@ Condensed condense(const Scene& scene, const std::vector<Elasticity>& rocks, con
   Condensed out;
   out.masters = body.halved() ? mirrored(state, state.masters) : state.masters;
   number_jumps(state, body, out);
-  const std::vector<int> fresh = take_over(before, out);
+  const std::vector<int> fresh = reuse_columns(before, out);
   const auto n = out.size(),
              n_fresh = static_cast<Eigen::Index>(std::ranges::count_if(fresh, [](int f) { return f >= 0; }));
   NewStiffness K_jj{Eigen::MatrixXd::Zero(n, n_fresh), Eigen::MatrixXd::Zero(n, n_fresh)};

@@ -16,9 +16,9 @@
 #include <array>
 
 #include "quasistatic/intact_body.hpp"
-#include "state/stiffness.hpp"
 #include "state/elasticity.hpp"
 #include "state/state.hpp"
+#include "state/stiffness.hpp"
 
 namespace strata {
 
@@ -29,7 +29,7 @@ struct JumpColumn {
   int component = 0;
   std::uint64_t particles = 0;  // fingerprint of the set
   SparseVector G;
-  BranchVector Y;
+  SparseVector Y;  // in rows of the factor
 };
 
 // The load of a body force at one time (see body_load.hpp).

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <numeric>
 #include <string>
 #include <utility>
 
@@ -161,21 +159,6 @@ bool few_slide(const std::vector<LawAnswer>& answers, Eigen::Index unknowns) {
   return sliding > 0 && 8 * sliding < unknowns;
 }
 
-// The unknowns from those farthest from all tips to those nearest to one, which growth will touch.
-std::vector<int> far_from_tips_first(const State& state, const Condensed& condensed) {
-  std::vector<double> distance;
-  for (const auto& column : condensed.columns) {
-    const Vec2 x{state.grid.x(state.grid.column(column->node)), state.grid.y(state.grid.row(column->node))};
-    double nearest = HUGE_VAL;
-    for (const Tip& tip : state.tips) nearest = std::min(nearest, (x - tip_position(state, tip)).norm());
-    distance.push_back(nearest);
-  }
-  std::vector<int> order(distance.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order, std::greater{}, [&](int k) { return distance[static_cast<std::size_t>(k)]; });
-  return order;
-}
-
 // Factors the tangent at `at` unless `factor` has it already; false where parts of the block move freely. On the way to
 // a solution they may for a while, so the factor is then that of a tangent slightly stiffer. A sliver of rock with
 // fewer particles than its copies of nodes have unknowns (between a fracture and an interface that it meets, or in a
@@ -191,22 +174,18 @@ bool factor_tangent(const Condensed& condensed, const std::vector<ContactPlace>&
   if (holds && factor.pieces == pieces) return true;
   factor.pieces = pieces;
   if (holds && factor.follow(places, answers)) return true;
-  const Unknowns unknowns(condensed.columns.begin(), condensed.columns.end());
-  if (!holds && factor.grow(condensed.S, unknowns, places, answers)) return true;
-  const std::vector<int> order = far_from_tips_first(state, condensed);
   if (few_slide(answers, condensed.size())) {
     const std::vector<LawAnswer> first = without_coupling(answers);
-    if (factor.factorise(tangent(condensed.S, places, first), unknowns, places, first, order) &&
-        factor.follow(places, answers))
+    if (factor.factorise(tangent(condensed.S, places, first), places, first) && factor.follow(places, answers))
       return true;
   }
   Eigen::MatrixXd T = tangent(condensed.S, places, answers);
-  if (factor.factorise(T, unknowns, places, answers, order)) return true;
+  if (factor.factorise(T, places, answers)) return true;
   T.diagonal() *= 1.0 + stiffening;
-  if (!factor.factorise(T, unknowns, places, answers, order, true)) report_mechanism(state, places);
+  if (!factor.factorise(T, places, answers, true)) report_mechanism(state, places);
   if (unknowns_that_move(factor, condensed.size()) <= sliver) return true;
   T.diagonal() *= 1.0 + on_the_way;
-  factor.factorise(T, unknowns, places, answers, order, true);
+  factor.factorise(T, places, answers, true);
   factor.pieces.clear();
   return false;
 }

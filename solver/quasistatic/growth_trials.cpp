@@ -29,7 +29,7 @@ void load_trial(const State& state, GrowthTrial& trial) {
 }
 
 // Friction's memory of the trial: that of the state it starts from.
-void share_memory(const State& state, const std::vector<ContactPlace>& places, GrowthTrial& trial) {
+void inherit_friction(const State& state, const std::vector<ContactPlace>& places, GrowthTrial& trial) {
   const std::ptrdiff_t shift = shift_of(state, trial);
   for (ContactPlace& place : trial.model.places) {
     if (place.tie >= 0) continue;
@@ -52,8 +52,8 @@ bool may_grow(const Scene& scene, const State& state, const Tip& tip) {
   return scene.fracture->growth != Fracture::Growth::none && tip.growing && what_stops(scene, state, tip).empty();
 }
 
-std::vector<GrowthTrial> make_trials(const Scene& scene, const std::vector<Elasticity>& rocks, State& state,
-                                     const QuasistaticModel& model, std::vector<GrowthTrial> former, bool halve) {
+std::vector<GrowthTrial> build_trials(const Scene& scene, const std::vector<Elasticity>& rocks, State& state,
+                                      const QuasistaticModel& model, bool halve) {
   std::vector<GrowthTrial> trials;
   for (std::size_t k = 0; k < state.tips.size(); ++k) {
     Tip& tip = state.tips[k];
@@ -77,10 +77,6 @@ std::vector<GrowthTrial> make_trials(const Scene& scene, const std::vector<Elast
       }
       trial.model.body = model.body;
       trial.model.condensed = model.condensed;
-      for (GrowthTrial& before : former) {
-        if (before.tip == k && (before.length > 0.0) == (length > 0.0))
-          trial.model.factor = std::move(before.model.factor);
-      }
       update_equations(scene, rocks, trial.state, trial.model, halve);
     }
   }
@@ -94,7 +90,7 @@ double energy_release(const Scene& scene, const State& state, const QuasistaticM
   for (GrowthTrial& trial : trials) {
     if (trial.tip != tip) continue;
     load_trial(state, trial);
-    share_memory(state, model.places, trial);
+    inherit_friction(state, model.places, trial);
     const double there = energy_of(trial.model, find_equilibrium(scene, state.time, trial.state, trial.model));
     const double G = (here - there) / trial.length;
     sum += G / std::abs(trial.length), weights += 1.0 / std::abs(trial.length);

@@ -23,10 +23,10 @@ bool may_grow(const Scene& scene, const State& state, const Tip& tip);
 
 /// Notes what decides about each tip where it now stands, and makes the trials that this needs: for a finite increment
 /// one with the fracture longer by it, for the slope of the energy one a cell longer and, where a whole piece can be
-/// taken away, one a cell shorter, less where an interface is nearer. `model` is the state's own; factors of `former`
-/// trials are used again; halve: as in update_equations(), and throws as it does.
-std::vector<GrowthTrial> make_trials(const Scene& scene, const std::vector<Elasticity>& rocks, State& state,
-                                     const QuasistaticModel& model, std::vector<GrowthTrial> former, bool halve = true);
+/// taken away, one a cell shorter, less where an interface is nearer. `model` is the state's own; halve: as in
+/// update_equations(), and throws as it does.
+std::vector<GrowthTrial> build_trials(const Scene& scene, const std::vector<Elasticity>& rocks, State& state,
+                                      const QuasistaticModel& model, bool halve = true);
 
 /// Energy (N/m) that tip number `tip` would release per length at the present pressures, the new segment under the
 /// pressure of the tip, less what friction would dissipate: over the increment of its trial; with two trials, the slope

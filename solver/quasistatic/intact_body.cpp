@@ -4,9 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "state/stiffness.hpp"
-#include "state/quarters.hpp"
 #include "state/rebuild.hpp"
+#include "state/stiffness.hpp"
 
 namespace strata {
 
@@ -76,7 +75,6 @@ IntactBody::IntactBody(const Scene& scene, const std::vector<Elasticity>& rocks,
   State intact;
   intact.grid = state.grid;
   intact.particles = state.particles;
-  Quarters(scene, state.grid).divide_all(intact.particles);
   points_ = intact.particles.size();
   if (halved) weigh_halves(scene, intact.particles);
   rebuild_copies(scene, intact);

@@ -17,10 +17,10 @@ std::vector<Master> mirrored(const State& state, std::vector<Master> masters);
 // K of the intact block, factored.
 class IntactBody {
  public:
-  /// Assembles and factors K from the state's particles with all surfaces closed, those that stand for four divided;
-  /// halved: with the mirror's ties, the energy of the left half counted twice. Rigid motion that no edge holds is held
-  /// at corners: loads are in balance. order: that of the factor of a body on the same grid with the same ties, or
-  /// none. Throws NumericalFailure where the factorisation fails.
+  /// Assembles and factors K from the state's particles with all surfaces closed; halved: with the mirror's ties, the
+  /// energy of the left half counted twice. Rigid motion that no edge holds is held at corners: loads are in balance.
+  /// order: that of the factor of a body on the same grid with the same ties, or none. Throws NumericalFailure where
+  /// the factorisation fails.
   IntactBody(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, bool halved,
              std::vector<int> order = {});
 

@@ -83,8 +83,7 @@ void equilibrate(const Scene& scene, const std::vector<Elasticity>& rocks, State
   run.equilibrium = find_equilibrium(scene, state.time, state, run.model);
   set_fields(scene, state, run.model, run.equilibrium);
   measure_tips(scene, rocks, run.rules, state);
-  if (!trials_hold(scene, state, run.trials))
-    run.trials = make_trials(scene, rocks, state, run.model, std::move(run.trials));
+  if (!trials_hold(scene, state, run.trials)) run.trials = build_trials(scene, rocks, state, run.model);
   run.margin = margin_of(scene, rocks, state, run);
 }
 
@@ -128,17 +127,17 @@ void accept(const Scene& scene, const LoadPoint& before, Change change, State& s
 
 void rebuild_all(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
   const double excess = state.ledger.excess;
-  for (GrowthTrial& trial : run.trials) trial.model.body.reset(), trial.model.condensed = {};
+  run.trials.clear();  // two bodies are not to be held at a time
   update_model(scene, rocks, state, run.model);
   state.monitors.mirror = run.model.body->halved();
   run.rules = make_tip_rules(scene, rocks, state);
   state.ledger.excess = excess;  // what springs of tips give back is in the difference of stored energy already
-  run.trials = make_trials(scene, rocks, state, run.model, std::move(run.trials));
+  run.trials = build_trials(scene, rocks, state, run.model);
 }
 
 // Lets what fails go; where half a block answers for the whole, with its mirror image, which is as bad but for
 // round-off.
-void fail(const Scene& scene, const Quasistatic& run, State& state) {
+void fail_worst_column(const Scene& scene, const Quasistatic& run, State& state) {
   Columns columns = failing_columns(scene, state, run.model.bonds);
   if (run.model.body->halved()) {
     for (const auto& [surface, column] : Columns{columns}) columns.emplace(surface, state.grid.nx - column);
@@ -206,7 +205,7 @@ void measure_release(const Scene& scene, const std::vector<Elasticity>& rocks, d
   }
 }
 
-[[noreturn]] void no_way_on(const char* when, double time, const std::string& reason) {
+[[noreturn]] void throw_no_solution(const char* when, double time, const std::string& reason) {
   throw NumericalFailure(fmt::format("at t = {:.6g} s, {}: {}", time, when, reason));
 }
 
@@ -217,12 +216,12 @@ bool failure_goes_first(const Scene& scene, const Quasistatic& run) {
 }
 
 // What is due at the present load: the worst bonded column fails or tips grow.
-void let_happen(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+void grow_or_fail(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
   const LoadPoint before = load_point(state);
   std::vector<Growing> growing;
   double energy_before = 0.0;
   if (failure_goes_first(scene, run)) {
-    fail(scene, run, state);
+    fail_worst_column(scene, run, state);
   } else {
     growing = tips_that_grow(scene, rocks, state, run);
     energy_before = find_equilibrium(scene, state.time, state, run.model).energy;  // against friction's present memory
@@ -231,7 +230,7 @@ void let_happen(const Scene& scene, const std::vector<Elasticity>& rocks, State&
   rebuild_all(scene, rocks, state, run);
   if (!growing.empty()) measure_release(scene, rocks, energy_before, growing, state, run);
   const FluidStep fluid = advance_fluid(scene, 0.0, state, run.model);
-  if (!fluid.found) no_way_on("just after growth or failure", state.time, fluid.reason);
+  if (!fluid.found) throw_no_solution("just after growth or failure", state.time, fluid.reason);
   equilibrate(scene, rocks, state, run);
   double surface = 0.0;
   for (const Growing& g : growing) surface += g.J_c * g.increment;
@@ -261,6 +260,48 @@ double error_of_second_order(double error) {
   return std::cbrt(error * error);
 }
 
+bool flows(const Scene& scene, const State& state) {
+  return scene.fluid.law != Fluid::Law::uniform && state.has_fracture;
+}
+
+// Whether a step of the fluid takes openings midway that are foreseen.
+bool foresees_openings(const Scene& scene, const State& state) {
+  return scene.fluid.law == Fluid::Law::paper && state.has_fracture;
+}
+
+// A step that was taken: its length (s), by how much the margin changed, and its error against what is allowed.
+struct LoadStep {
+  double dt = 0.0, change = 0.0, error = 0.0;
+};
+
+// Takes the step of state.dt or, where nothing flows, of all the time that is left (s), halved until it is found, its
+// error is allowed and the margin does not change too much before an event; w: openings (m) at `from`.
+LoadStep find_step(const Scene& scene, const std::vector<Elasticity>& rocks, const LoadPoint& from,
+                   const std::vector<double>& w, double left, State& state, Quasistatic& run) {
+  const bool flowing = flows(scene, state), foresees = foresees_openings(scene, state);
+  const double margin = run.margin;
+  for (double dt = flowing ? std::min(state.dt, left) : left;; dt *= 0.5) {
+    FluidStep fluid = try_step(scene, rocks, from, dt, state, run);
+    if (!fluid.found) {
+      if (dt < shortest_trial) throw_no_solution("in any step", from.time, fluid.reason);
+      continue;
+    }
+    if (foresees)
+      fluid.error =
+          error_of_second_order(lag_error(scene, from.fluid, w, from.time, state) / scene.numerics.flow_error);
+    const double change = std::abs(run.margin - margin);
+    const bool gentle = !flowing || run.margin >= 1.0 || change < 2.0 * scene.numerics.flow_change;
+    if ((gentle && fluid.error < 4.0) || dt < shortest_trial) return {dt, change, fluid.error};
+  }
+}
+
+// The next step (s) by how fast the margin changes and how large the error is.
+double next_step(const Scene& scene, const LoadStep& step) {
+  const double by_margin = step.change > 0.0 ? scene.numerics.flow_change / step.change : 2.0;
+  const double by_error = step.error > 0.0 ? 0.8 / std::sqrt(step.error) : 2.0;
+  return step.dt * std::clamp(std::min(by_margin, by_error), 0.3, 2.0);
+}
+
 // The step at whose end the margin is 1 or hardly more, no longer than `high`, at which it is larger: regula falsi,
 // which turns the end that stays onto the slope of the parabola through the last three (Anderson and Bjorck, BIT 13,
 // 1973), and bisection where the margin has no size.
@@ -286,7 +327,7 @@ void locate_event(const Scene& scene, const std::vector<Elasticity>& rocks, cons
     side = beyond ? 1 : -1;
   }
   const FluidStep last = try_step(scene, rocks, from, high, state, run);
-  if (!last.found) no_way_on("before the next event", from.time, last.reason);
+  if (!last.found) throw_no_solution("before the next event", from.time, last.reason);
 }
 
 }  // namespace
@@ -327,7 +368,7 @@ void start_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks,
 void restart_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
   forget_solution(scene, rocks, state, run.model);
   if (std::ranges::any_of(run.trials, [&](const GrowthTrial& t) { return t.turn != state.tips[t.tip].turn; }))
-    run.trials = make_trials(scene, rocks, state, run.model, std::move(run.trials));
+    run.trials = build_trials(scene, rocks, state, run.model);
   for (GrowthTrial& trial : run.trials) forget_solution(scene, rocks, trial.state, trial.model);
   equilibrate(scene, rocks, state, run);
 }
@@ -335,35 +376,18 @@ void restart_quasistatic(const Scene& scene, const std::vector<Elasticity>& rock
 void advance_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, double until, State& state,
                          Quasistatic& run) {
   if (run.margin >= 1.0) {
-    let_happen(scene, rocks, state, run);
+    grow_or_fail(scene, rocks, state, run);
     for (Tip& tip : state.tips) stop_at_edge(scene, state, tip);
     return;
   }
   const LoadPoint from = load_point(state);
-  const double margin = run.margin, left = until - from.time, aim = scene.numerics.flow_change;
-  const bool flows = scene.fluid.law != Fluid::Law::uniform && state.has_fracture;
-  const bool foresees = flows && scene.fluid.law == Fluid::Law::paper;
-  const std::vector<double> w = foresees ? openings_of(state.fracture()) : std::vector<double>{};
-  double dt = flows ? std::min(state.dt, left) : left;
-  double change = 0.0;
-  FluidStep fluid;
-  for (bool good = false; !good; dt *= good ? 1.0 : 0.5) {
-    fluid = try_step(scene, rocks, from, dt, state, run);
-    if (foresees && fluid.found)
-      fluid.error =
-          error_of_second_order(lag_error(scene, from.fluid, w, from.time, state) / scene.numerics.flow_error);
-    change = fluid.found ? std::abs(run.margin - margin) : 0.0;
-    if (!fluid.found && dt < shortest_trial) no_way_on("in any step", from.time, fluid.reason);
-    const bool event = run.margin >= 1.0;
-    good = fluid.found && (!flows || event || change < 2.0 * aim) && fluid.error < 4.0;
-    good = good || (fluid.found && dt < shortest_trial);
-  }
-  if (run.margin > 1.0 + event_tolerance) locate_event(scene, rocks, from, margin, dt, state, run);
-  if (foresees) note_rates(w, state.time - from.time, state);
+  const double margin = run.margin;
+  const std::vector<double> w = foresees_openings(scene, state) ? openings_of(state.fracture()) : std::vector<double>{};
+  const LoadStep step = find_step(scene, rocks, from, w, until - from.time, state, run);
+  if (run.margin > 1.0 + event_tolerance) locate_event(scene, rocks, from, margin, step.dt, state, run);
+  if (foresees_openings(scene, state)) note_rates(w, state.time - from.time, state);
   accept(scene, from, Change::load, state, run);
-  const double by_margin = change > 0.0 ? aim / change : 2.0;
-  const double by_error = fluid.error > 0.0 ? 0.8 / std::sqrt(fluid.error) : 2.0;
-  state.dt = dt * std::clamp(std::min(by_margin, by_error), 0.3, 2.0);
+  state.dt = next_step(scene, step);
 }
 
 }  // namespace strata

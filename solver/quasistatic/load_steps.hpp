@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "quasistatic/growth_trials.hpp"
 #include "fracture/j_integral.hpp"
+#include "quasistatic/growth_trials.hpp"
 #include "quasistatic/model.hpp"
 #include "state/elasticity.hpp"
 #include "state/state.hpp"

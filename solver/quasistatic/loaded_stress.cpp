@@ -2,9 +2,9 @@
 
 #include <Eigen/CholmodSupport>
 
-#include "state/stiffness.hpp"
 #include "state/make_grid.hpp"
 #include "state/rebuild.hpp"
+#include "state/stiffness.hpp"
 
 namespace strata {
 

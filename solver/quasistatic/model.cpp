@@ -5,12 +5,11 @@
 #include <memory>
 #include <utility>
 
-#include "quasistatic/body_load.hpp"
-#include "state/stiffness.hpp"
 #include "interfaces/surface_tractions.hpp"
 #include "interfaces/tip_ties.hpp"
+#include "quasistatic/body_load.hpp"
 #include "scene/graded_cells.hpp"
-#include "state/quarters.hpp"
+#include "state/stiffness.hpp"
 
 namespace strata {
 
@@ -194,7 +193,7 @@ void update_equations(const Scene& scene, const std::vector<Elasticity>& rocks, 
   weigh_copies(scene, state);
   update_stencil_weights(scene, state);
   const bool halved = halve && mirror_symmetric(scene);
-  const bool same_body = model.body && model.body->points() == Quarters(scene, state.grid).points(state.particles);
+  const bool same_body = model.body && model.body->points() == state.particles.size();
   if (!same_body) {
     std::vector<int> order;
     if (model.body && model.body->halved() == halved) order = model.body->factor().order();
@@ -203,7 +202,7 @@ void update_equations(const Scene& scene, const std::vector<Elasticity>& rocks, 
   }
   model.condensed = condense(scene, rocks, state, *model.body, same_body ? &model.condensed : nullptr);
   model.places = contact_places(scene, rocks, state, model.condensed);
-  model.factor.outdate();
+  model.factor = TangentFactor{};
   model.j.resize(0);
   model.dw_dP.resize(0, 0);
 }
@@ -223,11 +222,9 @@ Equilibrium find_equilibrium(const Scene& scene, double time, State& state, Quas
   return found;
 }
 
-std::vector<Vec2> set_all_particles(const Scene& scene, State& state, const QuasistaticModel& model) {
+void set_all_particles(const Scene& scene, State& state, const QuasistaticModel& model) {
   const Asked all = ask_for_all(state, *model.body);
-  std::vector<Vec2> u = displacements(scene, state, *model.body, model.condensed, model.shown, all);
-  set_particles(scene, u, state);
-  return u;
+  set_particles(scene, displacements(scene, state, *model.body, model.condensed, model.shown, all), state);
 }
 
 void set_fields(const Scene& scene, State& state, QuasistaticModel& model, const Equilibrium& equilibrium) {

@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "quasistatic/contact_equilibrium.hpp"
 #include "interfaces/failure.hpp"
+#include "quasistatic/contact_equilibrium.hpp"
 
 namespace strata {
 
@@ -54,8 +54,8 @@ Equilibrium find_equilibrium(const Scene& scene, double time, State& state, Quas
 /// to the particles that decide what happens next. Friction's memory stays what it was.
 void set_fields(const Scene& scene, State& state, QuasistaticModel& model, const Equilibrium& equilibrium);
 
-/// Displacements and their gradients to all particles, for whoever looks at them; returns those of all records (m).
-std::vector<Vec2> set_all_particles(const Scene& scene, State& state, const QuasistaticModel& model);
+/// Displacements and their gradients to all particles, for whoever looks at them.
+void set_all_particles(const Scene& scene, State& state, const QuasistaticModel& model);
 
 /// Makes the equilibrium that the state holds the one that friction remembers; adds up slip.
 void remember(State& state, QuasistaticModel& model, const Equilibrium& equilibrium);

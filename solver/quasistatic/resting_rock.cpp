@@ -32,7 +32,7 @@ std::ptrdiff_t split_points(const State& state) {
   return n;
 }
 
-// The same particles without inertia. They are all of one lattice already: none stands for four (see refines_ahead()).
+// The same particles without inertia.
 Scene without_inertia(const Scene& scene) {
   Scene resting = scene;
   resting.numerics.mechanics = Numerics::Mechanics::quasistatic;
@@ -58,7 +58,8 @@ void refine_beside_growth(const Scene& scene, State& state) {
 
 // Equations and trials of resting.state, which is that of the run. What holds of those of `before` (or none), of the
 // same particles in the same places, is taken over, and the rest let go: two are not to be held at a time.
-void make_resting(const Scene& scene, const std::vector<Elasticity>& rocks, Resting before, RestingRock& resting) {
+void build_resting_rock(const Scene& scene, const std::vector<Elasticity>& rocks, Resting before,
+                        RestingRock& resting) {
   resting.scene = without_inertia(scene);
   State& own = resting.state;
   own.total = {};
@@ -69,7 +70,7 @@ void make_resting(const Scene& scene, const std::vector<Elasticity>& rocks, Rest
     resting.model = std::move(before->model);
   before.reset();
   update_equations(resting.scene, rocks, own, resting.model, false);
-  resting.trials = make_trials(resting.scene, rocks, own, resting.model, {}, false);
+  resting.trials = build_trials(resting.scene, rocks, own, resting.model, false);
 }
 
 // Takes over what the run's surfaces bear now, and what friction remembers of it.
@@ -122,7 +123,7 @@ bool finds_rest(Do something, RestingRock& resting) {
 void weigh(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, RestingRock& resting) {
   follow(state, resting);
   if (!trials_hold(scene, resting.state, resting.trials))
-    resting.trials = make_trials(resting.scene, rocks, resting.state, resting.model, std::move(resting.trials), false);
+    resting.trials = build_trials(resting.scene, rocks, resting.state, resting.model, false);
   const Equilibrium rest = find_equilibrium(resting.scene, state.time, resting.state, resting.model);
   resting.nearest = 0.0;
   for (std::size_t k = 0; k < state.tips.size(); ++k) {
@@ -150,7 +151,7 @@ void weigh_growth(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
   if (!resting || !same(resting->state)) {
     Resting before = std::exchange(resting, std::make_unique<RestingRock>());
     resting->state = state;
-    const auto make = [&] { make_resting(scene, rocks, std::move(before), *resting); };
+    const auto make = [&] { build_resting_rock(scene, rocks, std::move(before), *resting); };
     if (!finds_rest(make, *resting)) ++state.monitors.growth_unweighed;
   }
   if (!resting->without_rest && is_due(state, *resting)) {

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <numeric>
-#include <utility>
 
 namespace strata {
 
@@ -42,35 +39,6 @@ double weakest(Solve solve, Eigen::Index n) {
   return eigenvalue;
 }
 
-Eigen::VectorXd scale_of(const Eigen::MatrixXd& T) {
-  return T.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-}
-
-// What a place adds to the tangent, with the unknowns that its own stand for.
-std::vector<double> signature(const ContactPlace& place, const std::vector<int>& unknown_of) {
-  std::vector<double> out{place.A, place.n.x(), place.n.y()};
-  for (const SparseRow& D : place.D) {
-    out.push_back(static_cast<double>(D.size()));
-    for (const auto& [index, value] : D) {
-      out.push_back(static_cast<double>(unknown_of[static_cast<std::size_t>(index)]));
-      out.push_back(value);
-    }
-  }
-  return out;
-}
-
-// Index of each unknown of `of` in `among`; -1: it is not there.
-std::vector<int> indices(const Unknowns& of, const Unknowns& among) {
-  std::map<const void*, int> index;
-  for (std::size_t k = 0; k < among.size(); ++k) index.emplace(among[k].get(), static_cast<int>(k));
-  std::vector<int> out;
-  for (const auto& unknown : of) {
-    const auto found = index.find(unknown.get());
-    out.push_back(found == index.end() ? -1 : found->second);
-  }
-  return out;
-}
-
 }  // namespace
 
 std::vector<LawAnswer> without_coupling(std::vector<LawAnswer> answers) {
@@ -102,99 +70,27 @@ Eigen::MatrixXd tangent(const Eigen::MatrixXd& S, const std::vector<ContactPlace
   return T;
 }
 
-// What T_0 is of, with nothing changed since.
-void TangentFactor::start(const Unknowns& unknowns, const std::vector<ContactPlace>& places,
-                          const std::vector<LawAnswer>& first) {
-  unknowns_ = unknowns, places_ = places, first_ = first;
-  known_.assign(places.size(), {-1, -1});
-  Z_all_.resize(static_cast<Eigen::Index>(unknowns.size()), 0);
-  V_.clear();
-  outdated_ = false;
-}
-
 bool TangentFactor::stands_still() const {
   const auto solve = [&](const Eigen::VectorXd& x) {
-    return Eigen::VectorXd(symmetric_ ? cholesky_.solve(x) : Eigen::MatrixXd(lu_.solve(x)));
+    return symmetric_ ? Eigen::VectorXd(cholesky_.solve(x)) : Eigen::VectorXd(lu_.solve(x));
   };
   return weakest(solve, scale_.size()) > smallest_eigenvalue;
 }
 
-bool TangentFactor::factorise(const Eigen::MatrixXd& T, const Unknowns& unknowns,
-                              const std::vector<ContactPlace>& places, const std::vector<LawAnswer>& answers,
-                              std::vector<int> order, bool stiffened) {
+bool TangentFactor::factorise(const Eigen::MatrixXd& T, const std::vector<ContactPlace>& places,
+                              const std::vector<LawAnswer>& answers, bool stiffened) {
   stiffened_ = stiffened;
   symmetric_ = std::none_of(answers.begin(), answers.end(), [](const LawAnswer& r) { return r.dt_dn != 0.0; });
-  start(unknowns, places, answers);
-  scale_ = scale_of(T);
+  first_ = answers;
+  known_.assign(places.size(), {-1, -1});
+  Z_all_.resize(T.rows(), 0);
+  V_.clear();
+  scale_ = T.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   if (T.rows() == 0) return true;  // a fracture so short that it splits no node
-  if (symmetric_) return cholesky_.factorise(T, scale_, std::move(order)) && stands_still();
-  lu_.compute(scale_.asDiagonal() * T * scale_.asDiagonal());
+  const Eigen::MatrixXd scaled = scale_.asDiagonal() * T * scale_.asDiagonal();
+  if (symmetric_) return cholesky_.compute(scaled).info() == Eigen::Success && stands_still();
+  lu_.compute(scaled);
   return stands_still();
-}
-
-void TangentFactor::outdate() {
-  pieces.clear();
-  outdated_ = true;
-}
-
-TangentFactor::Shared TangentFactor::shared_with(const Unknowns& unknowns, const std::vector<ContactPlace>& places,
-                                                 const std::vector<LawAnswer>& answers) const {
-  Shared shared{indices(unknowns_, unknowns), std::vector<char>(unknowns_.size(), 0), without_coupling(answers)};
-  const std::vector<int> itself = indices(unknowns_, unknowns_), before_of = indices(unknowns, unknowns_);
-  const auto touch = [&](const ContactPlace& place, const std::vector<int>& unknown_of) {
-    for (const SparseRow& D : place.D) {
-      for (const auto& entry : D) {
-        const int unknown = unknown_of[static_cast<std::size_t>(entry.first)];
-        if (unknown >= 0) shared.touched[static_cast<std::size_t>(unknown)] = 1;
-      }
-    }
-  };
-  std::map<std::vector<double>, std::size_t> before;
-  for (std::size_t k = 0; k < places_.size(); ++k) {
-    if (!before.emplace(signature(places_[k], itself), k).second) touch(places_[k], itself);
-  }
-  std::vector<std::pair<std::size_t, std::size_t>> same;  // places there and in T_0
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    const auto found = before.find(signature(places[k], before_of));
-    if (found == before.end()) {
-      touch(places[k], before_of);
-    } else {
-      same.emplace_back(k, found->second);
-      before.erase(found);
-    }
-  }
-  for (const auto& gone : before) touch(places_[gone.second], itself);
-  keep_answers(same, shared);
-  return shared;
-}
-
-// T_0 keeps the answers of the places that its leading rows know.
-void TangentFactor::keep_answers(const std::vector<std::pair<std::size_t, std::size_t>>& same, Shared& shared) const {
-  std::vector<char> leads(unknowns_.size(), 0);
-  const Eigen::Index kept = cholesky_.keeps(shared.now, shared.touched);
-  for (Eigen::Index row = 0; row < kept; ++row)
-    leads[static_cast<std::size_t>(cholesky_.order()[static_cast<std::size_t>(row)])] = 1;
-  const auto led = [&](const SparseRow& D) {
-    return std::ranges::any_of(D, [&](const auto& entry) { return leads[static_cast<std::size_t>(entry.first)] != 0; });
-  };
-  for (const auto& [there, here] : same) {
-    if (std::ranges::any_of(places_[here].D, led)) shared.first[there] = first_[here];
-  }
-}
-
-bool TangentFactor::grow(const Eigen::MatrixXd& S, const Unknowns& unknowns, const std::vector<ContactPlace>& places,
-                         const std::vector<LawAnswer>& answers) {
-  if (!symmetric_ || stiffened_ || scale_.size() == 0) return false;
-  const Shared shared = shared_with(unknowns, places, answers);
-  const Eigen::MatrixXd T = tangent(S, places, shared.first);
-  Eigen::VectorXd scale = scale_of(T);
-  for (std::size_t k = 0; k < shared.now.size(); ++k) {
-    if (shared.now[k] >= 0) scale[shared.now[k]] = scale_[static_cast<Eigen::Index>(k)];
-  }
-  const bool definite = cholesky_.change(T, scale, shared.now, shared.touched);
-  scale_ = std::move(scale);
-  start(unknowns, places, shared.first);
-  return definite && stands_still() && follow(places, answers);
 }
 
 // The rows of reactions that are others now than in T_0.
@@ -242,7 +138,7 @@ Eigen::MatrixXd TangentFactor::change_of(const Eigen::MatrixXd& y) const {
 }
 
 bool TangentFactor::follow(const std::vector<ContactPlace>& places, const std::vector<LawAnswer>& answers) {
-  if (stiffened_ || outdated_ || scale_.size() == 0 || first_.size() != places.size()) return false;
+  if (stiffened_ || scale_.size() == 0 || first_.size() != places.size()) return false;
   const std::vector<Change> differ = changes(places, answers);
   std::vector<Change> fresh;
   for (const Change& change : differ) {
@@ -282,8 +178,8 @@ Eigen::MatrixXd TangentFactor::solve_first(const Eigen::MatrixXd& b) const {
     return scale_.cwiseProduct(x);
   }
   const Eigen::MatrixXd scaled = scale_.asDiagonal() * b;
-  if (symmetric_) return scale_.asDiagonal() * cholesky_.solve(scaled);
-  return scale_.asDiagonal() * lu_.solve(scaled);
+  if (symmetric_) return scale_.asDiagonal() * Eigen::MatrixXd(cholesky_.solve(scaled));
+  return scale_.asDiagonal() * Eigen::MatrixXd(lu_.solve(scaled));
 }
 
 Eigen::MatrixXd TangentFactor::solve(const Eigen::MatrixXd& b) const {

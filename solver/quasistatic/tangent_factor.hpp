@@ -1,14 +1,13 @@
 // The tangent of a state's contact, S - sum_s A_s D_s^T (dr/dw)_s D_s, factored; and changed where few places change.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <array>
-#include <memory>
 #include <utility>
 #include <vector>
 
 #include "interfaces/surface_law.hpp"
-#include "quasistatic/tail_cholesky.hpp"
 #include "state/types.hpp"
 
 namespace strata {
@@ -33,9 +32,6 @@ struct ContactPlace {
 
 using Pieces = std::vector<LawAnswer::Piece>;
 
-// The jump unknowns: the same where they point to the same, in whatever states.
-using Unknowns = std::vector<std::shared_ptr<const void>>;
-
 /// dr/dw of a place's piece in x and y (Pa/m). Throws nothing.
 Eigen::Matrix2d tangent_matrix(const ContactPlace& place, const LawAnswer& r);
 
@@ -50,32 +46,23 @@ std::vector<LawAnswer> without_coupling(std::vector<LawAnswer> answers);
 // derivative of its normal reaction, or of its tangential one, or both: with a column u = D^T n or D^T t and a row
 // v^T = -A change(dr_n/dw or dr_t/dw) D for each of them, T = T_0 + U V^T and (Woodbury 1950)
 //   T^-1 b = y - Z (I + V^T Z)^-1 V^T y,  y = T_0^-1 b,  Z = T_0^-1 U:
-// a solve for each instead of a factorisation, and none for what has changed before. Where unknowns and places come and
-// go, as when a fracture grows, T_0 keeps the rows of its factor before the first of them (see TailCholesky).
+// a solve for each instead of a factorisation, and none for what has changed before: without this, runs with soft
+// interfaces take half as long again.
 class TangentFactor {
  public:
   Pieces pieces;  // of T; none where it is not to be used again
 
-  /// Factors T as the T_0 of what follows; false where it is singular. order: of the unknowns in the factor, best those
-  /// last that the next change of the state will touch. stiffened: T is not quite that of `places` and `answers`, and
-  /// nothing may follow it.
-  bool factorise(const Eigen::MatrixXd& T, const Unknowns& unknowns, const std::vector<ContactPlace>& places,
-                 const std::vector<LawAnswer>& answers, std::vector<int> order, bool stiffened = false);
+  /// Factors T as the T_0 of what follows; false where it is singular. stiffened: T is not quite that of `places` and
+  /// `answers`, and nothing may follow it.
+  bool factorise(const Eigen::MatrixXd& T, const std::vector<ContactPlace>& places,
+                 const std::vector<LawAnswer>& answers, bool stiffened = false);
 
   /// Goes over to the tangent of other answers of the same places; false where it is not sure to keep the digits (too
   /// many places have changed, the result is nearly singular) or nothing was factored: then it has to be factorised.
   bool follow(const std::vector<ContactPlace>& places, const std::vector<LawAnswer>& answers);
 
-  /// Goes over to the tangent of another state, with S (N/m) of it, whose entries between unknowns of both are what
-  /// they were; false as follow(): then it has to be factorised.
-  bool grow(const Eigen::MatrixXd& S, const Unknowns& unknowns, const std::vector<ContactPlace>& places,
-            const std::vector<LawAnswer>& answers);
-
-  /// From now on what is factored is the tangent of a former state: it may grow into that of the next.
-  void outdate();
-
-  /// Whether what is factored is a tangent of the present state, with so many unknowns.
-  bool holds(Eigen::Index unknowns) const { return !outdated_ && scale_.size() == unknowns; }
+  /// Whether a tangent with so many unknowns is factored.
+  bool holds(Eigen::Index unknowns) const { return scale_.size() == unknowns; }
 
   /// T^-1 b (m), a right-hand side (N/m) a column.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
@@ -95,28 +82,15 @@ class TangentFactor {
     Vec2 v = Vec2::Zero();      // -A times the change of its derivative (N/m)
   };
 
-  // What T_0 shares with the tangent of another state.
-  struct Shared {
-    std::vector<int> now;          // index of each unknown of T_0 there; -1: none
-    std::vector<char> touched;     // unknowns of T_0 that belong to places which differ
-    std::vector<LawAnswer> first;  // answers of the places there that T_0 has, or would have
-  };
-
-  void start(const Unknowns& unknowns, const std::vector<ContactPlace>& places, const std::vector<LawAnswer>& first);
-  Shared shared_with(const Unknowns& unknowns, const std::vector<ContactPlace>& places,
-                     const std::vector<LawAnswer>& answers) const;
-  void keep_answers(const std::vector<std::pair<std::size_t, std::size_t>>& same, Shared& shared) const;
   bool stands_still() const;
   Eigen::MatrixXd solve_first(const Eigen::MatrixXd& b) const;
   std::vector<Change> changes(const std::vector<ContactPlace>& places, const std::vector<LawAnswer>& answers) const;
   void solve_for(const std::vector<ContactPlace>& places, const std::vector<Change>& fresh);
   Eigen::MatrixXd change_of(const Eigen::MatrixXd& y) const;
 
-  bool symmetric_ = true, stiffened_ = false, outdated_ = false;
-  Unknowns unknowns_;
-  std::vector<ContactPlace> places_;
+  bool symmetric_ = true, stiffened_ = false;
   Eigen::VectorXd scale_;
-  TailCholesky cholesky_;
+  Eigen::LLT<Eigen::MatrixXd> cholesky_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
   std::vector<LawAnswer> first_;           // answers of the places in T_0
   std::vector<std::array<int, 2>> known_;  // where a place's columns of Z stand in Z_all_; -1: not computed

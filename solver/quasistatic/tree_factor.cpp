@@ -7,16 +7,13 @@
 #include <algorithm>
 #include <new>
 #include <numeric>
+#include <span>
 
 #include "state/types.hpp"
 
 namespace strata {
 
 namespace {
-
-// Right-hand sides that go through the factor together.
-constexpr std::size_t at_a_time = 16;
-using Sixteen = Eigen::Array<double, at_a_time, 1>;
 
 // CHOLMOD brings threads of its own, which wait for each other at every supernode however many the run was given.
 class OneThread {
@@ -31,6 +28,21 @@ class OneThread {
 };
 
 }  // namespace
+
+void SideBySide::clear() {
+  for (const int row : held_) place_[static_cast<std::size_t>(row)] = 0;
+  held_.clear();
+  values_.resize(1);
+}
+
+void SideBySide::add_rows(int first, int last) {
+  for (int row = first; row < last; ++row) {
+    if (place_[static_cast<std::size_t>(row)] != 0) continue;
+    place_[static_cast<std::size_t>(row)] = values_.size();
+    values_.emplace_back(Row::Zero());
+    held_.push_back(row);
+  }
+}
 
 TreeFactor::TreeFactor(const Eigen::SparseMatrix<double>& K, const char* singular, std::vector<int> order) {
   const OneThread guard;
@@ -111,39 +123,36 @@ void TreeFactor::add_block(int first, int columns, const double* values, std::si
   blocks_.push_back(block);
 }
 
-// Adds the blocks on the branches of some unknowns that are not `on` yet to `blocks`, in no order.
-void TreeFactor::mark(const std::vector<int>& unknowns, std::vector<char>& on, Branches& blocks) const {
+TreeFactor::Branches TreeFactor::branches(const std::vector<int>& unknowns) const {
+  std::vector<char> on(blocks_.size(), 0);
+  Branches blocks;
   for (const int unknown : unknowns) {
-    int b = block_of_row_[static_cast<std::size_t>(place_[static_cast<std::size_t>(unknown)])];
+    int b = block_of_row_[static_cast<std::size_t>(row(unknown))];
     for (; b >= 0 && on[static_cast<std::size_t>(b)] == 0; b = blocks_[static_cast<std::size_t>(b)].parent) {
       on[static_cast<std::size_t>(b)] = 1;
       blocks.push_back(b);
     }
   }
-}
-
-TreeFactor::Branches TreeFactor::branches(const std::vector<int>& unknowns) const {
-  std::vector<char> on(blocks_.size(), 0);
-  Branches blocks;
-  mark(unknowns, on, blocks);
   std::sort(blocks.begin(), blocks.end());
   return blocks;
 }
 
-// Solves for a block's own rows of y and takes their part from the rows below.
-void TreeFactor::down(const Block& block, Eigen::VectorXd& y) const {
+// Solves for a block's own rows of y, of one right-hand side or several, and takes their part from the rows below.
+template <class Row, class Rows>
+void TreeFactor::down(const Block& block, const Row& zero, Rows& y) const {
   const Eight* L = &values_[block.values];
-  Eight own = Eight::Zero();
+  std::array<Row, width> own;
+  own.fill(zero);
   for (int c = 0; c < block.columns; ++c) {
-    double value = y[block.first + c];
-    for (int b = 0; b < c; ++b) value -= L[c][b] * own[b];
-    y[block.first + c] = own[c] = value / L[c][c];
+    Row value = y[block.first + c];
+    for (int b = 0; b < c; ++b) value -= L[c][b] * own[static_cast<std::size_t>(b)];
+    y[block.first + c] = own[static_cast<std::size_t>(c)] = value / L[c][c];
   }
   L += width;
   for (std::size_t r = block.rows; r < block.last_row; ++r, ++L) {
-    double& below = y[row_[r]];
-    double value = below;
-    for (int b = 0; b < width; ++b) value -= (*L)[b] * own[b];
+    Row& below = y[row_[r]];
+    Row value = below;
+    for (int b = 0; b < width; ++b) value -= (*L)[b] * own[static_cast<std::size_t>(b)];
     below = value;
   }
 }
@@ -179,7 +188,7 @@ Eigen::VectorXd TreeFactor::zeros(const Branches& loaded, const Branches& wanted
 }
 
 void TreeFactor::solve(const Branches& loaded, const Branches& wanted, Eigen::VectorXd& f) const {
-  for (const int b : loaded) down(blocks_[static_cast<std::size_t>(b)], f);
+  for (const int b : loaded) down(blocks_[static_cast<std::size_t>(b)], 0.0, f);
   for (auto b = wanted.rbegin(); b != wanted.rend(); ++b) up(blocks_[static_cast<std::size_t>(*b)], f);
 }
 
@@ -191,63 +200,32 @@ Eigen::VectorXd TreeFactor::solve(const Eigen::VectorXd& f) const {
   return x;
 }
 
-// The same as for one right-hand side, for many, of which y holds the rows on some branches; place: of each of them.
-template <class Lanes>
-void TreeFactor::down(const Block& block, const std::vector<int>& place, std::vector<Lanes>& y) const {
-  const auto at = [&](int row) -> Lanes& { return y[static_cast<std::size_t>(place[static_cast<std::size_t>(row)])]; };
-  const Eight* L = &values_[block.values];
-  std::array<Lanes, width> own;
-  own.fill(Lanes::Zero());
-  for (int c = 0; c < block.columns; ++c) {
-    Lanes value = at(block.first + c);
-    for (int b = 0; b < c; ++b) value -= L[c][b] * own[static_cast<std::size_t>(b)];
-    at(block.first + c) = own[static_cast<std::size_t>(c)] = value / L[c][c];
-  }
-  L += width;
-  for (std::size_t r = block.rows; r < block.last_row; ++r, ++L) {
-    Lanes value = at(row_[r]);
-    for (int b = 0; b < width; ++b) value -= (*L)[b] * own[static_cast<std::size_t>(b)];
-    at(row_[r]) = value;
-  }
-}
-
-std::vector<BranchVector> TreeFactor::forward(const std::vector<SparseVector>& g) const {
-  std::vector<BranchVector> out(g.size());
-  std::vector<int> place(g.empty() ? 0 : place_.size());  // of rows on the branches of one batch, in y
-  std::vector<Sixteen> y;
-  std::vector<char> on(g.empty() ? 0 : blocks_.size(), 0);
-  Branches together, own;
-  for (std::size_t from = 0; from < g.size(); from += at_a_time) {
-    const std::size_t count = std::min(at_a_time, g.size() - from);
-    together.clear();
-    for (std::size_t c = 0; c < count; ++c) mark(g[from + c].index, on, together);
-    std::sort(together.begin(), together.end());
-    int rows = 0;
+std::vector<SparseVector> TreeFactor::forward(const std::vector<SparseVector>& g) const {
+  const SideBySide::Row zero = SideBySide::Row::Zero();
+  std::vector<SparseVector> out(g.size());
+  SideBySide y(g.empty() ? 0 : size());
+  for (std::size_t from = 0; from < g.size(); from += SideBySide::most) {
+    const auto batch = std::span(g).subspan(from, std::min(SideBySide::most, g.size() - from));
+    std::vector<int> loaded;
+    for (const SparseVector& load : batch) loaded.insert(loaded.end(), load.index.begin(), load.index.end());
+    const Branches together = branches(loaded);
+    y.clear();
     for (const int b : together) {
       const Block& block = blocks_[static_cast<std::size_t>(b)];
-      on[static_cast<std::size_t>(b)] = 0;
-      for (int k = block.first; k < block.first + block.columns; ++k) place[static_cast<std::size_t>(k)] = rows++;
+      y.add_rows(block.first, block.first + block.columns);
     }
-    const auto at = [&](int row) { return static_cast<std::size_t>(place[static_cast<std::size_t>(row)]); };
-    y.assign(static_cast<std::size_t>(rows), Sixteen::Zero());
-    for (std::size_t c = 0; c < count; ++c) {
-      const SparseVector& load = g[from + c];
-      for (std::size_t e = 0; e < load.index.size(); ++e)
-        y[at(row(load.index[e]))][static_cast<Eigen::Index>(c)] = load.value[e];
+    for (std::size_t c = 0; c < batch.size(); ++c) {
+      for (std::size_t e = 0; e < batch[c].index.size(); ++e)
+        y[row(batch[c].index[e])][static_cast<Eigen::Index>(c)] = batch[c].value[e];
     }
-    for (const int b : together) down(blocks_[static_cast<std::size_t>(b)], place, y);
-    for (std::size_t c = 0; c < count; ++c) {
-      own.clear();
-      mark(g[from + c].index, on, own);
-      std::sort(own.begin(), own.end());
-      BranchVector& Y = out[from + c];
-      for (const int b : own) {
-        on[static_cast<std::size_t>(b)] = 0;
+    for (const int b : together) down(blocks_[static_cast<std::size_t>(b)], zero, y);
+    for (std::size_t c = 0; c < batch.size(); ++c) {
+      for (const int b : branches(batch[c].index)) {
         const Block& block = blocks_[static_cast<std::size_t>(b)];
-        for (int k = block.first; k < block.first + block.columns; ++k)
-          Y.value.push_back(y[at(k)][static_cast<Eigen::Index>(c)]);
-        Y.block.push_back(b);
-        Y.begin.push_back(static_cast<int>(Y.value.size()));
+        for (int k = block.first; k < block.first + block.columns; ++k) {
+          out[from + c].index.push_back(k);
+          out[from + c].value.push_back(y[k][static_cast<Eigen::Index>(c)]);
+        }
       }
     }
   }

@@ -22,12 +22,28 @@ struct SparseVector {
   std::vector<double> value;
 };
 
-// A vector in rows of a factor that is 0 off some branches: its values on their blocks, rising, and where those of each
-// block begin (one more: the end).
-struct BranchVector {
-  std::vector<int> block;
-  std::vector<int> begin{0};
-  std::vector<double> value;
+// Up to 16 vectors side by side, a row of all of them next to each other, with room for the rows where one is not 0.
+class SideBySide {
+ public:
+  static constexpr std::size_t most = 16;
+  using Row = Eigen::Array<double, most, 1>;
+
+  /// For vectors of so many rows, all of them 0. Throws nothing.
+  explicit SideBySide(int rows) : place_(static_cast<std::size_t>(rows), 0), values_(1, Row::Zero()) {}
+
+  /// Sets all vectors to 0, in the place of others. Throws nothing.
+  void clear();
+
+  /// Makes room for rows [first, last). Throws nothing.
+  void add_rows(int first, int last);
+
+  /// A row; one without room must stay 0.
+  Row& operator[](int row) { return values_[place_[static_cast<std::size_t>(row)]]; }
+
+ private:
+  std::vector<std::size_t> place_;  // of each row among the values; 0: the one of all without room
+  std::vector<int> held_;           // rows with room
+  std::vector<Row> values_;
 };
 
 class TreeFactor {
@@ -64,11 +80,10 @@ class TreeFactor {
   /// x = K^-1 f by unknowns, whole. Throws nothing.
   Eigen::VectorXd solve(const Eigen::VectorXd& f) const;
 
-  /// Y = L^-1 P g of each g; the digits of one do not depend on the others. Throws nothing.
-  std::vector<BranchVector> forward(const std::vector<SparseVector>& g) const;
+  /// Y = L^-1 P g of each g in rows of the factor; the digits of one do not depend on the others. Throws nothing.
+  std::vector<SparseVector> forward(const std::vector<SparseVector>& g) const;
 
   int size() const { return static_cast<int>(place_.size()); }
-  int blocks() const { return static_cast<int>(blocks_.size()); }
 
  private:
   static constexpr int width = 8;  // columns of a block: a vector of the processor
@@ -86,11 +101,9 @@ class TreeFactor {
 
   void reserve(const cholmod_factor_struct& L);
   void add_block(int first, int columns, const double* values, std::size_t stride, const int* rows, std::size_t count);
-  void mark(const std::vector<int>& unknowns, std::vector<char>& on, Branches& blocks) const;
-  void down(const Block& block, Eigen::VectorXd& y) const;
   void up(const Block& block, Eigen::VectorXd& y) const;
-  template <class Lanes>
-  void down(const Block& block, const std::vector<int>& place, std::vector<Lanes>& y) const;
+  template <class Row, class Rows>
+  void down(const Block& block, const Row& zero, Rows& y) const;
 
   std::vector<int> place_;    // row of an unknown
   std::vector<int> unknown_;  // and back

@@ -75,18 +75,6 @@ double cells_along(const Scene& scene, const Cells& cells) {
   return scene.strata.along == Strata::Along::y ? cells.x : cells.y;
 }
 
-// Cells that have 4 x 4 points at the end where others have 2 x 2: as far as J's rings reach beside the way of a tip,
-// and 3.25 cells beside interfaces that may part (fracture/refine_beside.hpp).
-double refined_cells(const Scene& scene, const Cells& cells) {
-  const double h = scene.numerics.cell_m, beside_path = 2.0 * (scene.numerics.ring_cells + 2.0), beside_interface = 6.5;
-  double refined = beside_path * longest_fracture(scene) / h;
-  for (const InterfacePlace& place : scene.strata.interfaces) {
-    if (scene.laws[place.law].kind == InterfaceLaw::Kind::perfect) continue;
-    refined += beside_interface * cells_along(scene, cells);
-  }
-  return std::min(refined, cells.x * cells.y);
-}
-
 // Jumps across the fracture at the end and interfaces that part from the start: six a cell. How much of a bonded one
 // fails is not known.
 double jumps_of(const Scene& scene, const Cells& cells) {
@@ -116,15 +104,14 @@ struct Bytes {
 Bytes bytes_of(const Scene& scene) {
   const bool weighs = weighs_growth(scene);
   if (!may_turn(scene)) return weighs ? Bytes{1000.0, 820.0} : Bytes{330.0, 705.0};
-  return {refines_ahead(scene) ? 800.0 : 1090.0, weighs ? 1200.0 : 475.0};
+  return {1090.0, weighs ? 1200.0 : 475.0};
 }
 
 }  // namespace
 
 double points_of(const Scene& scene) {
   const Cells cells = cells_of(scene);
-  const double points = cells.x * cells.y * std::pow(points_across(scene), 2);
-  return refines_ahead(scene) ? points + 12.0 * refined_cells(scene, cells) : points;
+  return cells.x * cells.y * std::pow(points_across(scene), 2);
 }
 
 double memory_need(const Scene& scene) {

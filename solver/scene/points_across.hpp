@@ -10,12 +10,7 @@ namespace strata {
 bool may_turn(const Scene& scene);
 
 /// Points across a cell at the start: the root of numerics.particles_per_cell, or four where that is two and a layer is
-/// too thin for it or, without inertia, the path may turn through a loaded in-situ state or under a body force. Throws
-/// nothing.
+/// too thin for it or, without inertia, the path may turn. Throws nothing.
 int points_across(const Scene& scene);
-
-/// Whether cells of 2 x 2 points get 4 x 4 as a fracture that may turn comes near, and stand for these in the stiffness
-/// from the start (see state/quarters.hpp): without inertia, unless all cells have them. Throws nothing.
-bool refines_ahead(const Scene& scene);
 
 }  // namespace strata

@@ -68,10 +68,9 @@ Scene pressed() {
 struct AtRest {
   Run run;
   Quasistatic statics;
-  std::vector<Vec2> u;  // of all records (m)
   explicit AtRest(const Scene& scene) : run(without_lanes(scene)) {
     start_quasistatic(run.scene, run.rocks, run.state, statics);
-    u = set_all_particles(run.scene, run.state, statics.model);
+    set_all_particles(run.scene, run.state, statics.model);
   }
 };
 
@@ -194,19 +193,19 @@ TEST_CASE("contact that runs out of sweeps is marked by what it leaves") {
 TEST_CASE("an equilibrium balances forces at every node") {
   AtRest rest(pressed());
   State& state = rest.run.state;
-  watch_forces(rest.run.scene, rest.run.rocks, rest.u, state);
+  watch_forces(rest.run.scene, rest.run.rocks, state);
   CAPTURE(state.monitors.force_balance);
   CHECK(state.monitors.force_balance < 1e-9);
   CHECK(state.monitors.force_balance > 0.0);
   CHECK(marks(rest.run).empty());
   const State before = state;
   for (SurfacePoint& s : state.fracture().points) s.P *= 1.001;
-  watch_forces(rest.run.scene, rest.run.rocks, rest.u, state);
+  watch_forces(rest.run.scene, rest.run.rocks, state);
   CHECK(state.monitors.force_balance > 1e-3);
   CHECK(marks(rest.run) == Names{"force_balance"});
   state = before;
   state.particles.g_yy[state.particles.size() / 2] += 1e-4;
-  watch_forces(rest.run.scene, rest.run.rocks, rest.u, state);
+  watch_forces(rest.run.scene, rest.run.rocks, state);
   CHECK(marks(rest.run) == Names{"force_balance"});
 }
 
@@ -222,7 +221,7 @@ TEST_CASE("body force and springs of tips are in the balance of nodes") {
   double carried = 0.0;
   for (const TipTie& tie : rest.run.state.ties) carried = std::max(carried, tie.s.reaction.norm());
   REQUIRE(carried > 1e3);
-  watch_forces(rest.run.scene, rest.run.rocks, rest.u, rest.run.state);
+  watch_forces(rest.run.scene, rest.run.rocks, rest.run.state);
   CHECK(rest.run.state.monitors.force_balance > 0.0);
   CHECK(rest.run.state.monitors.force_balance < 1e-9);
 }
@@ -259,8 +258,8 @@ TEST_CASE("overlap and tension are found without inertia, too") {
   for (SurfacePoint& s : state.fracture().points) s.P = 1e6;  // below the closing stress: closed
   rest.statics.equilibrium = find_equilibrium(rest.run.scene, 0.0, state, rest.statics.model);
   set_fields(rest.run.scene, state, rest.statics.model, rest.statics.equilibrium);
-  rest.u = set_all_particles(rest.run.scene, state, rest.statics.model);
-  watch_forces(rest.run.scene, rest.run.rocks, rest.u, state);
+  set_all_particles(rest.run.scene, state, rest.statics.model);
+  watch_forces(rest.run.scene, rest.run.rocks, state);
   CHECK(state.monitors.force_balance < 1e-9);  // of what the fluid and the in-situ stress load, not of the nothing left
   watch_row(rest.run.scene, state);
   CHECK(state.monitors.largest_contact_Pa == Approx(1e6).epsilon(0.2));

@@ -132,7 +132,7 @@ TEST_CASE("what the in-situ state carried is supplied once") {
 
 // Requires J and K of a step to have the digits that they have when all particles are given their fields, and to be
 // what is measured without the rules that were made for the tips' places: with rings of
-// 4 and 8 cells, with both kinds of functions, one tip and two that lean, points divided ahead of them or not, and
+// 4 and 8 cells, with both kinds of functions, one tip and two that lean, and
 // beside a bonded interface. Mutations that fail: bins watched a cell or two less around tips, or none.
 TEST_CASE("a step looks at all particles that J's rings weigh") {
   std::vector<Scene> scenes{rising(), rising(), rising(), rising()};

@@ -10,7 +10,6 @@
 #include "output/suspect.hpp"
 #include "quasistatic/load_steps.hpp"
 #include "random_scene.hpp"
-#include "state/quarters.hpp"
 #include "statics.hpp"
 
 using namespace strata;
@@ -58,31 +57,19 @@ void check_place(const State& state, const ContactPlace& place, const LawAnswer&
     worst.see(std::min(std::abs(r.t), place.k * std::max(0.0, slip * std::copysign(1.0, r.t))), "slip with friction");
 }
 
-// Forces of the rock on nodes (N/m), with the opposite sign, from the particles' stress; where these stand for four,
-// from that of the nodes' motion at the quarters.
-std::vector<Vec2> rock_forces(const Run& run, const QuasistaticModel& model) {
+// Forces of the rock on nodes (N/m), with the opposite sign, from the particles' stress.
+std::vector<Vec2> rock_forces(const Run& run) {
   const State& state = run.state;
   const Particles& p = state.particles;
-  const Quarters quarters(run.scene, state.grid);
-  const std::vector<Vec2> u =
-      displacements(run.scene, state, *model.body, model.condensed, model.shown, ask_for_all(state, *model.body));
   std::vector<Vec2> forces(static_cast<std::size_t>(state.copies.records()), Vec2::Zero());
   for (const Bin& bin : state.bins) {
     for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
          q += static_cast<std::size_t>(bin.stride)) {
       const Elasticity& rock = run.rocks[p.rock[q]];
-      const Stress own = stress_of(rock, p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]);
-      quarters.for_each_point(p, q, [&](const Vec2& x, const Vec2& half, double V) {
-        const Gradients g = gradients_at(run.scene, state.grid, bin.i, bin.j, x, half);
-        Vec2 d_x = Vec2::Zero(), d_y = Vec2::Zero();
-        for (std::size_t n = 0; n < 9; ++n) {
-          const Vec2& u_n = u[static_cast<std::size_t>(bin.record[n])];
-          d_x += g.N_x[n] * u_n, d_y += g.N_y[n] * u_n;
-        }
-        const Stress s = quarters.whole(p, q) ? stress_of(rock, d_x.x(), d_y.x(), d_x.y(), d_y.y()) : own;
-        for (std::size_t n = 0; n < 9; ++n)
-          forces[static_cast<std::size_t>(bin.record[n])] += V * s.on({g.N_x[n], g.N_y[n]});
-      });
+      const Stress s = stress_of(rock, p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]);
+      const Gradients g = gradients_at(run.scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
+      for (std::size_t n = 0; n < 9; ++n)
+        forces[static_cast<std::size_t>(bin.record[n])] += p.V[q] * s.on({g.N_x[n], g.N_y[n]});
     }
   }
   return forces;
@@ -92,7 +79,7 @@ std::vector<Vec2> rock_forces(const Run& run, const QuasistaticModel& model) {
 // largest of the loads that meet there: what the solver's condensed operator has no part in.
 std::array<double, 2> balance(const Run& run, const QuasistaticModel& model, const Equilibrium& at) {
   const State& state = run.state;
-  const std::vector<Vec2> inner = rock_forces(run, model);
+  const std::vector<Vec2> inner = rock_forces(run);
   std::vector<Vec2> load(state.masters.size(), Vec2::Zero());
   double largest = 0.0;
   for (std::size_t k = 0; k < model.places.size(); ++k) {

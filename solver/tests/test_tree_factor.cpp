@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <span>
 
-#include "quasistatic/branch_products.hpp"
 #include "state/types.hpp"
 #include "statics.hpp"
 
@@ -41,22 +39,8 @@ Eigen::VectorXd dense(const SparseVector& v, Eigen::Index n) {
   return x;
 }
 
-// Values of a vector on branches on one block; none where it has none there.
-std::span<const double> on_block(const BranchVector& v, int block) {
-  const auto at = std::find(v.block.begin(), v.block.end(), block);
-  if (at == v.block.end()) return {};
-  const auto e = static_cast<std::size_t>(at - v.block.begin());
-  const auto from = static_cast<std::size_t>(v.begin[e]), to = static_cast<std::size_t>(v.begin[e + 1]);
-  return std::span(v.value).subspan(from, to - from);
-}
-
-double dot(const BranchVector& a, const BranchVector& b) {
-  double sum = 0.0;
-  for (const int block : a.block) {
-    const auto x = on_block(a, block), y = on_block(b, block);
-    for (std::size_t k = 0; k < y.size(); ++k) sum += x[k] * y[k];
-  }
-  return sum;
+double dot(const SparseVector& a, const SparseVector& b) {
+  return dense(a, 10000).dot(dense(b, 10000));
 }
 
 // Loads of a few neighbouring unknowns each, more of them than go through the factor together.
@@ -97,7 +81,7 @@ TEST_CASE("forward gives one half of the inverse") {
   const auto n = static_cast<int>(K.rows());
   const TreeFactor factor(K, "singular");
   const std::vector<SparseVector> g = some_loads(n);
-  const std::vector<BranchVector> Y = factor.forward(g);
+  const std::vector<SparseVector> Y = factor.forward(g);
   const Eigen::LDLT<Eigen::MatrixXd> whole(Eigen::MatrixXd(K).selfadjointView<Eigen::Lower>());
   for (std::size_t a = 0; a < g.size(); ++a) {
     const Eigen::VectorXd x = whole.solve(dense(g[a], n));
@@ -105,42 +89,24 @@ TEST_CASE("forward gives one half of the inverse") {
       const double product = dot(Y[a], Y[b]), expected = dense(g[b], n).dot(x);
       CHECK(product == Approx(expected).epsilon(1e-11).margin(1e-13));
     }
-    const BranchVector alone = factor.forward({g[a]}).front();
-    CHECK(alone.block == Y[a].block);
-    CHECK(alone.begin == Y[a].begin);
+    const SparseVector alone = factor.forward({g[a]}).front();
+    CHECK(alone.index == Y[a].index);
     CHECK(alone.value == Y[a].value);
   }
 }
 
-// Requires that products side by side are those of single vectors to round-off, with the same digits whichever of two
-// is among those side by side, and that nothing is left of vectors that were there before. Mutations: blocks of the
-// vectors before not forgotten, columns beyond the eighth in the place of the first ones, blocks that only one has not
-// skipped.
-TEST_CASE("vectors on branches are multiplied side by side") {
-  const Eigen::SparseMatrix<double> K = grid_matrix(19, 24);
-  const TreeFactor factor(K, "singular");
-  const std::vector<BranchVector> Y = factor.forward(some_loads(static_cast<int>(K.rows())));
-  SideBySide dense(factor);
-  const auto products = [&](std::size_t from, std::size_t to, const BranchVector& v) {
-    std::vector<const BranchVector*> columns;
-    for (std::size_t k = from; k < to; ++k) columns.push_back(&Y[k]);
-    dense.put(columns);
-    return dense.times(v);
-  };
-  bool apart = false;
-  for (std::size_t from = 0; from < Y.size(); from += SideBySide::most) {
-    const std::size_t to = std::min(Y.size(), from + SideBySide::most);
-    for (const BranchVector& v : Y) {
-      const auto found = products(from, to, v);
-      for (std::size_t k = from; k < to; ++k) {
-        CHECK(found[k - from] == Approx(dot(v, Y[k])).epsilon(1e-12).margin(1e-15));
-        apart = apart || Y[k].block.front() > v.block.front();
-      }
-      for (std::size_t k = to - from; k < SideBySide::most; ++k) CHECK(found[k] == 0.0);
-    }
-  }
-  CHECK(apart);  // some have blocks that others have not
-  for (std::size_t k = 0; k < Y.size(); ++k) CHECK(products(k, k + 1, Y[3])[0] == products(3, 4, Y[k])[0]);
+// Requires that rows with room hold what is put there and others are 0, and that nothing is left of vectors that were
+// there before. Mutations that fail: rows of the vectors before not forgotten, values kept.
+TEST_CASE("vectors stand side by side") {
+  SideBySide vectors(20);
+  vectors.add_rows(3, 6), vectors.add_rows(5, 8);
+  vectors[3][15] = 2.0, vectors[7][0] = 1.0;
+  CHECK((vectors[3].sum() == 2.0 && vectors[7].sum() == 1.0 && vectors[8].sum() == 0.0));
+  vectors.clear();
+  CHECK((vectors[3].sum() == 0.0 && vectors[7].sum() == 0.0));
+  vectors.add_rows(7, 9);
+  vectors[8][1] = 3.0;
+  CHECK((vectors[7].sum() == 0.0 && vectors[8].sum() == 3.0 && vectors[3].sum() == 0.0));
 }
 
 // Requires that a matrix factored in the order of another with entries in the same places gives the digits that it has
