@@ -44,21 +44,18 @@ struct alignas(line_bytes) Bin {
   int i = 0, j = 0;         // column and row of the middle node of the 3 x 3 stencil
   int like = -1;  // the first of particles side by side that have the mass, area and sides of all its block's; -1: none
   std::array<int, 9> record{};  // records of the stencil's nodes, row by row from the lower left
+
+  // for (const std::size_t q : bin) goes through its particles.
+  struct Iterator {
+    int at, stride;
+    std::size_t operator*() const { return static_cast<std::size_t>(at); }
+    bool operator!=(const Iterator& end) const { return at < end.at; }
+    void operator++() { at += stride; }
+  };
+  Iterator begin() const { return {first, stride}; }
+  Iterator end() const { return {last, stride}; }
 };
 static_assert(sizeof(Bin) == line_bytes);
-
-// A split place with its stencil folded to master records: jump = sum_k (c_x v_x, c_y v_y).
-struct SplitPlace {
-  SurfacePoint* s = nullptr;
-  const InterfaceLaw* law = nullptr;
-  double k = 0.0;          // contact stiffness (Pa/m)
-  double r_t_start = 0.0;  // tangential reaction at the start of the step (Pa)
-  std::array<int, 18> record{};
-  std::array<double, 18> c_x{}, c_y{};  // weights in the jump
-  std::array<double, 18> d_x{}, d_y{};  // velocity per unit of reaction (m/s/Pa)
-  int n = 0;
-  double per_n = 0.0, per_t = 0.0;
-};
 
 // Bins of a few neighbouring rows. Strips of the same colour (even or odd) share no record, so threads may work on them
 // at the same time and every sum has one fixed order.

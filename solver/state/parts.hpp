@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <vector>
 
 #include "state/lanes.hpp"
 #include "state/state.hpp"
@@ -33,6 +34,27 @@ template <class Work>
 void for_each_part(std::size_t n, Work work) {
 #pragma omp parallel for schedule(static) if (n > worth_threads)
   for (std::size_t part = 0; part < record_parts; ++part) work(part, part_of(n, part));
+}
+
+/// Calls work(lanes, r, sum) for all of n ranges, range(k), some lanes from r on at a time, and returns the sum over
+/// the ranges, one after the other, so that its digits do not depend on the number of threads that share `size`
+/// records.
+template <class Sum, class Range, class Work>
+Sum sum_by_lanes(std::size_t n, std::size_t size, Range range, Work work) {
+  constexpr std::size_t W = most_lanes;
+  std::vector<Sum> sums(n);
+#pragma omp parallel for schedule(static) if (size > worth_threads)
+  for (std::size_t k = 0; k < n; ++k) {
+    const Part part = range(k);
+    Sum sum{};
+    std::size_t r = part.first;
+    for (; r + W <= part.last; r += W) work(AllLanes{}, r, sum);
+    if (r < part.last) work(FirstLanes{static_cast<int>(part.last - r)}, r, sum);
+    sums[k] = sum;
+  }
+  Sum total{};
+  for (const Sum& sum : sums) total += sum;
+  return total;
 }
 
 /// Calls work(record, its master) for all tied records, on any number of threads: those of one master one after the

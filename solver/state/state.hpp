@@ -14,6 +14,7 @@
 #include "state/monitors.hpp"
 #include "state/nodal.hpp"
 #include "state/particles.hpp"
+#include "state/split_places.hpp"
 #include "state/surfaces.hpp"
 #include "state/total_motion.hpp"
 
@@ -137,7 +138,8 @@ struct State {
   // last end (see parts.hpp): a master's tied records are all in its part.
   std::vector<int> tied;
   std::vector<std::size_t> tied_of_part;
-  Bonds bonds;  // of runs with inertia, by explicit/interface_laws.hpp
+  Bonds bonds;        // of runs with inertia, see interfaces/failure.hpp
+  SplitPlaces split;  // of runs with inertia: of the last step or, under kinematics = "total", the base
   std::vector<std::vector<SurfaceStencil>> point_stencils, vertex_stencils;  // of each surface
   SpanTable x_spans, y_spans;
   NodalSums sums;
@@ -149,8 +151,6 @@ struct State {
   NodalSums filtered;                   // of XPIC(2)
   SpreadArray take_x, take_y;           // the same
   std::vector<ParticleReport> reports;  // of each strip
-  std::vector<SplitPlace> places;       // of the solve for reactions
-  std::vector<InterfaceLaw> tie_laws;   // the same
 
   const Surface& fracture() const { return surfaces.front(); }
   Surface& fracture() { return surfaces.front(); }
