@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "explicit/advance.hpp"
-#include "explicit/total/advance_total.hpp"
+#include "explicit/total/total_base.hpp"
 #include "force_balance.hpp"
 #include "initialise.hpp"
 #include "interfaces/monitors.hpp"
@@ -123,7 +123,7 @@ void complete_fields(Run& run) {
     set_all_particles(run.scene, run.state, run.statics->model);
     watch_forces(run.scene, run.rocks, run.state);
   } else {
-    complete_particles(run.scene, run.state);
+    bring_up_to_date(run.scene, run.state);
     run.state.ledger.strain = strain_energy(run.rocks, run.state.particles);
   }
   require_finite(run.state);

@@ -3,8 +3,8 @@
 
 #include "benchmarks/shop.hpp"
 #include "explicit/advance.hpp"
-#include "explicit/interface_laws.hpp"
 #include "explicit/momentum.hpp"
+#include "explicit/reactions.hpp"
 #include "explicit/transfers.hpp"
 #include "flow/paper_flow.hpp"
 #include "fracture/j_integral.hpp"

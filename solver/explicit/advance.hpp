@@ -16,19 +16,19 @@ using WeighGrowth = std::function<void(State&)>;
 // Derived members are rebuilt at multiples of these steps in every run (of steps_between_bases under kinematics =
 // "total"), and checkpoints are written at no others, so that a resumed run starts from exactly what an uninterrupted
 // one holds there.
-constexpr std::int64_t steps_between_rebuilds = 250;
+constexpr std::int64_t steps_between_rebuilds = 250, steps_between_bases = 500;
 
 /// Advances the state by one explicit step of state.dt. Update stress last: forces come from the stress at the start of
 /// the step, and stress, positions and jumps then take up the same new velocities, which makes the step symplectic in
 /// the linear elastic part and the pressure's work exactly p dV. Tips are measured and may grow at multiples of
 /// numerics.tip_steps, and in every step while they run (runs()); look: they are measured at the end of this step in
 /// any case, so that its K and J are known. Under kinematics = "total" particles stand still until
-/// complete_particles(). weigh: see WeighGrowth. Throws NumericalFailure; `state` is then that of the failure.
+/// bring_up_to_date(). weigh: see WeighGrowth. Throws NumericalFailure; `state` is then that of the failure.
 void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, const WeighGrowth& weigh,
              bool look = true);
 
-/// Brings particles, and surfaces but for what acts in every step, to the time of the state where kinematics = "total"
-/// has left them behind. Throws nothing but std::bad_alloc.
-void complete_particles(const Scene& scene, State& state);
+/// Whether any bonded place of a run with inertia fails now, by judge_bonds(), which is left in state.bonds; looked at
+/// every other step. Throws NumericalFailure where what it carries is not finite.
+bool bonds_fail(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
 
 }  // namespace strata

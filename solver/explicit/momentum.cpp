@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "state/lanes.hpp"
@@ -13,20 +12,11 @@ namespace strata {
 
 namespace {
 
-// Calls work(lanes, r, sum) for all of n records, some lanes from record r on at a time, and returns the sum over the
-// parts.
+// The sum over all of n records, part by part.
 template <class Sum, class Work>
 Sum over_records(std::size_t n, Work work) {
-  constexpr std::size_t W = most_lanes;
-  std::array<Sum, record_parts> sums{};
-  for_each_part(n, [&](std::size_t part, const Part& range) {
-    std::size_t r = range.first;
-    for (; r + W <= range.last; r += W) work(AllLanes{}, r, sums[part]);
-    if (r < range.last) work(FirstLanes{static_cast<int>(range.last - r)}, r, sums[part]);
-  });
-  Sum total;
-  for (const Sum& sum : sums) total += sum;
-  return total;
+  return sum_by_lanes<Sum>(
+      record_parts, n, [&](std::size_t part) { return part_of(n, part); }, work);
 }
 
 struct LaneEnergies {
@@ -138,6 +128,21 @@ void require_stable(const Scene& scene, const std::vector<Elasticity>& rocks, co
       fmt::format("step {}: the motion has become unstable: its kinetic energy, {:.3g} J/m, is more than {:g} times "
                   "all that was put in, {:.3g} J/m. Lower numerics.courant (now {})",
                   state.step, ledger.kinetic, times_supplied, supplied, scene.numerics.courant));
+}
+
+void watch_made(double kinetic, double swing, State& state) {
+  const Ledger& ledger = state.ledger;
+  note_largest(state.monitors.largest_made_J, swing - (ledger.transfer + ledger.integration));
+  note_largest(state.monitors.largest_made_J, -(kinetic + swing) - ledger.largest);
+}
+
+void expect_momentum(const Scene& scene, State& state) {
+  Monitors& m = state.monitors;
+  const double keep = 1.0 - scene.numerics.damping_1_s * state.dt;
+  Vec2 force = Vec2::Zero();
+  for (std::size_t q = 0; q < state.body.size(); ++q) force += state.particles.m[q] * state.body[q];
+  m.expected_x = keep * m.expected_x + state.dt * force.x();
+  m.expected_y = keep * m.expected_y + state.dt * force.y();
 }
 
 double time_step(const Scene& scene, double fastest) {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interfaces/surface_tractions.hpp"
 #include "explicit/total/total_base.hpp"
 #include "explicit/transfers.hpp"
+#include "interfaces/surface_tractions.hpp"
 
 namespace strata {
 

@@ -21,13 +21,14 @@
 
 namespace strata {
 
-// The arrays that a sweep works on. take_x and take_y are what particles' velocities take up.
+// The arrays that a sweep works on: of particles, of the nodes' motion (v_x, v_y and what particles' velocities take
+// up, along x and y) and of their sums (m, mom_x, mom_y, f_x, f_y).
 struct SweepArrays {
   double *x, *y, *u_x, *u_y, *v_x, *v_y, *g_xx, *g_xy, *g_yx, *g_yy;
   const double *m, *V, *half_x, *half_y;
   const std::uint8_t* rock;
-  const double *node_v_x, *node_v_y, *take_x, *take_y;
-  double *sum_m, *sum_mom_x, *sum_mom_y, *sum_f_x, *sum_f_y;
+  const double* motion[4];
+  double* sums[5];
 };
 
 struct SweepStep {
@@ -53,10 +54,10 @@ template <bool Move>
 template <bool Move, bool Gather>
 [[gnu::always_inline]] inline void fetch_nodes(const SweepArrays& to, std::size_t record) {
   if constexpr (Move) {
-    for (const double* array : {to.node_v_x, to.node_v_y, to.take_x, to.take_y}) fetch(array, record);
+    for (const double* array : to.motion) fetch(array, record);
   }
   if constexpr (Gather) {
-    for (const double* array : {to.sum_m, to.sum_mom_x, to.sum_mom_y, to.sum_f_x, to.sum_f_y}) fetch(array, record);
+    for (const double* array : to.sums) fetch(array, record);
   }
 }
 
@@ -79,12 +80,10 @@ struct BlockSpans {
   Span<double> y;
 };
 
-// Coefficients of a quantity on a bin's nine nodes: [row][column] of (before, middle, after), outer ones less the
-// middle one's, along both axes.
+// Coefficients of the nodes' motion on a bin's nine nodes: [row][column] of (before, middle, after), outer ones less
+// the middle one's, along both axes.
 template <class Real>
-struct Coefficients {
-  Real v_x[3][3], v_y[3][3], take_x[3][3], take_y[3][3];
-};
+using Coefficients = Real[4][3][3];
 
 template <class Lanes>
 [[gnu::always_inline]] inline void load_coefficients(const Lanes lanes, const Bin& bin, const double* values,
@@ -98,17 +97,15 @@ template <class Lanes>
   for (std::size_t a = 0; a < 3; ++a) c[0][a] -= c[1][a], c[2][a] -= c[1][a];
 }
 
-// Halves of the sizes of particles along both axes.
-template <class Real>
-struct ParticleSizes {
-  ParticleSize<Real> x, y;
+// The same thing along both axes.
+template <class Of>
+struct BothAxes {
+  Of x, y;
 };
-
-// Outer weights of a place on both axes.
 template <class Real>
-struct PlaceWeights {
-  OuterWeights<Real> x, y;
-};
+using PlaceWeights = BothAxes<OuterWeights<Real>>;  // the outer weights of a place
+template <class Real>
+using ParticleSizes = BothAxes<ParticleSize<Real>>;
 
 template <class Shape, class Spans, class Real>
 [[gnu::always_inline]] inline PlaceWeights<Real> weights_at(const Spans& at, const Real& x, const Real& y,
@@ -151,7 +148,7 @@ template <class Real>
 template <class Real>
 struct Given {
   PlaceWeights<Real> w;
-  Real m, mom_x, mom_y;
+  Real by_N[3];       // m, mom_x, mom_y
   Real s_xx, s_xy_x;  // with dN/dx into f_x and f_y
   Real s_xy_y, s_yy;  // with dN/dy
 };
@@ -183,10 +180,10 @@ template <class Lanes>
     lanes.store(array + q, value);
   };
   const auto add = [&](double* array, const Real& by) { lanes.store(array + q, lanes.load(array + q) + by); };
-  const Interpolated<Real> x = interpolate(c.v_x, w), y = interpolate(c.v_y, w);
+  const Interpolated<Real> x = interpolate(c[0], w), y = interpolate(c[1], w);
   const Real m = lanes.load(p.m + like), V = lanes.load(p.V + like);
   report.before += m * (is.v_x * is.v_x + is.v_y * is.v_y);
-  is.v_x = step.keep * is.v_x + value_at(c.take_x, w), is.v_y = step.keep * is.v_y + value_at(c.take_y, w);
+  is.v_x = step.keep * is.v_x + value_at(c[2], w), is.v_y = step.keep * is.v_y + value_at(c[3], w);
   lanes.store(p.v_x + q, is.v_x), lanes.store(p.v_y + q, is.v_y);
   const Real speed2 = is.v_x * is.v_x + is.v_y * is.v_y;
   report.after += m * speed2;
@@ -210,19 +207,17 @@ template <class Lanes>
                                         const ParticleState<typename Lanes::Real>& is,
                                         Given<typename Lanes::Real>& to) {
   using Real = typename Lanes::Real;
-  to.m = lanes.load(p.m + like);
-  to.mom_x = to.m * is.v_x, to.mom_y = to.m * is.v_y;
+  const Real m = lanes.load(p.m + like);
+  to.by_N[0] = m, to.by_N[1] = m * is.v_x, to.by_N[2] = m * is.v_y;
   const Real V = lanes.load(p.V + like), V_x = -V * at.x.per_length, V_y = -V * at.y.per_length;
   const Real trace = rock.lambda * (is.g_xx + is.g_yy), s_xy = rock.mu * (is.g_xy + is.g_yx);
   to.s_xx = V_x * (trace + 2.0 * rock.mu * is.g_xx), to.s_xy_x = V_x * s_xy;
   to.s_yy = V_y * (trace + 2.0 * rock.mu * is.g_yy), to.s_xy_y = V_y * s_xy;
 }
 
-// Sums of a quantity on one row of a bin's nodes.
+// Sums on one row of a bin's nodes.
 template <class Real>
-struct RowSums {
-  Real m[3]{}, mom_x[3]{}, mom_y[3]{}, f_x[3]{}, f_y[3]{};
-};
+using RowSums = Real[5][3];
 
 template <class Real>
 [[gnu::always_inline]] inline void add_by_N(const OuterWeights<Real>& w, const Real& q, Real (&row)[3]) {
@@ -236,80 +231,68 @@ template <class Real>
 // The row's middle node has the whole less the outer two.
 template <class Real>
 [[gnu::always_inline]] inline void finish_row(RowSums<Real>& row) {
-  row.m[1] -= row.m[0] + row.m[2];
-  row.mom_x[1] -= row.mom_x[0] + row.mom_x[2], row.mom_y[1] -= row.mom_y[0] + row.mom_y[2];
-  row.f_x[1] -= row.f_x[0] + row.f_x[2], row.f_y[1] -= row.f_y[0] + row.f_y[2];
+  for (auto& sum : row) sum[1] -= sum[0] + sum[2];
 }
 
 // The sum of all three rows, and an outer one by its weights N and dN across.
 template <class Real>
-[[gnu::always_inline]] inline RowSums<Real> sum_all_rows(const Given<Real>* given, int n) {
-  RowSums<Real> row;
+[[gnu::always_inline]] inline void sum_all_rows(const Given<Real>* given, int n, RowSums<Real>& row) {
   for (int k = 0; k < n; ++k) {
     const Given<Real>& g = given[k];
-    add_by_N(g.w.x, g.m, row.m), add_by_N(g.w.x, g.mom_x, row.mom_x), add_by_N(g.w.x, g.mom_y, row.mom_y);
-    add_by_dN(g.w.x, g.s_xx, row.f_x), add_by_dN(g.w.x, g.s_xy_x, row.f_y);
+    for (int of = 0; of < 3; ++of) add_by_N(g.w.x, g.by_N[of], row[of]);
+    add_by_dN(g.w.x, g.s_xx, row[3]), add_by_dN(g.w.x, g.s_xy_x, row[4]);
   }
-  finish_row(row);
-  return row;
+  finish_row<Real>(row);
 }
 template <class Real>
-[[gnu::always_inline]] inline RowSums<Real> sum_outer_row(const Given<Real>* given, int n, bool before) {
-  RowSums<Real> row;
+[[gnu::always_inline]] inline void sum_outer_row(const Given<Real>* given, int n, bool before, RowSums<Real>& row) {
   for (int k = 0; k < n; ++k) {
     const Given<Real>& g = given[k];
     const Real N = before ? g.w.y.N_before : g.w.y.N_after, dN = before ? g.w.y.dN_before : g.w.y.dN_after;
-    add_by_N<Real>(g.w.x, N * g.m, row.m), add_by_N<Real>(g.w.x, N * g.mom_x, row.mom_x);
-    add_by_N<Real>(g.w.x, N * g.mom_y, row.mom_y);
-    add_by_N<Real>(g.w.x, dN * g.s_xy_y, row.f_x), add_by_dN<Real>(g.w.x, N * g.s_xx, row.f_x);
-    add_by_N<Real>(g.w.x, dN * g.s_yy, row.f_y), add_by_dN<Real>(g.w.x, N * g.s_xy_x, row.f_y);
+    for (int of = 0; of < 3; ++of) add_by_N<Real>(g.w.x, N * g.by_N[of], row[of]);
+    add_by_N<Real>(g.w.x, dN * g.s_xy_y, row[3]), add_by_dN<Real>(g.w.x, N * g.s_xx, row[3]);
+    add_by_N<Real>(g.w.x, dN * g.s_yy, row[4]), add_by_dN<Real>(g.w.x, N * g.s_xy_x, row[4]);
   }
-  finish_row(row);
-  return row;
+  finish_row<Real>(row);
 }
 
-// Adds a row's sums to the nodes, whose records are `record`.
-[[gnu::always_inline]] inline void add_row(const OneLane /*lanes*/, const int* record, const RowSums<double>& row,
-                                           const SweepArrays& to) {
-  for (std::size_t a = 0; a < 3; ++a) {
-    to.sum_m[record[a]] += row.m[a];
-    to.sum_mom_x[record[a]] += row.mom_x[a], to.sum_mom_y[record[a]] += row.mom_y[a];
-    to.sum_f_x[record[a]] += row.f_x[a], to.sum_f_y[record[a]] += row.f_y[a];
+template <class Real>
+[[gnu::always_inline]] inline void subtract(const RowSums<Real>& row, RowSums<Real>& from) {
+  for (std::size_t of = 0; of < 5; ++of) {
+    for (std::size_t a = 0; a < 3; ++a) from[of][a] -= row[of][a];
   }
 }
 
-// Lane l adds to the nodes l, l + 1 and l + 2 of the row: where their records follow each other, what lanes meet at is
-// added up before it goes to memory; beside a cut, where nodes and copies take turns, it goes there one after the
-// other.
+// Adds a row's sums to the nodes, whose records are `record`. Lane l adds to the nodes l, l + 1 and l + 2 of the row:
+// where their records follow each other, what lanes meet at is added up before it goes to memory; beside a cut, where
+// nodes and copies take turns, it goes there one after the other.
 template <class Lanes>
 [[gnu::always_inline]] inline void add_row(const Lanes lanes, const int* record,
                                            const RowSums<typename Lanes::Real>& row, const SweepArrays& to) {
   const bool follow = record[1] == record[0] + 1 && record[2] == record[0] + 2;
-  const auto add = [&](double* array, const typename Lanes::Real(&sum)[3]) {
-    if (follow) return lanes.add_shifted(array + record[0], sum[0], sum[1], sum[2]);
-    for (std::size_t a = 0; a < 3; ++a) lanes.store(array + record[a], lanes.load(array + record[a]) + sum[a]);
-  };
-  add(to.sum_m, row.m), add(to.sum_mom_x, row.mom_x), add(to.sum_mom_y, row.mom_y);
-  add(to.sum_f_x, row.f_x), add(to.sum_f_y, row.f_y);
-}
-
-template <class Real>
-[[gnu::always_inline]] inline void less(RowSums<Real>& row, const RowSums<Real>& other) {
-  for (std::size_t a = 0; a < 3; ++a) {
-    row.m[a] -= other.m[a], row.mom_x[a] -= other.mom_x[a], row.mom_y[a] -= other.mom_y[a];
-    row.f_x[a] -= other.f_x[a], row.f_y[a] -= other.f_y[a];
+  for (std::size_t of = 0; of < 5; ++of) {
+    double* const array = to.sums[of];
+    if constexpr (!std::is_same_v<Lanes, OneLane>) {
+      if (follow) {
+        lanes.add_shifted(array + record[0], row[of][0], row[of][1], row[of][2]);
+        continue;
+      }
+    }
+    for (std::size_t a = 0; a < 3; ++a) lanes.store(array + record[a], lanes.load(array + record[a]) + row[of][a]);
   }
 }
 
 template <class Lanes>
 [[gnu::always_inline]] inline void add_given(const Lanes lanes, const Bin& bin,
                                              const Given<typename Lanes::Real>* given, int n, const SweepArrays& to) {
-  RowSums<typename Lanes::Real> middle = sum_all_rows(given, n);
-  const RowSums<typename Lanes::Real> before = sum_outer_row(given, n, true);
-  less(middle, before);
+  using Real = typename Lanes::Real;
+  RowSums<Real> before{}, middle{}, after{};
+  sum_all_rows(given, n, middle);
+  sum_outer_row(given, n, true, before);
+  subtract<Real>(before, middle);
   add_row(lanes, bin.record.data(), before, to);
-  const RowSums<typename Lanes::Real> after = sum_outer_row(given, n, false);
-  less(middle, after);
+  sum_outer_row(given, n, false, after);
+  subtract<Real>(after, middle);
   add_row(lanes, bin.record.data() + 6, after, to);
   add_row(lanes, bin.record.data() + 3, middle, to);
 }
@@ -327,8 +310,7 @@ void sweep_block(const Lanes lanes, const std::vector<Elasticity>& rocks, const 
   if constexpr (block) fetch_nodes<Move, Gather>(arrays, static_cast<std::size_t>(bin.record[6]) + nodes_ahead);
   Coefficients<Real> c;
   if constexpr (Move) {
-    load_coefficients(lanes, bin, arrays.node_v_x, c.v_x), load_coefficients(lanes, bin, arrays.node_v_y, c.v_y);
-    load_coefficients(lanes, bin, arrays.take_x, c.take_x), load_coefficients(lanes, bin, arrays.take_y, c.take_y);
+    for (int of = 0; of < 4; ++of) load_coefficients(lanes, bin, arrays.motion[of], c[of]);
   }
   Given<Real> given[together];
   int n = 0;

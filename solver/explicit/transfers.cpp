@@ -35,10 +35,23 @@ SweepArrays arrays_of(const Uptake& uptake, State& state) {
   Particles& p = state.particles;
   const NodalMotion& by = state.motion;
   NodalSums& to = state.sums;
-  return {p.x.data(),       p.y.data(),      p.u_x.data(),    p.u_y.data(),    p.v_x.data(),  p.v_y.data(),
-          p.g_xx.data(),    p.g_xy.data(),   p.g_yx.data(),   p.g_yy.data(),   p.m.data(),    p.V.data(),
-          p.half_x.data(),  p.half_y.data(), p.rock.data(),   by.v_x.data(),   by.v_y.data(), uptake.x->data(),
-          uptake.y->data(), to.m.data(),     to.mom_x.data(), to.mom_y.data(), to.f_x.data(), to.f_y.data()};
+  return {p.x.data(),
+          p.y.data(),
+          p.u_x.data(),
+          p.u_y.data(),
+          p.v_x.data(),
+          p.v_y.data(),
+          p.g_xx.data(),
+          p.g_xy.data(),
+          p.g_yx.data(),
+          p.g_yy.data(),
+          p.m.data(),
+          p.V.data(),
+          p.half_x.data(),
+          p.half_y.data(),
+          p.rock.data(),
+          {by.v_x.data(), by.v_y.data(), uptake.x->data(), uptake.y->data()},
+          {to.m.data(), to.mom_x.data(), to.mom_y.data(), to.f_x.data(), to.f_y.data()}};
 }
 
 template <class Lanes>
@@ -118,8 +131,7 @@ void for_each_stencil(const Scene& scene, NodalSums& sums, State& state, Visit v
     for_each_strip(state, &sums, [&](std::size_t k) {
       for (int b = state.strips[k].first; b < state.strips[k].last; ++b) {
         const Bin& bin = state.bins[static_cast<std::size_t>(b)];
-        for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
-             q += static_cast<std::size_t>(bin.stride)) {
+        for (const std::size_t q : bin) {
           const Weights X = weights_x<Shape>(state.grid, bin.i, p.x[q], p.half_x[q]);
           const Weights Y = weights_y<Shape>(state.grid, bin.j, p.y[q], p.half_y[q]);
           std::array<double, 9> N;

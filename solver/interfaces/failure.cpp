@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "interfaces/columns.hpp"
-#include "state/stiffness.hpp"
 #include "state/rebuild.hpp"
+#include "state/stiffness.hpp"
 
 namespace strata {
 

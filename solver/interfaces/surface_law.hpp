@@ -41,8 +41,45 @@ double contact_stiffness(const InterfaceLaw& law, const std::vector<Elasticity>&
 /// Continuous and, but for the bound of friction, the gradient of a convex energy. Throws nothing.
 LawAnswer law_at(const InterfaceLaw& law, double k, const LawInput& in);
 
+// What a law is asked in an implicit step: the jump that its end would see without this place's own reaction.
+struct FreeJump {
+  double n = 0.0;          // normal (m), positive open
+  double t = 0.0;          // tangential (m)
+  double t_start = 0.0;    // what friction remembers: tangential jump (m)
+  double r_t_start = 0.0;  // and reaction (Pa) at the start of the step
+  double per_n = 0.0;      // change of the normal jump per unit of normal reaction (m/Pa)
+  double per_t = 0.0;      // and of the tangential one
+  double n_rest = 0.0;     // normal reaction of closed contact at zero jump (Pa): in-situ less fluid
+};
+
+struct Reaction {
+  double n = 0.0, t = 0.0;  // Pa, n positive in compression
+};
+
+/// The reaction that satisfies law_at() at the end of the step: r = law(w_free + per r) in closed form (backward Euler,
+/// so stable for any stiffness). What runs with inertia settle on is therefore the equilibrium of the law itself,
+/// whatever the step. perfect: none. Throws nothing.
+Reaction react(const InterfaceLaw& law, double k, const FreeJump& w);
+
+/// The reaction nearest to r that a law allows whatever the jump: contact only pushes, friction is bounded.
+Reaction admissible(const InterfaceLaw& law, const Reaction& r);
+
+/// Coefficient of friction between split faces: that of sliding where a weak interface has failed.
+inline double sliding_coefficient(const InterfaceLaw& law) {
+  return law.kind == InterfaceLaw::Kind::weak ? law.residual_friction : law.coefficient;
+}
+
 /// The law of the fracture's own faces: contact without friction, or none at all (fracture.faces = "free"): a spring of
 /// no stiffness both ways.
 InterfaceLaw face_law(const Scene& scene);
+
+/// The law of a tip's spring, which holds in both directions.
+InterfaceLaw tie_law(const TipTie& tie);
+
+/// Energy in the springs of a place under its law (J/m); 0 where it is not split or has none.
+double spring_energy_at(const InterfaceLaw& law, const SurfacePoint& s);
+
+/// Energy in the springs of soft interfaces, sum A (D_n w_n^2 + D_t w_t^2)/2, and of tips, sum k w^2/2 (J/m).
+double spring_energy(const Scene& scene, const State& state);
 
 }  // namespace strata

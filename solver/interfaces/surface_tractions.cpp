@@ -91,11 +91,7 @@ void follow_surfaces(State& state) {
     Surface& surface = state.surfaces[k];
     for (std::size_t q = 0; q < surface.points.size(); ++q) {
       SurfacePoint& s = surface.points[q];
-      const Vec2 dw = state.dt * jump(state.point_stencils[k][q], state.motion);
-      s.w += dw;
-      if (!s.split) continue;
-      state.ledger.fluid_work += s.A * s.P * s.n.dot(dw);
-      state.ledger.in_situ_work -= s.A * s.in_situ.dot(dw);
+      if (!s.split) s.w += state.dt * jump(state.point_stencils[k][q], state.motion);
     }
     for (std::size_t q = 0; q < surface.vertices.size(); ++q) {
       const SurfaceStencil& stencil = state.vertex_stencils[k][q];
@@ -103,11 +99,6 @@ void follow_surfaces(State& state) {
       surface.vertices[q].x += state.dt * mean_velocity(stencil, state.motion);
     }
     update_geometry(surface);
-  }
-  for (TipTie& tie : state.ties) {
-    const NodeMotion plus = state.motion[static_cast<std::size_t>(tie.plus)],
-                     minus = state.motion[static_cast<std::size_t>(tie.minus)];
-    tie.s.w += state.dt * (velocity(plus) - velocity(minus));
   }
 }
 

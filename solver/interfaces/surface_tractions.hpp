@@ -25,8 +25,8 @@ void add_traction(const SurfaceStencil& stencil, const Vec2& t, double A, NodalS
 /// t = -in_situ on interfaces, whose laws then add their reactions.
 void add_net_tractions(State& state);
 
-/// Moves surfaces with the rock for state.dt and adds up jumps: w += dt D v, x += dt mean(v). The ledger's fluid and
-/// in-situ work take up t A dw of each point.
+/// Moves surfaces with the rock for state.dt, x += dt mean(v), and adds up the jumps of vertices and of what is not
+/// split, w += dt D v: those of split places come with their reactions.
 void follow_surfaces(State& state);
 
 }  // namespace strata

@@ -57,19 +57,6 @@ struct alignas(line_bytes) Bin {
 };
 static_assert(sizeof(Bin) == line_bytes);
 
-// A split place with its stencil folded to master records: jump = sum_k (c_x v_x, c_y v_y).
-struct SplitPlace {
-  SurfacePoint* s = nullptr;
-  const InterfaceLaw* law = nullptr;
-  double k = 0.0;          // contact stiffness (Pa/m)
-  double r_t_start = 0.0;  // tangential reaction at the start of the step (Pa)
-  std::array<int, 18> record{};
-  std::array<double, 18> c_x{}, c_y{};  // weights in the jump
-  std::array<double, 18> d_x{}, d_y{};  // velocity per unit of reaction (m/s/Pa)
-  int n = 0;
-  double per_n = 0.0, per_t = 0.0;
-};
-
 // Bins of a few neighbouring rows. Strips of the same colour (even or odd) share no record, so threads may work on them
 // at the same time and every sum has one fixed order.
 struct Strip {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 
 #include "state/lanes.hpp"
@@ -33,6 +34,28 @@ template <class Work>
 void for_each_part(std::size_t n, Work work) {
 #pragma omp parallel for schedule(static) if (n > worth_threads)
   for (std::size_t part = 0; part < record_parts; ++part) work(part, part_of(n, part));
+}
+
+/// Calls work(lanes, r, sum) for all of n ranges, range(k), some lanes from r on at a time, and returns the sum, part
+/// by part, so that its digits do not depend on the number of threads that share `size` records. Allocates nothing.
+template <class Sum, class Range, class Work>
+Sum sum_by_lanes(std::size_t n, std::size_t size, Range range, Work work) {
+  constexpr std::size_t W = most_lanes;
+  std::array<Sum, record_parts> sums{};
+#pragma omp parallel for schedule(static) if (size > worth_threads)
+  for (std::size_t part = 0; part < record_parts; ++part) {
+    Sum sum{};
+    for (std::size_t k = n * part / record_parts; k < n * (part + 1) / record_parts; ++k) {
+      const Part of = range(k);
+      std::size_t r = of.first;
+      for (; r + W <= of.last; r += W) work(AllLanes{}, r, sum);
+      if (r < of.last) work(FirstLanes{static_cast<int>(of.last - r)}, r, sum);
+    }
+    sums[part] = sum;
+  }
+  Sum total{};
+  for (const Sum& sum : sums) total += sum;
+  return total;
 }
 
 /// Calls work(record, its master) for all tied records, on any number of threads: those of one master one after the

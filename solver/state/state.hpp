@@ -14,6 +14,7 @@
 #include "state/monitors.hpp"
 #include "state/nodal.hpp"
 #include "state/particles.hpp"
+#include "state/split_places.hpp"
 #include "state/surfaces.hpp"
 #include "state/total_motion.hpp"
 
@@ -142,7 +143,8 @@ struct DerivedState {
   std::vector<std::size_t> tied_of_part;
   std::vector<std::vector<SurfaceStencil>> point_stencils, vertex_stencils;  // of each surface
   SpanTable x_spans, y_spans;
-  Bonds bonds;             // of runs with inertia, by explicit/interface_laws.hpp
+  Bonds bonds;             // of runs with inertia, see interfaces/failure.hpp
+  SplitPlaces split;       // of runs with inertia: of the last step or, under kinematics = "total", the base
   std::vector<Vec2> body;  // force per mass of each particle (m/s^2), set anew at each time; empty: none
 };
 
@@ -155,8 +157,6 @@ struct ScratchState {
   NodalSums filtered;                   // of XPIC(2)
   SpreadArray take_x, take_y;           // the same
   std::vector<ParticleReport> reports;  // of each strip
-  std::vector<SplitPlace> places;       // of the solve for reactions
-  std::vector<InterfaceLaw> tie_laws;   // the same
 };
 
 struct State : SavedState, DerivedState, ScratchState {

@@ -49,26 +49,14 @@ struct alignas(64) StencilSegment {
   int offset = 0;
 };
 
-// Slots anywhere that share the segments [first, last).
-struct StencilGroup {
-  int first = 0, last = 0;
-  int slot = 0, slots = 0;  // in StencilOperator::grouped
+// A slot in no run, with the segments [first, last) of its row, which all slots with the same row share.
+struct SingleSlot {
+  int slot = 0, first = 0, last = 0;
 };
 
 // A slot beyond a symmetric or fixed side, which runs read, mirrors one inside.
 struct SlotImage {
   int to = 0, from = 0;
-};
-
-// Indices [first, last) into a list.
-struct IndexRange {
-  std::size_t first = 0, last = 0;
-};
-
-// What of the operator concerns some whole rows of slots: about as much work in each part. A thread has the same parts
-// in each step, so that nodes stay in its cache.
-struct StencilPart {
-  IndexRange images, runs, groups, held_x, ranges;
 };
 
 // -M^-1 K of the masters, by slots.
@@ -77,45 +65,10 @@ struct StencilOperator {
   std::vector<StencilEntry> entries;
   std::vector<StencilRun> runs;
   std::vector<StencilSegment> segments;
-  std::vector<StencilGroup> groups;
-  std::vector<int> grouped;
+  std::vector<SingleSlot> singles;
   std::vector<SlotImage> images;
   std::vector<int> held_x;        // slots of runs that a side holds
   std::vector<SlotRange> ranges;  // slots in use, a row of a plane each
-  std::vector<StencilPart> parts;
-};
-
-// A split place with its jump over slots, w = sum c u: what add_net_tractions(), solve_reactions() and
-// follow_surfaces() do for particles that move.
-struct TotalPlace {
-  struct Entry {
-    int touched = 0;              // index into TotalSurfaces::touched
-    double c_x = 0.0, c_y = 0.0;  // weights in the jump
-    double d_x = 0.0, d_y = 0.0;  // velocity that a traction of 1 Pa on the + face adds in a step (m/s/Pa)
-  };
-  struct Neighbour {
-    int place = 0;
-    double per_x = 0.0, per_y = 0.0;  // rate of its jump that a traction of 1 Pa here adds in a step (m/s/Pa)
-  };
-  int surface = -1;                 // -1: a tip's spring
-  int point = 0;                    // of the surface, or which spring
-  std::size_t law = 0;              // index into TotalSurfaces::laws
-  double k = 0.0;                   // contact stiffness (Pa/m)
-  double per_n = 0.0, per_t = 0.0;  // change of the jump at the step's end per traction (m/Pa)
-  std::vector<Entry> entries;
-  std::vector<Neighbour> neighbours;  // itself among them
-};
-
-struct HeldFactor;
-
-struct TotalSurfaces {
-  std::vector<int> touched;  // slots that places reach
-  std::vector<TotalPlace> places;
-  std::vector<InterfaceLaw> laws;                // the scene's, of tips' springs, and of the fracture's faces
-  std::vector<double> free_x, free_y, v_x, v_y;  // of touched slots: velocity without and with what places exert (m/s)
-  std::vector<double> rate_x, rate_y;            // of each place's jump (m/s)
-  std::vector<double> r_t_start;                 // tangential reaction at the step's start (Pa)
-  std::shared_ptr<const HeldFactor> held;        // of the places held last (solve_held_reactions())
 };
 
 // The force of the rock of a sample of bonded places (see BondSample): `base` + sum of T u + m a over slots.
@@ -141,7 +94,6 @@ struct TotalMotion {
   SpreadArray a_x, a_y;                       // and now
   SpreadArray v_x, v_y;                       // velocity (m/s)
   SpreadArray u_x, u_y;                       // displacement since the base (m)
-  TotalSurfaces surfaces;
   std::vector<BondSensor> bonds;
 };
 

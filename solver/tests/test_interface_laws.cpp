@@ -1,5 +1,5 @@
+#include "explicit/advance.hpp"
 #include "interfaces/failure.hpp"
-#include "explicit/interface_laws.hpp"
 
 #include <catch2/catch.hpp>
 

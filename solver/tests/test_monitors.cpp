@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "explicit/interface_laws.hpp"
+#include "explicit/reactions.hpp"
 #include "fracture/growth.hpp"
 #include "output/suspect.hpp"
 #include "quasistatic/load_steps.hpp"

@@ -1,5 +1,6 @@
 // Parts of records and slots that threads share a step by: each is done once, and blocks with enough nodes for threads
 // end with the same digits on any number of them.
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "explicit/total/total_base.hpp"
@@ -28,18 +29,6 @@ State after(const Scene& scene, int threads, int steps) {
   run.advance(steps);
   omp_set_num_threads(threads_of_tests);
   return run.state;
-}
-
-// Requires the items of a list, dealt to parts, to be all of them, each once and in their order.
-template <class Of>
-void check_dealt(const StencilOperator& op, std::size_t size, Of of) {
-  std::size_t next = 0;
-  for (const StencilPart& part : op.parts) {
-    CHECK(of(part).first == next);
-    CHECK(of(part).last >= of(part).first);
-    next = of(part).last;
-  }
-  CHECK(next == size);
 }
 
 }  // namespace
@@ -82,8 +71,8 @@ TEST_CASE("tied records are in the part of their master") {
   }
 }
 
-// Mutations that fail: a part's last item left out, all work in the first part.
-TEST_CASE("parts of the operator are all of it, and none has much more work than others") {
+// Mutations that fail: the last slot of a run or of a range left out, a run's slots among the single ones, too.
+TEST_CASE("runs and single slots of the operator are all nodes, each once") {
   Scene scene = busy_block();
   scene.numerics.kinematics = Numerics::Kinematics::total;
   Run run(scene);
@@ -91,32 +80,24 @@ TEST_CASE("parts of the operator are all of it, and none has much more work than
   const StencilOperator& op = *run.state.total.op;
   CHECK(op.images.size() > 100);
   CHECK(op.held_x.size() > 50);
-  check_dealt(op, op.images.size(), [](const StencilPart& part) { return part.images; });
-  check_dealt(op, op.runs.size(), [](const StencilPart& part) { return part.runs; });
-  check_dealt(op, op.groups.size(), [](const StencilPart& part) { return part.groups; });
-  check_dealt(op, op.held_x.size(), [](const StencilPart& part) { return part.held_x; });
-  check_dealt(op, op.ranges.size(), [](const StencilPart& part) { return part.ranges; });
-  int last = -1;
-  for (const StencilPart& part : op.parts) {
-    int slots = 0;
-    for (std::size_t k = part.ranges.first; k < part.ranges.last; ++k) slots += op.ranges[k].last - op.ranges[k].first;
-    CHECK(slots <= 4 * 51);  // 4 rows of 51 nodes, of 61 in 32 parts
-    if (part.ranges.first == part.ranges.last) continue;
-    const int first_row = op.ranges[part.ranges.first].first / op.slots.stride;
-    const int last_row = op.ranges[part.ranges.last - 1].first / op.slots.stride;
-    CHECK(first_row > last);
-    for (std::size_t k = part.runs.first; k < part.runs.last; ++k) {
-      CHECK(op.runs[k].slots.first / op.slots.stride >= first_row);
-      CHECK(op.runs[k].slots.first / op.slots.stride <= last_row);
-    }
-    for (std::size_t k = part.groups.first; k < part.groups.last; ++k) {
-      for (int s = op.groups[k].slot; s < op.groups[k].slot + op.groups[k].slots; ++s) {
-        CHECK(op.grouped[static_cast<std::size_t>(s)] / op.slots.stride >= first_row);
-        CHECK(op.grouped[static_cast<std::size_t>(s)] / op.slots.stride <= last_row);
-      }
-    }
-    last = last_row;
+  std::vector<int> written(static_cast<std::size_t>(op.slots.size), 0), moved = written;
+  for (const StencilRun& of : op.runs) {
+    for (int s = of.slots.first; s < of.slots.last; ++s) ++written[static_cast<std::size_t>(s)];
   }
+  for (const SingleSlot& single : op.singles) ++written[static_cast<std::size_t>(single.slot)];
+  for (const SlotRange& range : op.ranges) {
+    for (int s = range.first; s < range.last; ++s) ++moved[static_cast<std::size_t>(s)];
+  }
+  const State& state = run.state;
+  for (std::size_t r = 0; r < state.masters.size(); ++r) {
+    const auto s = static_cast<std::size_t>(op.slots.of_record[r]);
+    const Master& master = state.masters[r];
+    if (master.record != static_cast<int>(r) || !(state.total.m[s] > 0.0)) continue;
+    CHECK(written[s] == (master.x == 0.0 && master.y == 0.0 ? 0 : 1));  // corners are held
+    CHECK(moved[s] == 1);
+  }
+  CHECK(std::ranges::count(written, 1) > 3000);
+  CHECK(std::ranges::none_of(written, [](int times) { return times > 1; }));
 }
 
 // Requires the same digits from one, two and three threads; the thread sanitizer looks for races here. Mutations that

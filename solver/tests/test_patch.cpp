@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 
-#include "explicit/interface_laws.hpp"
-#include "interfaces/surface_tractions.hpp"
+#include "explicit/reactions.hpp"
 #include "explicit/transfers.hpp"
+#include "interfaces/surface_tractions.hpp"
 #include "small_scenes.hpp"
 
 using namespace strata;

@@ -1,7 +1,7 @@
 // kinematics = "total": particles and surfaces stay in their reference places.
 #include <catch2/catch.hpp>
 
-#include "explicit/total/advance_total.hpp"
+#include "explicit/advance.hpp"
 #include "interfaces/surface_law.hpp"
 #include "output/checkpoint.hpp"
 #include "output/hdf5_io.hpp"

@@ -3,9 +3,9 @@
 
 #include <limits>
 
+#include "explicit/reactions.hpp"
 #include "quasistatic/fluid_step.hpp"
 #include "quasistatic/load_steps.hpp"
-#include "explicit/interface_laws.hpp"
 #include "random_scene.hpp"
 #include "statics.hpp"
 

@@ -24,22 +24,9 @@ struct TokenHash {
   }
 };
 
-// Numbers things by what they are made of.
+// Numbers of things by what they are made of.
 template <class Token>
-class Kinds {
- public:
-  // The number of the kind that `tokens` describe, and whether it is new.
-  std::pair<int, bool> find(const std::vector<Token>& tokens) {
-    const auto at = numbers_.find(tokens);
-    if (at != numbers_.end()) return {at->second, false};
-    const int number = static_cast<int>(numbers_.size());
-    numbers_.emplace(tokens, number);
-    return {number, true};
-  }
-
- private:
-  std::unordered_map<std::vector<Token>, int, TokenHash> numbers_;
-};
+using Kinds = std::unordered_map<std::vector<Token>, int, TokenHash>;
 
 // What the particles of a bin do to the nine nodes around it.
 struct BinKind {
@@ -59,8 +46,7 @@ void describe_bin(const State& state, const Bin& bin, std::vector<std::int64_t>&
     tokens.push_back(g.x_knots.empty() ? 0 : in_steps(g.span_x(bin.i + k) / g.h));
     tokens.push_back(g.y_knots.empty() ? 0 : in_steps(g.span_y(bin.j + k) / g.h));
   }
-  for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
-       q += static_cast<std::size_t>(bin.stride)) {
+  for (const std::size_t q : bin) {
     tokens.push_back(in_steps((p.x[q] - g.x(bin.i)) / g.h));
     tokens.push_back(in_steps((p.y[q] - g.y(bin.j)) / g.h));
     tokens.push_back(in_steps(p.V[q] / (g.h * g.h)));
@@ -71,8 +57,7 @@ void describe_bin(const State& state, const Bin& bin, std::vector<std::int64_t>&
 BinKind make_kind(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Bin& bin) {
   const Particles& p = state.particles;
   BinKind kind;
-  for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
-       q += static_cast<std::size_t>(bin.stride)) {
+  for (const std::size_t q : bin) {
     const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
     add_stiffness(rocks[p.rock[q]], g, p.V[q], kind.K);
     for (std::size_t n = 0; n < 9; ++n) kind.m[n] += g.N[n] * p.m[q];
@@ -91,9 +76,9 @@ BinKinds find_bin_kinds(const Scene& scene, const std::vector<Elasticity>& rocks
   std::vector<std::int64_t> tokens;
   for (const Bin& bin : state.bins) {
     describe_bin(state, bin, tokens);
-    const auto [number, is_new] = numbers.find(tokens);
+    const auto [number, is_new] = numbers.try_emplace(tokens, static_cast<int>(numbers.size()));
     if (is_new) out.kinds.push_back(make_kind(scene, rocks, state, bin));
-    out.of_bin.push_back(number);
+    out.of_bin.push_back(number->second);
   }
   return out;
 }
@@ -104,31 +89,18 @@ struct Incidence {
   int node = 0;
 };
 
-// The incidences of each slot, in the order of bins: [first[slot], first[slot + 1]).
-struct Incidences {
-  std::vector<int> first;
-  std::vector<Incidence> all;
-};
-
-Incidences find_incidences(const State& state, const Slots& slots) {
-  Incidences out;
-  out.first.assign(static_cast<std::size_t>(slots.size) + 1, 0);
-  const auto slot = [&](const Bin& bin, std::size_t n) {
-    return static_cast<std::size_t>(slots.of_record[static_cast<std::size_t>(bin.record[n])]);
-  };
-  for (const Bin& bin : state.bins) {
-    for (std::size_t n = 0; n < 9; ++n) ++out.first[slot(bin, n) + 1];
-  }
-  for (std::size_t s = 1; s < out.first.size(); ++s) out.first[s] += out.first[s - 1];
-  out.all.resize(static_cast<std::size_t>(out.first.back()));
-  std::vector<int> next(out.first.begin(), out.first.end() - 1);
+// Those of each slot, in the order of bins.
+std::vector<std::vector<Incidence>> find_incidences(const State& state, const Slots& slots) {
+  std::vector<std::vector<Incidence>> of_slot(static_cast<std::size_t>(slots.size));
   for (std::size_t b = 0; b < state.bins.size(); ++b) {
     for (std::size_t n = 0; n < 9; ++n) {
-      const int at = next[slot(state.bins[b], n)]++;
-      out.all[static_cast<std::size_t>(at)] = {static_cast<int>(b), static_cast<int>(n)};
+      const auto record = static_cast<std::size_t>(state.bins[b].record[n]);
+      auto& at = of_slot[static_cast<std::size_t>(slots.of_record[record])];
+      if (at.empty()) at.reserve(9);
+      at.push_back({static_cast<int>(b), static_cast<int>(n)});
     }
   }
-  return out;
+  return of_slot;
 }
 
 const Master& master_at(const State& state, const Bin& bin, int node) {
@@ -144,13 +116,11 @@ struct Assembly {
   const State& state;
   const Slots& slots;
   const BinKinds& bins;
-  const Incidences& incidences;
+  const std::vector<std::vector<Incidence>>& incidences;
 
   template <class Visit>
   void visit(int slot, Visit visit_one) const {
-    const auto s = static_cast<std::size_t>(slot);
-    for (int k = incidences.first[s]; k < incidences.first[s + 1]; ++k) {
-      const Incidence& at = incidences.all[static_cast<std::size_t>(k)];
+    for (const Incidence& at : incidences[static_cast<std::size_t>(slot)]) {
       const auto b = static_cast<std::size_t>(at.bin);
       visit_one(state.bins[b], at.node, bins.of_bin[b]);
     }
@@ -251,7 +221,7 @@ Slots make_slots(const State& state) {
 StencilRows make_stencil_rows(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
                               const Slots& slots) {
   const BinKinds bins = find_bin_kinds(scene, rocks, state);
-  const Incidences incidences = find_incidences(state, slots);
+  const auto incidences = find_incidences(state, slots);
   const Assembly from{state, slots, bins, incidences};
   StencilRows out;
   out.row_of_slot.assign(static_cast<std::size_t>(slots.size), -1);
@@ -259,11 +229,11 @@ StencilRows make_stencil_rows(const Scene& scene, const std::vector<Elasticity>&
   std::vector<std::int32_t> tokens;
   for (int slot = 0; slot < slots.size; ++slot) {
     const auto s = static_cast<std::size_t>(slot);
-    if (incidences.first[s] == incidences.first[s + 1]) continue;
+    if (incidences[s].empty()) continue;
     describe_row(from, slot, tokens);
-    const auto [number, is_new] = numbers.find(tokens);
+    const auto [number, is_new] = numbers.try_emplace(tokens, static_cast<int>(numbers.size()));
     if (is_new) out.rows.push_back(make_row(from, slot));
-    if (!out.rows[static_cast<std::size_t>(number)].empty()) out.row_of_slot[s] = number;
+    if (!out.rows[static_cast<std::size_t>(number->second)].empty()) out.row_of_slot[s] = number->second;
   }
   return out;
 }

@@ -5,10 +5,11 @@
 #include <unordered_map>
 
 #include "explicit/momentum.hpp"
-#include "interfaces/surface_tractions.hpp"
+#include "explicit/reactions.hpp"
+#include "explicit/total/bond_sensors.hpp"
 #include "explicit/total/total_operator.hpp"
-#include "explicit/total/total_surfaces.hpp"
 #include "explicit/transfers.hpp"
+#include "interfaces/surface_tractions.hpp"
 #include "state/shape_functions.hpp"
 
 namespace strata {
@@ -21,8 +22,7 @@ void for_each_particle(const Scene& scene, const State& state, const std::vector
   const Particles& p = state.particles;
   with_shape(scene.numerics.shape, [&](auto shape) {
     for (const Bin& bin : bins) {
-      for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
-           q += static_cast<std::size_t>(bin.stride))
+      for (const std::size_t q : bin)
         visit(bin, q, gradients_of<decltype(shape)>(state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q)));
     }
   });
@@ -131,7 +131,7 @@ void start_base(const Scene& scene, const std::vector<Elasticity>& rocks, State&
   const bool starts = t.velocity.empty();
   if (starts) velocities_from_particles(scene, state);
   fill_nodes(state);
-  t.surfaces = make_total_surfaces(scene, rocks, state);
+  find_split_places(scene, rocks, state);
   t.bonds = make_bond_sensors(scene, rocks, state);
   t.based = true;
   if (starts) recount_kinetic(state);
@@ -164,33 +164,34 @@ void bring_up_to_date(const Scene& scene, State& state) {
   t.based = false;
 }
 
-BodyPush push_body(const Scene& scene, State& state) {
-  BodyPush push;
-  if (state.body.empty()) return push;
-  TotalMotion& t = state.total;
-  NodalSums sums(state.masters.size());
-  for_each_particle(scene, state, state.bins, [&](const Bin& bin, std::size_t q, const Gradients& g) {
-    const Vec2 f = state.particles.m[q] * state.body[q];
-    for (std::size_t n = 0; n < 9; ++n) {
-      const auto record = sums[static_cast<std::size_t>(bin.record[n])];
-      record.f_x += g.N[n] * f.x(), record.f_y += g.N[n] * f.y();
-    }
-  });
-  fold_to_masters(state, sums);
-  push.a_x.assign(t.m.size(), 0.0), push.a_y.assign(t.m.size(), 0.0);
-  for (std::size_t r = 0; r < sums.size(); ++r) {
+void note_motion(State& state) {
+  const TotalMotion& t = state.total;
+  for (std::size_t r = 0; r < state.motion.size(); ++r) {
     const auto slot = static_cast<std::size_t>(t.op->slots.of_record[r]);
-    if (state.masters[r].record != static_cast<int>(r) || !(t.m[slot] > 0.0)) continue;
-    push.a_x[slot] = sums[r].f_x / t.m[slot], push.a_y[slot] = sums[r].f_y / t.m[slot];
-    t.a_x[slot] += push.a_x[slot], t.a_y[slot] += push.a_y[slot];
+    const Master& master = state.masters[r];
+    state.motion[r] = {master.x * t.v_x[slot], master.y * t.v_y[slot], master.x * state.dt * t.a_x[slot],
+                       master.y * state.dt * t.a_y[slot]};
   }
-  return push;
 }
 
-double note_body_work(const BodyPush& push, State& state) {
-  const TotalMotion& t = state.total;
+void push_body(const Scene& scene, State& state) {
+  if (state.body.empty()) return;
+  TotalMotion& t = state.total;
+  add_body_force(scene, state);
+  fold_to_masters(state, state.body_sums);
+  for (std::size_t r = 0; r < state.masters.size(); ++r) {
+    const auto slot = static_cast<std::size_t>(t.op->slots.of_record[r]);
+    if (state.masters[r].record != static_cast<int>(r) || !(t.m[slot] > 0.0)) continue;
+    t.a_x[slot] += state.body_sums.f_x[r] / t.m[slot], t.a_y[slot] += state.body_sums.f_y[r] / t.m[slot];
+  }
+}
+
+double note_body_work(State& state) {
   double power = 0.0;
-  for (std::size_t s = 0; s < push.a_x.size(); ++s) power += t.m[s] * (t.v_x[s] * push.a_x[s] + t.v_y[s] * push.a_y[s]);
+  for (std::size_t r = 0; r < state.masters.size() && !state.body.empty(); ++r) {
+    const Vec2 v = total_velocity(state, static_cast<int>(r));
+    power += state.body_sums.f_x[r] * v.x() + state.body_sums.f_y[r] * v.y();
+  }
   state.ledger.body_work += state.dt * power;
   return power;
 }

@@ -25,16 +25,14 @@ void start_base(const Scene& scene, const std::vector<Elasticity>& rocks, State&
 /// nothing where none stands.
 void bring_up_to_date(const Scene& scene, State& state);
 
-// Accelerations that a body force gives the nodes in a step (m/s^2), by slots; empty: there is none.
-struct BodyPush {
-  std::vector<double> a_x, a_y;
-};
+/// Leaves the motion of the step's end and what forces added to it in state.motion, by records, for J.
+void note_motion(State& state);
 
-/// Adds sum_p N_ip m_p b_p / m_i for the body force state.body to the nodes' accelerations; returns what it added.
-BodyPush push_body(const Scene& scene, State& state);
+/// Adds sum_p N_ip m_p b_p / m_i for the body force state.body, if any, to the nodes' accelerations.
+void push_body(const Scene& scene, State& state);
 
-/// Adds the work of the step to the ledger, sum m b . v dt at the step's end; returns its power (W/m).
-double note_body_work(const BodyPush& push, State& state);
+/// Adds the body force's work of the step to the ledger, sum m b . v dt at the step's end; returns its power (W/m).
+double note_body_work(State& state);
 
 // Velocities of the records of copies that an event is about to change.
 struct RecordVelocities {

@@ -1,10 +1,7 @@
 #include "explicit/total/total_operator.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numeric>
-#include <utility>
 
 #include "explicit/total/stencil_rows.hpp"
 #include "explicit/transfers.hpp"
@@ -95,8 +92,9 @@ void find_runs(RunMaker& make) {
 }
 
 void add_segments(const StencilRow& row, std::vector<StencilSegment>& segments) {
+  const std::size_t first = segments.size();
   for (const StencilEntry& entry : row) {
-    if (segments.empty() || entry.offset >= segments.back().offset + lanes || entry.offset < segments.back().offset) {
+    if (segments.size() == first || entry.offset >= segments.back().offset + lanes) {
       segments.emplace_back();
       segments.back().offset = entry.offset;
     }
@@ -117,104 +115,19 @@ void find_ranges(StencilOperator& op) {
   }
 }
 
-// The segments of the rows that slots have without being in a run, by row.
-std::vector<IndexRange> find_segments(const RunMaker& make) {
-  std::vector<char> wanted(make.rows.rows.size(), 0);
-  for (int slot = 0; slot < make.slots.size; ++slot) {
-    if (make.is_single(slot)) wanted[static_cast<std::size_t>(make.row(slot))] = 1;
+// All slots that no run has, with the segments of their rows.
+void find_singles(const RunMaker& make) {
+  std::vector<SlotRange> segments;
+  for (const StencilRow& row : make.rows.rows) {
+    const auto first = static_cast<int>(make.op.segments.size());
+    add_segments(row, make.op.segments);
+    segments.push_back({first, static_cast<int>(make.op.segments.size())});
   }
-  std::vector<IndexRange> of_row(make.rows.rows.size());
-  for (std::size_t row = 0; row < of_row.size(); ++row) {
-    if (wanted[row] == 0) continue;
-    std::vector<StencilSegment> segments;
-    add_segments(make.rows.rows[row], segments);
-    const std::size_t first = make.op.segments.size();
-    make.op.segments.insert(make.op.segments.end(), segments.begin(), segments.end());
-    of_row[row] = {first, make.op.segments.size()};
-  }
-  return of_row;
-}
-
-// The slots at which parts begin, and the end. Work is counted in products of a vector of slots and a coefficient
-// block: a run's entry takes one a vector, a segment of a group, with the sum over its lanes, about four a slot, and
-// what is done once for each node about eight a vector. Estimates: they only even out the parts.
-std::vector<int> find_borders(const RunMaker& make, const std::vector<IndexRange>& segments) {
-  const int stride = make.slots.stride;
-  std::vector<std::size_t> work(static_cast<std::size_t>(make.slots.size / stride + 1), 0);
-  const auto add = [&](int slot, std::size_t more) { work[static_cast<std::size_t>(slot / stride)] += more; };
-  for (const StencilRun& run : make.op.runs)
-    add(run.slots.first,
-        static_cast<std::size_t>((run.slots.last - run.slots.first) * (run.full + run.diagonal) / lanes));
   for (int slot = 0; slot < make.slots.size; ++slot) {
     if (!make.is_single(slot)) continue;
-    const IndexRange& of_row = segments[static_cast<std::size_t>(make.row(slot))];
-    add(slot, 4 * (of_row.last - of_row.first));
+    const SlotRange& of_row = segments[static_cast<std::size_t>(make.row(slot))];
+    make.op.singles.push_back({slot, of_row.first, of_row.last});
   }
-  for (const SlotRange& range : make.op.ranges)
-    add(range.first, static_cast<std::size_t>(8 * (range.last - range.first) / lanes));
-  const std::size_t all = std::accumulate(work.begin(), work.end(), std::size_t{0});
-  std::vector<int> borders{0};
-  std::size_t done = 0;
-  for (std::size_t row = 0; row < work.size(); ++row) {
-    while (borders.size() < record_parts && done * record_parts >= all * borders.size())
-      borders.push_back(static_cast<int>(row) * stride);
-    done += work[row];
-  }
-  borders.resize(record_parts, make.slots.size);
-  borders.push_back(make.slots.size);
-  return borders;
-}
-
-// All slots that no run has, those of the same row together, part by part.
-void find_groups(const RunMaker& make, const std::vector<IndexRange>& segments, const std::vector<int>& borders) {
-  StencilOperator& op = make.op;
-  for (std::size_t part = 0; part < record_parts; ++part) {
-    std::vector<std::pair<int, int>> singles;  // row, slot
-    for (int slot = borders[part]; slot < borders[part + 1]; ++slot) {
-      if (make.is_single(slot)) singles.emplace_back(make.row(slot), slot);
-    }
-    std::sort(singles.begin(), singles.end());
-    op.parts[part].groups.first = op.groups.size();
-    for (std::size_t k = 0; k < singles.size(); ++k) {
-      if (k == 0 || singles[k].first != singles[k - 1].first) {
-        const IndexRange& of_row = segments[static_cast<std::size_t>(singles[k].first)];
-        op.groups.push_back(
-            {static_cast<int>(of_row.first), static_cast<int>(of_row.last), static_cast<int>(op.grouped.size()), 0});
-      }
-      op.grouped.push_back(singles[k].second);
-      ++op.groups.back().slots;
-    }
-    op.parts[part].groups.last = op.groups.size();
-  }
-}
-
-// Those of a list, by ascending slots, that each part has.
-template <class List, class SlotOf>
-void deal(const List& list, const std::vector<int>& borders, SlotOf slot_of, IndexRange StencilPart::*of_part,
-          std::vector<StencilPart>& parts) {
-  std::size_t k = 0;
-  for (std::size_t part = 0; part < record_parts; ++part) {
-    const std::size_t first = k;
-    while (k < list.size() && slot_of(list[k]) < borders[part + 1]) ++k;
-    parts[part].*of_part = {first, k};
-  }
-}
-
-void find_parts(const RunMaker& make) {
-  StencilOperator& op = make.op;
-  op.parts.resize(record_parts);
-  const std::vector<IndexRange> segments = find_segments(make);
-  const std::vector<int> borders = find_borders(make, segments);
-  find_groups(make, segments, borders);
-  std::sort(op.held_x.begin(), op.held_x.end());
-  const auto first = [](const auto& of_slots) { return of_slots.first; };
-  deal(
-      op.images, borders, [](const SlotImage& image) { return image.to; }, &StencilPart::images, op.parts);
-  deal(
-      op.runs, borders, [](const StencilRun& run) { return run.slots.first; }, &StencilPart::runs, op.parts);
-  deal(
-      op.held_x, borders, [](int slot) { return slot; }, &StencilPart::held_x, op.parts);
-  deal(op.ranges, borders, first, &StencilPart::ranges, op.parts);
 }
 
 // --- applying
@@ -264,36 +177,38 @@ void apply_run(const StencilOperator& op, const StencilRun& run, TotalMotion& t)
   if (vectors == 1) apply_block<1>(entries, run, last - lanes, t);
 }
 
-void apply_group(const StencilOperator& op, const StencilGroup& group, TotalMotion& t) {
-  for (int k = group.slot; k < group.slot + group.slots; ++k) {
-    const auto slot = static_cast<std::size_t>(op.grouped[static_cast<std::size_t>(k)]);
-    const double *u_x = t.u_x.data() + slot, *u_y = t.u_y.data() + slot;
-    Lane x{}, y{};
-    for (int s = group.first; s < group.last; ++s) {
-      const StencilSegment& segment = op.segments[static_cast<std::size_t>(s)];
-      const Lane a = load(u_x + segment.offset), b = load(u_y + segment.offset);
-      x += load(segment.xx.data()) * a;
-      y += load(segment.yx.data()) * a;
-      x += load(segment.xy.data()) * b;
-      y += load(segment.yy.data()) * b;
+void apply_single(const StencilOperator& op, const SingleSlot& single, TotalMotion& t) {
+  const auto slot = static_cast<std::size_t>(single.slot);
+  const double *u_x = t.u_x.data() + slot, *u_y = t.u_y.data() + slot;
+  Lane x{}, y{};
+  for (int s = single.first; s < single.last; ++s) {
+    const StencilSegment& segment = op.segments[static_cast<std::size_t>(s)];
+    const Lane a = load(u_x + segment.offset), b = load(u_y + segment.offset);
+    x += load(segment.xx.data()) * a;
+    y += load(segment.yx.data()) * a;
+    x += load(segment.xy.data()) * b;
+    y += load(segment.yy.data()) * b;
+  }
+  t.a_x[slot] = t.base_x[slot] + sum_of_lanes(x);
+  t.a_y[slot] = t.base_y[slot] + sum_of_lanes(y);
+}
+
+// A thread has the same runs and slots in each step, so that nodes stay in its cache.
+void apply_stencils(TotalMotion& t) {
+  const StencilOperator& op = *t.op;
+#pragma omp parallel if (t.m.size() > worth_threads)
+  {
+#pragma omp for schedule(static)
+    for (const SlotImage& image : op.images) {
+      const auto to = static_cast<std::size_t>(image.to), from = static_cast<std::size_t>(image.from);
+      t.u_x[to] = -t.u_x[from], t.u_y[to] = t.u_y[from];
     }
-    t.a_x[slot] = t.base_x[slot] + sum_of_lanes(x);
-    t.a_y[slot] = t.base_y[slot] + sum_of_lanes(y);
+#pragma omp for schedule(static) nowait
+    for (const StencilRun& run : op.runs) apply_run(op, run, t);
+#pragma omp for schedule(static)
+    for (const SingleSlot& single : op.singles) apply_single(op, single, t);
   }
-}
-
-void mirror(const StencilOperator& op, const StencilPart& part, TotalMotion& t) {
-  for (std::size_t k = part.images.first; k < part.images.last; ++k) {
-    const auto to = static_cast<std::size_t>(op.images[k].to), from = static_cast<std::size_t>(op.images[k].from);
-    t.u_x[to] = -t.u_x[from], t.u_y[to] = t.u_y[from];
-  }
-}
-
-void apply(const StencilOperator& op, const StencilPart& part, TotalMotion& t) {
-  for (std::size_t k = part.runs.first; k < part.runs.last; ++k) apply_run(op, op.runs[k], t);
-  for (std::size_t k = part.groups.first; k < part.groups.last; ++k) apply_group(op, op.groups[k], t);
-  for (std::size_t k = part.held_x.first; k < part.held_x.last; ++k)
-    t.a_x[static_cast<std::size_t>(op.held_x[k])] = 0.0;
+  for (const int slot : op.held_x) t.a_x[static_cast<std::size_t>(slot)] = 0.0;
 }
 
 // The same by particles: f_i = -sum_p V_p sigma(grad u) grad N_ip, folded to masters.
@@ -305,8 +220,7 @@ void apply_particles(const Scene& scene, const std::vector<Elasticity>& rocks, S
   for (const Bin& bin : state.bins) {
     std::array<Vec2, 9> u;
     for (std::size_t n = 0; n < 9; ++n) u[n] = total_displacement(state, bin.record[n]);
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
-         q += static_cast<std::size_t>(bin.stride)) {
+    for (const std::size_t q : bin) {
       const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
       Vec2 u_1 = Vec2::Zero(), u_2 = Vec2::Zero();
       for (std::size_t n = 0; n < 9; ++n) u_1 += g.N_x[n] * u[n], u_2 += g.N_y[n] * u[n];
@@ -327,38 +241,25 @@ void apply_particles(const Scene& scene, const std::vector<Elasticity>& rocks, S
   }
 }
 
-double power(const StencilOperator& op, const StencilPart& part, const TotalMotion& t) {
-  Lane sum_m_v_a{};
-  for (std::size_t k = part.ranges.first; k < part.ranges.last; ++k) {
-    for (auto s = static_cast<std::size_t>(op.ranges[k].first); s < static_cast<std::size_t>(op.ranges[k].last);
-         s += lanes) {
-      sum_m_v_a += load(&t.m[s]) * (load(&t.v_x[s]) * load(&t.a_x[s]) + load(&t.v_y[s]) * load(&t.a_y[s]));
-    }
-  }
-  return sum_of_lanes(sum_m_v_a);
+// The sum over the slots in use.
+template <class Sum, class Work>
+Sum over_slots(const TotalMotion& t, Work work) {
+  const std::vector<SlotRange>& ranges = t.op->ranges;
+  const auto range = [&](std::size_t k) {
+    return Part{static_cast<std::size_t>(ranges[k].first), static_cast<std::size_t>(ranges[k].last)};
+  };
+  return sum_by_lanes<Sum>(ranges.size(), t.m.size(), range, work);
 }
 
-NodeTotals move_part(const StencilOperator& op, const StencilPart& part, double keep, double dt, TotalMotion& t) {
+// Of vectors of slots: see NodeTotals.
+struct LaneTotals {
   Lane kinetic{}, increment{}, power{}, product{}, fastest{};
-  for (std::size_t k = part.ranges.first; k < part.ranges.last; ++k) {
-    for (auto s = static_cast<std::size_t>(op.ranges[k].first); s < static_cast<std::size_t>(op.ranges[k].last);
-         s += lanes) {
-      const Lane a_x = load(&t.a_x[s]), a_y = load(&t.a_y[s]), m = load(&t.m[s]);
-      const Lane before_x = load(&t.v_x[s]), before_y = load(&t.v_y[s]);
-      const Lane v_x = keep * before_x + dt * a_x, v_y = keep * before_y + dt * a_y;
-      store(&t.v_x[s], v_x), store(&t.v_y[s], v_y);
-      store(&t.u_x[s], load(&t.u_x[s]) + dt * v_x), store(&t.u_y[s], load(&t.u_y[s]) + dt * v_y);
-      const Lane speed2 = v_x * v_x + v_y * v_y;
-      kinetic += m * speed2;
-      increment += m * (a_x * a_x + a_y * a_y);
-      power += m * (v_x * a_x + v_y * a_y);
-      product += m * (before_x * v_x + before_y * v_y);
-      fastest = larger(fastest, speed2);
-    }
+  LaneTotals& operator+=(const LaneTotals& other) {
+    kinetic += other.kinetic, increment += other.increment, power += other.power, product += other.product;
+    fastest = larger(fastest, other.fastest);
+    return *this;
   }
-  return {0.5 * sum_of_lanes(kinetic), 0.5 * dt * dt * sum_of_lanes(increment), sum_of_lanes(power),
-          sum_of_lanes(product), largest_lane(fastest)};
-}
+};
 
 }  // namespace
 
@@ -368,49 +269,39 @@ StencilOperator make_operator(const Scene& scene, const std::vector<Elasticity>&
   const StencilRows rows = make_stencil_rows(scene, rocks, state, op.slots);
   RunMaker make{state.grid, op.slots, rows, op, std::vector<char>(static_cast<std::size_t>(op.slots.size), 0)};
   find_runs(make);
+  find_singles(make);
   find_ranges(op);
-  find_parts(make);
   return op;
 }
 
-// Ranges are widened to whole vectors: slots between those in use have no mass and stay at rest.
 NodeTotals move_nodes(double keep, State& state) {
   TotalMotion& t = state.total;
-  const StencilOperator& op = *t.op;
-  std::array<NodeTotals, record_parts> of_part;
-#pragma omp parallel for schedule(static) if (t.m.size() > worth_threads)
-  for (std::size_t part = 0; part < record_parts; ++part)
-    of_part[part] = move_part(op, op.parts[part], keep, state.dt, t);
-  NodeTotals all;
-  for (const NodeTotals& totals : of_part) {
-    all.kinetic += totals.kinetic;
-    all.increment += totals.increment;
-    all.power += totals.power;
-    all.product += totals.product;
-    all.largest_speed2 = std::max(all.largest_speed2, totals.largest_speed2);
-  }
-  return all;
+  const double dt = state.dt;
+  const auto sum = over_slots<LaneTotals>(t, [&](auto lane, std::size_t s, LaneTotals& to) {
+    const Lane a_x = lane.load(&t.a_x[s]), a_y = lane.load(&t.a_y[s]), m = lane.load(&t.m[s]);
+    const Lane before_x = lane.load(&t.v_x[s]), before_y = lane.load(&t.v_y[s]);
+    const Lane v_x = keep * before_x + dt * a_x, v_y = keep * before_y + dt * a_y;
+    lane.store(&t.v_x[s], v_x), lane.store(&t.v_y[s], v_y);
+    lane.store(&t.u_x[s], lane.load(&t.u_x[s]) + dt * v_x), lane.store(&t.u_y[s], lane.load(&t.u_y[s]) + dt * v_y);
+    const Lane speed2 = v_x * v_x + v_y * v_y;
+    to.kinetic += m * speed2;
+    to.increment += m * (a_x * a_x + a_y * a_y);
+    to.power += m * (v_x * a_x + v_y * a_y);
+    to.product += m * (before_x * v_x + before_y * v_y);
+    to.fastest = larger(to.fastest, speed2);
+  });
+  return {0.5 * sum_of_lanes(sum.kinetic), 0.5 * dt * dt * sum_of_lanes(sum.increment), sum_of_lanes(sum.power),
+          sum_of_lanes(sum.product), largest_lane(sum.fastest)};
 }
 
 double find_accelerations(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
-  TotalMotion& t = state.total;
-  const StencilOperator& op = *t.op;
   const bool fast = scene.numerics.kernels == Numerics::Kernels::fast;
-  if (!fast) apply_particles(scene, rocks, state);
-  std::array<double, record_parts> of_part{};
-#pragma omp parallel if (t.m.size() > worth_threads)
-  {
-    if (fast) {
-#pragma omp for schedule(static)
-      for (std::size_t part = 0; part < record_parts; ++part) mirror(op, op.parts[part], t);
-    }
-#pragma omp for schedule(static)
-    for (std::size_t part = 0; part < record_parts; ++part) {
-      if (fast) apply(op, op.parts[part], t);
-      of_part[part] = power(op, op.parts[part], t);
-    }
-  }
-  return std::accumulate(of_part.begin(), of_part.end(), 0.0);
+  fast ? apply_stencils(state.total) : apply_particles(scene, rocks, state);
+  const TotalMotion& t = state.total;
+  return sum_of_lanes(over_slots<Lane>(t, [&](auto lane, std::size_t s, Lane& power) {
+    const Lane v_a = lane.load(&t.v_x[s]) * lane.load(&t.a_x[s]) + lane.load(&t.v_y[s]) * lane.load(&t.a_y[s]);
+    power += lane.load(&t.m[s]) * v_a;
+  }));
 }
 
 }  // namespace strata
