@@ -7,11 +7,16 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace strata {
 
+// Beside each enumeration stand the words that a scene has for its values, in their order.
 enum class Edge { symmetry, fixed, traction };
+constexpr std::string_view words(Edge) {
+  return "symmetry, fixed, traction";
+}
 
 // A vector's x and y component as formulas (see formula.hpp) of X and Y (m), the place where a particle starts, and
 // where the key says so of the time t (s).
@@ -43,6 +48,7 @@ struct Domain {
 
 struct InSitu {
   enum class Initialise { uniform, loaded };
+  friend constexpr std::string_view words(Initialise) { return "uniform, loaded"; }
   double vertical_Pa = 0.0;
   double horizontal_Pa = 0.0;
   Initialise initialise = Initialise::uniform;
@@ -77,7 +83,9 @@ struct Rock {
 // The law of an interface between two layers. Members of other laws keep their defaults and are not used.
 struct InterfaceLaw {
   enum class Kind { perfect, friction, weak, soft };
+  friend constexpr std::string_view words(Kind) { return "perfect, friction, weak, soft"; }
   enum class Compression { contact, spring };
+  friend constexpr std::string_view words(Compression) { return "contact, spring"; }
   std::string name = "perfect";
   Kind kind = Kind::perfect;
   double coefficient = 0.6;                  // friction
@@ -117,6 +125,7 @@ struct InterfacePlace {
 
 struct Strata {
   enum class Along { x, y };
+  friend constexpr std::string_view words(Along) { return "x, y"; }
   Along along = Along::y;
   std::vector<Layer> layers;
   std::vector<InterfacePlace> interfaces;  // layers.size() - 1 of them
@@ -126,10 +135,15 @@ struct Strata {
 
 struct Fracture {
   enum class Growth { none, J, energy };
+  friend constexpr std::string_view words(Growth) { return "none, J, energy"; }
   enum class Direction { straight, max_hoop };
+  friend constexpr std::string_view words(Direction) { return "straight, max_hoop"; }
   enum class Crossing { J, energy };
+  friend constexpr std::string_view words(Crossing) { return "J, energy"; }
   enum class Order { interfaces, larger_margin };
+  friend constexpr std::string_view words(Order) { return "interfaces, larger_margin"; }
   enum class Faces { contact, free };
+  friend constexpr std::string_view words(Faces) { return "contact, free"; }
   std::vector<std::array<double, 2>> path_m;  // an end on the symmetry line comes first
   Growth growth = Growth::J;
   double increment_m = 1.0;
@@ -147,8 +161,11 @@ struct Fracture {
 
 struct Fluid {
   enum class Law { uniform, paper, reynolds };
+  friend constexpr std::string_view words(Law) { return "uniform, paper, reynolds"; }
   enum class NewPoint { dry, inherit };
+  friend constexpr std::string_view words(NewPoint) { return "dry, inherit"; }
   enum class TimeRule { trapezoid, backward_euler, explicit_euler };
+  friend constexpr std::string_view words(TimeRule) { return "trapezoid, backward-euler, explicit"; }
   Law law = Law::paper;
   double bulk_modulus_Pa = 1.0e9;
   double viscosity_Pa_s = 0.1;
@@ -165,10 +182,15 @@ struct Fluid {
 
 struct Numerics {
   enum class Mechanics { explicit_dynamics, quasistatic };
+  friend constexpr std::string_view words(Mechanics) { return "explicit, quasistatic"; }
   enum class Shape { bspline2, linear, gimp };
+  friend constexpr std::string_view words(Shape) { return "bspline2, linear, gimp"; }
   enum class Transfer { flip, pic, xpic2 };
+  friend constexpr std::string_view words(Transfer) { return "flip, pic, xpic2"; }
   enum class Kinematics { updated, total };
+  friend constexpr std::string_view words(Kinematics) { return "updated, total"; }
   enum class Kernels { fast, plain };
+  friend constexpr std::string_view words(Kernels) { return "fast, plain"; }
   Mechanics mechanics = Mechanics::explicit_dynamics;
   Kinematics kinematics = Kinematics::updated;
   Kernels kernels = Kernels::fast;

@@ -95,9 +95,7 @@ Line read_line(std::string_view text) {
 // A key of which the last name is that of `path`: units and words go by names.
 const Key* key_called(std::string_view path) {
   const std::string_view name = path.substr(path.rfind('.') + 1);
-  const auto key = std::ranges::find_if(scene_keys(), [&](const Key& k) {
-    return k.path == name || (k.path.ends_with(name) && k.path[k.path.size() - name.size() - 1] == '.');
-  });
+  const auto key = std::ranges::find_if(scene_keys(), [&](const Key& k) { return k.name() == name; });
   return name.empty() || key == scene_keys().end() ? nullptr : &*key;
 }
 
@@ -143,12 +141,12 @@ std::string advice_on_list(std::string_view value, const Key* key) {
   });
   const std::string_view behind = trimmed(value.substr(static_cast<std::size_t>(end - value.begin())), "]");
   if (behind.size() < 2) return {};
-  if (key != nullptr && key->type == KeyType::points) return std::string(note_on_table("fracture"));
+  if (key != nullptr && key->is<Way<Path>>()) return std::string(note_on_table("fracture"));
   return " Nothing but a comment stands behind the ] of a list.";
 }
 
 std::string advice_on_word(std::string_view value, const Key* key) {
-  if (key != nullptr && (key->type == KeyType::number || key->type == KeyType::integer)) return " Write a number.";
+  if (key != nullptr && (key->is_number() || key->is<Way<int>>())) return " Write a number.";
   return fmt::format(" Text stands in quotes: \"{}\".", shortened(value, 60));
 }
 
@@ -242,7 +240,7 @@ std::string complaint_on_line(const Line& line, std::size_t at, const std::strin
   const Key* key = line.assignments.empty() ? nullptr : key_called(line.key(line.assignments.front()));
   if (why.find("redefine") != std::string::npos && !line.assignments.empty())
     return fmt::format("{} is given twice: this is not TOML. Remove one.{}", line.key(line.assignments.front()),
-                       key != nullptr && key->type == KeyType::points ? note_on_table("fracture") : "");
+                       key != nullptr && key->is<Way<Path>>() ? note_on_table("fracture") : "");
   if (content.find(",}") != std::string::npos || content.find(", }") != std::string::npos)
     return "this is not TOML. Take the comma before } away.";
   if (why.find("inline table") != std::string::npos && why.find("saw '\\n'") != std::string::npos)
