@@ -1,8 +1,8 @@
-#include "scene/build_scene.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <set>
+
+#include "scene/entries.hpp"
 
 namespace strata {
 namespace {
@@ -210,12 +210,6 @@ void check_new_names(const Entries& entries, const Scene& scene, Faults& faults)
 }
 
 }  // namespace
-
-void start_at_symmetry_line(Scene& scene) {
-  if (!scene.fracture || scene.domain.bottom != Edge::symmetry) return;
-  auto& path_m = scene.fracture->path_m;
-  if (path_m.back()[1] == 0.0 && path_m.front()[1] != 0.0) std::ranges::reverse(path_m);
-}
 
 Scene build_scene(const Entries& entries, Faults& faults) {
   Scene scene;

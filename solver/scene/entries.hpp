@@ -1,4 +1,5 @@
-// A scene's text as a flat list of keys and values with their places: from the file, its variants and --set alike.
+// A scene's text as a flat list of keys and values with their places, from the file, its variants and --set alike; and
+// from there to a scene.
 #pragma once
 
 #include <map>
@@ -74,5 +75,10 @@ void apply_value(const Given& given, std::size_t index, Scene& scene);
 /// Whether each [[claim]] has its text keys; what is wrong is added to `faults`. claims: the value of `claim`.
 /// Throws nothing but std::bad_alloc.
 void check_claims(const toml::node& claims, const Origin& origin, Faults& faults);
+
+/// The scene that `entries` describe, each key that is absent with its default. Missing keys, names that do not exist,
+/// keys of another interface law and layers that do not add up are added to `faults`; the scene is then of use only for
+/// finding more of them. Throws nothing but std::bad_alloc.
+Scene build_scene(const Entries& entries, Faults& faults);
 
 }  // namespace strata

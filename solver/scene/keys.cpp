@@ -10,8 +10,6 @@
 
 #include <toml++/toml.h>
 
-#include "scene/absent_keys.hpp"
-
 namespace strata {
 namespace {
 

@@ -130,6 +130,13 @@ std::vector<std::string> names_in_table(std::string_view path);
 /// viscosity_Pa_s?". path: full path of the key. Throws nothing but std::bad_alloc.
 std::string unknown_key_message(std::string_view path);
 
+/// What to do instead of giving the key `path`, which people look for and this version does not have, " In this version
+/// ..."; "" where nothing is known of it. Throws nothing.
+std::string_view advice_on_absent_key(std::string_view path);
+
+/// What there is one of in a scene, for those who type `path` to have more of it; "" for others. Throws nothing.
+std::string_view note_on_table(std::string_view path);
+
 /// "[0, 0.5)", as in messages and help. Throws nothing but std::bad_alloc.
 std::string to_text(const Bounds& bounds);
 

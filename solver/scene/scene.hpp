@@ -42,7 +42,6 @@ struct Domain {
   // Whether an edge holds the block's motion along x or y; what none holds is free as a whole.
   bool holds_x() const { return sides == Edge::fixed; }
   bool holds_y() const { return bottom == Edge::symmetry || top == Edge::fixed; }
-
   bool operator==(const Domain&) const = default;
 };
 
@@ -52,21 +51,18 @@ struct InSitu {
   double vertical_Pa = 0.0;
   double horizontal_Pa = 0.0;
   Initialise initialise = Initialise::uniform;
-
   bool operator==(const InSitu&) const = default;
 };
 
 // What acts on the whole block beyond the in-situ state.
 struct Body {
   std::optional<Formulas> acceleration_m_s2;  // body force per mass, of X, Y, t; absent: none
-
   bool operator==(const Body&) const = default;
 };
 
 // How the block moves at time 0.
 struct Initial {
   std::optional<Formulas> velocity_m_s;  // of X, Y; absent: at rest
-
   bool operator==(const Initial&) const = default;
 };
 
@@ -76,7 +72,6 @@ struct Rock {
   double poisson_ratio = 0.2;
   double density_kg_m3 = 2500.0;
   double toughness_Pa_sqrt_m = 1.45e6;
-
   bool operator==(const Rock&) const = default;
 };
 
@@ -102,7 +97,6 @@ struct InterfaceLaw {
 
   // Whether its springs go on carrying the in-situ stress, so that their reaction is the change from it.
   bool takes_all_compression() const { return kind == Kind::soft && compression == Compression::spring; }
-
   bool operator==(const InterfaceLaw&) const = default;
 };
 
@@ -111,7 +105,6 @@ struct Layer {
   std::size_t rock = 0;  // index into Scene::rocks
   double from_m = 0.0;
   double to_m = 0.0;
-
   bool operator==(const Layer&) const = default;
 };
 
@@ -119,7 +112,6 @@ struct Layer {
 struct InterfacePlace {
   std::size_t law = 0;  // index into Scene::laws
   double at_m = 0.0;    // position along the stacking axis
-
   bool operator==(const InterfacePlace&) const = default;
 };
 
@@ -129,7 +121,6 @@ struct Strata {
   Along along = Along::y;
   std::vector<Layer> layers;
   std::vector<InterfacePlace> interfaces;  // layers.size() - 1 of them
-
   bool operator==(const Strata&) const = default;
 };
 
@@ -155,7 +146,6 @@ struct Fracture {
   Faces faces = Faces::contact;
 
   double crossing_increment() const { return crossing_increment_m.value_or(increment_m); }
-
   bool operator==(const Fracture&) const = default;
 };
 
@@ -176,7 +166,6 @@ struct Fluid {
   double cavitation_Pa = 0.0;       // absolute lower bound of the fluid pressure
   NewPoint new_point = NewPoint::dry;
   TimeRule time_rule = TimeRule::trapezoid;
-
   bool operator==(const Fluid&) const = default;
 };
 
@@ -213,7 +202,6 @@ struct Numerics {
 
   // Whether neighbouring bins of particles are lanes of vectors (see state/copies.hpp).
   bool in_lanes() const { return !keeps_places() && kernels == Kernels::fast; }
-
   bool operator==(const Numerics&) const = default;
 };
 
@@ -222,13 +210,11 @@ struct Stop {
   std::optional<double> tip_y_m;
   std::optional<double> inlet_Pa;
   std::optional<double> time_s;
-
   bool operator==(const Stop&) const = default;
 };
 
 struct Output {
   std::optional<double> fields_every_s;  // absent: 1/50 of the run
-
   bool operator==(const Output&) const = default;
 };
 
@@ -258,7 +244,6 @@ struct Scene {
 
   // Coordinate of a place (m) along which layers are stacked.
   double stacking(double x, double y) const { return strata.along == Strata::Along::y ? y : x; }
-
   bool operator==(const Scene&) const = default;
 };
 

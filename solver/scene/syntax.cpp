@@ -8,9 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "scene/absent_keys.hpp"
 #include "scene/spelling.hpp"
-#include "scene/typed_number.hpp"
 
 namespace strata {
 namespace {

@@ -8,8 +8,8 @@
 #include <sstream>
 #include <utility>
 
-#include "scene/build_scene.hpp"
 #include "scene/entries.hpp"
+#include "scene/run_size.hpp"
 #include "scene/scene_checks.hpp"
 #include "scene/syntax.hpp"
 
@@ -123,6 +123,13 @@ std::string claims_text(const toml::table& root) {
   return out.str();
 }
 
+// Turns the path of a fracture that ends on the symmetry line so that it starts there.
+void start_at_symmetry_line(Scene& scene) {
+  if (!scene.fracture || scene.domain.bottom != Edge::symmetry) return;
+  auto& path_m = scene.fracture->path_m;
+  if (path_m.back()[1] == 0.0 && path_m.front()[1] != 0.0) std::ranges::reverse(path_m);
+}
+
 void lay_variant(const std::string& name, const std::vector<Variant>& variants, const std::string& file_name,
                  Entries& entries, Faults& faults) {
   if (name.empty()) return;
@@ -191,6 +198,31 @@ VariantList list_variants(const std::filesystem::path& file) {
   const FileText read = file_text(file);
   if (!read.error.empty()) return {{}, {read.error}};
   return list_variants_text(read.text, file.string());
+}
+
+ReadResult read_scene_that_fits(const std::filesystem::path& file, const std::string& variant,
+                                const std::vector<std::string>& set) {
+  ReadResult result = read_scene(file, variant, set);
+  if (!result.scene) return result;
+  if (const auto reason = too_large(*result.scene, available_memory())) {
+    return {std::nullopt, {file.string() + ":1:1: " + *reason}};
+  }
+  return result;
+}
+
+std::vector<std::string> check(const std::vector<std::string>& files) {
+  std::vector<std::string> lines;
+  for (const std::string& file : files) {
+    const std::vector<std::string> of_scene = read_scene_that_fits(file, "", {}).errors;
+    lines.insert(lines.end(), of_scene.begin(), of_scene.end());
+    for (const std::string& variant : list_variants(file).names) {
+      for (const std::string& line : read_scene_that_fits(file, variant, {}).errors) {
+        const bool known = std::ranges::find(of_scene, line) != of_scene.end();
+        if (!known) lines.push_back(line + " [variant " + variant + "]");
+      }
+    }
+  }
+  return lines;
 }
 
 }  // namespace strata

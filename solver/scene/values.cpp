@@ -2,10 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/absent_keys.hpp"
 #include "scene/entries.hpp"
 #include "scene/formula.hpp"
-#include "scene/typed_number.hpp"
+#include "scene/syntax.hpp"
 
 namespace strata {
 namespace {
