@@ -21,8 +21,8 @@ double points_of(const Scene& scene);
 /// point (trials of growth hold states), twice as many where paths turn; 820 log2(n) for each of n unknowns, two a node
 /// of what is solved (a factor by nested dissection fills up as n log n, George 1973); and 28 for each pair of the six
 /// jumps of a cell across the fracture at its end and interfaces that are apart from the start (dense matrices).
-/// Against the peaks of all 151 runs of the experiments at 1 m cells: 0.9 to 2.3 times, and 4.3 times in explicit runs of
-/// Experiment 5, which weigh no growth. Throws nothing but std::bad_alloc.
+/// Against the peaks of all 151 runs of the experiments at 1 m cells: 0.9 to 2.3 times, and 4.3 times in explicit runs
+/// of Experiment 5, which weigh no growth. Throws nothing but std::bad_alloc.
 double memory_need(const Scene& scene);
 
 /// Why the scene does not fit in `available` bytes, or nothing. Throws nothing but std::bad_alloc.

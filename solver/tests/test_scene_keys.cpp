@@ -13,7 +13,7 @@
 using namespace strata;
 
 TEST_CASE("Every key is declared once, has help, and leads somewhere or says why not") {
-  std::set<std::string> paths;
+  std::set<std::string_view> paths;
   for (const Key& key : scene_keys()) {
     CAPTURE(key.path);
     CHECK(paths.insert(key.path).second);
