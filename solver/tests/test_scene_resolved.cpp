@@ -136,7 +136,7 @@ TEST_CASE("Memory needed grows with the particles, more so with a factor, and le
   CHECK(memory_need(scene) == Approx(process + equilibria(80.0, 6.0 * along)));
   CHECK_FALSE(too_large(scene, memory_need(scene)).has_value());
   CHECK_THAT(too_large(scene, 0.5 * memory_need(scene)).value(),
-             Catch::Contains("need about 0.201 GB, and 0.1 GB are available"));
+             Catch::Contains("need about 0.199 GB, and 0.0996 GB are available"));
   scene.fracture->direction = Fracture::Direction::max_hoop;
   CHECK(memory_need(scene) == Approx(process + equilibria(80.0, 6.0 * along, 2000.0)));
   scene.in_situ.initialise = InSitu::Initialise::loaded;  // 16 points a cell from the start
