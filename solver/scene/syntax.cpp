@@ -310,7 +310,7 @@ bool mend_line(std::string& text, const toml::parse_error& error, const Origin& 
   const auto as_toml = mended(line, complaints, complaints.empty() && why.find("redefine") != std::string::npos);
   if (!as_toml) return false;
   typed = *as_toml;
-  text = fmt::format("{}", fmt::join(lines, "\n"));
+  text = fmt::format("{}\n", fmt::join(lines, "\n"));
   return true;
 }
 
