@@ -6,52 +6,42 @@
 namespace strata {
 namespace {
 
-// What mechanics = "explicit" cannot do.
-void check_explicit(const SceneChecks& checks) {
+// What one of the two mechanics cannot do.
+void check_mechanics(const SceneChecks& checks) {
+  if (!checks.entries.sound("numerics.mechanics")) return;
   const Scene& scene = checks.scene;
+  const bool rests = scene.numerics.mechanics == Numerics::Mechanics::quasistatic, moves = !rests;
+  const Fracture fracture = scene.fracture.value_or(Fracture());
+  const bool gimp_in_place = scene.numerics.shape == Numerics::Shape::gimp && scene.numerics.keeps_places();
+  const std::string in_place = rests ? "mechanics = \"quasistatic\"" : "kinematics = \"total\"";
   struct Refusal {
     bool applies;
-    std::string_view key, why, advice;
+    std::string_view key;
+    std::string why;
   };
-  for (const Refusal& refusal : {
-           Refusal{scene.fracture && scene.fracture->growth == Fracture::Growth::energy, "fracture.growth",
-                   " = \"energy\" compares equilibria and needs mechanics = \"quasistatic\", but mechanics = "
-                   "\"explicit\".",
-                   "Use growth = \"J\" or \"none\"."},
-           Refusal{scene.fracture && scene.fracture->order == Fracture::Order::larger_margin, "fracture.order",
-                   " = \"larger_margin\" asks what goes first at one load and needs mechanics = \"quasistatic\", but "
-                   "mechanics = \"explicit\", where either takes its time.",
-                   "Use order = \"interfaces\"."},
-           Refusal{scene.fluid.law == Fluid::Law::reynolds, "fluid.law",
-                   " = \"reynolds\" is solved together with the rock's equilibrium and needs mechanics = "
-                   "\"quasistatic\", but mechanics = \"explicit\".",
-                   "Use law = \"paper\" or \"uniform\"."},
-           Refusal{scene.stop.time_s == 0.0, "stop.time_s",
-                   " = 0 asks for one equilibrium and needs mechanics = \"quasistatic\", but mechanics = \"explicit\".",
-                   "Give a time above 0, or use quasistatic."},
+  const std::string without = "needs mechanics = \"quasistatic\", but mechanics = \"explicit\"";
+  for (const auto& [applies, key, why] : {
+           Refusal{moves && fracture.growth == Fracture::Growth::energy, "fracture.growth",
+                   " = \"energy\" compares equilibria and " + without + ". Use growth = \"J\" or \"none\"."},
+           Refusal{moves && fracture.order == Fracture::Order::larger_margin, "fracture.order",
+                   " = \"larger_margin\" asks what goes first at one load and " + without +
+                       ", where either takes its time. Use order = \"interfaces\"."},
+           Refusal{moves && scene.fluid.law == Fluid::Law::reynolds, "fluid.law",
+                   " = \"reynolds\" is solved together with the rock's equilibrium and " + without +
+                       ". Use law = \"paper\" or \"uniform\"."},
+           Refusal{moves && scene.stop.time_s == 0.0, "stop.time_s",
+                   " = 0 asks for one equilibrium and " + without + ". Give a time above 0, or use quasistatic."},
+           Refusal{rests && scene.initial.velocity_m_s.has_value(), "initial.velocity_m_s",
+                   " moves the block at time 0, which needs inertia, but mechanics = \"quasistatic\". Use mechanics = "
+                   "\"explicit\", or leave it out."},
+           // uGIMP weights follow particles that move.
+           Refusal{gimp_in_place, "numerics.shape",
+                   " = \"gimp\" is for moving points only, but " + in_place +
+                       " leaves them in their reference place, where it is linear. Use shape = \"bspline2\" or "
+                       "\"linear\"."},
        }) {
-    if (refusal.applies && checks.entries.sound(refusal.key))
-      checks.refuse(refusal.key, "{}{} {}", refusal.key, refusal.why, refusal.advice);
+    if (applies && checks.entries.sound(key)) checks.refuse(key, std::string(key) + why);
   }
-}
-
-// What mechanics = "quasistatic" cannot do.
-void check_quasistatic(const SceneChecks& checks) {
-  if (!checks.scene.initial.velocity_m_s || !checks.entries.sound("initial.velocity_m_s")) return;
-  checks.refuse("initial.velocity_m_s",
-                "initial.velocity_m_s moves the block at time 0, which needs inertia, but mechanics = \"quasistatic\". "
-                "Use mechanics = \"explicit\", or leave it out.");
-}
-
-// uGIMP weights follow particles that move.
-void check_shape_functions(const SceneChecks& checks) {
-  const Numerics& numerics = checks.scene.numerics;
-  if (numerics.shape != Numerics::Shape::gimp || !numerics.keeps_places()) return;
-  checks.refuse("numerics.shape",
-                "numerics.shape = \"gimp\" is for moving points only, but {} leaves them in their reference place, "
-                "where it is linear. Use shape = \"bspline2\" or \"linear\".",
-                numerics.mechanics == Numerics::Mechanics::quasistatic ? "mechanics = \"quasistatic\""
-                                                                       : "kinematics = \"total\"");
 }
 
 // The middle one of three stands on the border of two spans: at a loaded edge, which halves a span, its weights do not
@@ -160,11 +150,7 @@ void check_numbers(const SceneChecks& checks) {
 }  // namespace
 
 void check_combinations(const SceneChecks& checks) {
-  if (checks.entries.sound("numerics.mechanics")) {
-    const bool quasistatic = checks.scene.numerics.mechanics == Numerics::Mechanics::quasistatic;
-    (quasistatic ? check_quasistatic : check_explicit)(checks);
-    check_shape_functions(checks);
-  }
+  check_mechanics(checks);
   check_far_cell(checks);
   check_fine_ends(checks);
   check_beyond(checks);

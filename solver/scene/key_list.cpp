@@ -11,9 +11,10 @@ constexpr Bounds positive{0.0, infinity, true, true}, not_negative{0.0, infinity
 
 using Text = std::string_view;
 
-// `unit` as in messages and the table of keys, "" for none; `advice`: what to do where a value is out of bounds.
-Key number(Text path, Place place, const char* unit, Bounds bounds, std::string help, Text advice = "") {
-  return {path, place, std::move(help), unit, bounds, {}, advice};
+// `unit` as in messages and the table of keys, "" for none; `advice`: what to do where a value is out of bounds; `law`:
+// the interface law that the key belongs to.
+Key number(Text path, Place place, const char* unit, Bounds bounds, std::string help, Text advice = "", Text law = "") {
+  return {path, place, std::move(help), unit, bounds, {}, advice, false, law};
 }
 
 Key other(Text path, Place place, std::string help, const char* unit = "") {
@@ -25,8 +26,9 @@ Key integer(Text path, Place place, std::string help, std::vector<std::string> a
 }
 
 // `offered`: the words that the key may take, in the order of help; empty for all of the enumeration.
-Key word(Text path, Place place, std::string help, Text offered = "") {
-  return integer(path, place, std::move(help), split(offered.empty() ? std::get<WordWay>(place).words : offered, ", "));
+Key word(Text path, Place place, std::string help, Text offered = "", Text law = "") {
+  const Text words = offered.empty() ? std::get<WordWay>(place).words : offered;
+  return {path, place, std::move(help), "", {}, split(words, ", "), "", false, law};
 }
 
 // Formulas of a vector's two components. `variables`: what they may use.
@@ -43,11 +45,6 @@ Key fine_end(Text path, Place place, Text end) {
 
 Key required(Key key) {
   key.required = true;
-  return key;
-}
-
-Key of_law(Text law, Key key) {
-  key.law = law;
   return key;
 }
 
@@ -97,31 +94,25 @@ std::vector<Key> rock_and_interface_keys() {
       required(word("interface.NAME.law", at<&Scene::laws, &InterfaceLaw::kind>,
                     "How the interface passes load; the interface named perfect needs no table.",
                     "friction, weak, soft, perfect")),
-      of_law("friction", number("interface.NAME.coefficient", at<&Scene::laws, &InterfaceLaw::coefficient>, "",
-                                not_negative, "Coulomb coefficient.")),
-      of_law(
-          "weak",
-          number(
-              "interface.NAME.shear_strength_Pa", at<&Scene::laws, &InterfaceLaw::shear_strength_Pa>, "Pa", positive,
-              "Shear strength Sc; the interface fails for good where (S/Sc)^2 + (N/Nc)^2 reaches 1, N in tension only.",
-              "For an interface without strength use law = \"friction\".")),
-      of_law("weak",
-             number("interface.NAME.tensile_strength_Pa", at<&Scene::laws, &InterfaceLaw::tensile_strength_Pa>, "Pa",
-                    positive, "Tensile strength Nc.", "For an interface without strength use law = \"friction\".")),
-      of_law("weak", number("interface.NAME.residual_friction", at<&Scene::laws, &InterfaceLaw::residual_friction>, "",
-                            not_negative, "Coulomb coefficient where it has failed.")),
-      of_law("weak or friction",
-             number("interface.NAME.failure_length_m", at<&Scene::laws, &InterfaceLaw::failure_length_m>, "m", positive,
-                    "Length of bonded interface over which the mean traction decides whether it fails or slips; by "
-                    "default fracture.increment_m, without a fracture numerics.cell_m.")),
-      of_law("soft",
-             number("interface.NAME.normal_stiffness_Pa_m", at<&Scene::laws, &InterfaceLaw::normal_stiffness_Pa_m>,
-                    "Pa/m", not_negative, "Normal traction by opening, D_n.")),
-      of_law("soft",
-             number("interface.NAME.shear_stiffness_Pa_m", at<&Scene::laws, &InterfaceLaw::shear_stiffness_Pa_m>,
-                    "Pa/m", not_negative, "Shear traction by slip, D_t.")),
-      of_law("soft", word("interface.NAME.compression", at<&Scene::laws, &InterfaceLaw::compression>,
-                          "In compression: the faces meet, or the spring acts there too.")),
+      number("interface.NAME.coefficient", at<&Scene::laws, &InterfaceLaw::coefficient>, "", not_negative,
+             "Coulomb coefficient.", "", "friction"),
+      number("interface.NAME.shear_strength_Pa", at<&Scene::laws, &InterfaceLaw::shear_strength_Pa>, "Pa", positive,
+             "Shear strength Sc; the interface fails for good where (S/Sc)^2 + (N/Nc)^2 reaches 1, N in tension only.",
+             "For an interface without strength use law = \"friction\".", "weak"),
+      number("interface.NAME.tensile_strength_Pa", at<&Scene::laws, &InterfaceLaw::tensile_strength_Pa>, "Pa", positive,
+             "Tensile strength Nc.", "For an interface without strength use law = \"friction\".", "weak"),
+      number("interface.NAME.residual_friction", at<&Scene::laws, &InterfaceLaw::residual_friction>, "", not_negative,
+             "Coulomb coefficient where it has failed.", "", "weak"),
+      number("interface.NAME.failure_length_m", at<&Scene::laws, &InterfaceLaw::failure_length_m>, "m", positive,
+             "Length of bonded interface over which the mean traction decides whether it fails or slips; by "
+             "default fracture.increment_m, without a fracture numerics.cell_m.",
+             "", "weak or friction"),
+      number("interface.NAME.normal_stiffness_Pa_m", at<&Scene::laws, &InterfaceLaw::normal_stiffness_Pa_m>, "Pa/m",
+             not_negative, "Normal traction by opening, D_n.", "", "soft"),
+      number("interface.NAME.shear_stiffness_Pa_m", at<&Scene::laws, &InterfaceLaw::shear_stiffness_Pa_m>, "Pa/m",
+             not_negative, "Shear traction by slip, D_t.", "", "soft"),
+      word("interface.NAME.compression", at<&Scene::laws, &InterfaceLaw::compression>,
+           "In compression: the faces meet, or the spring acts there too.", "", "soft"),
       word("strata.along", at<&Scene::strata, &Strata::along>, "Layers stacked upwards, or from left to right.",
            "y, x"),
       required(other("strata.layers", at<&Scene::strata, &Strata::layers>,
