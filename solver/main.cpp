@@ -14,7 +14,6 @@
 
 #include "output/summary.hpp"
 #include "run.hpp"
-#include "scene/check.hpp"
 #include "scene/keys.hpp"
 #include "scene/spelling.hpp"
 #include "scene/toml_reader.hpp"
@@ -53,6 +52,12 @@ int resume(const Arguments& arguments) {
   return report({dir.string() + ": this is not the folder of a run; it holds no scene.toml."});
 }
 
+int resolve(const Arguments& arguments) {
+  const strata::ReadResult read = strata::read_scene(arguments.file, arguments.variant, arguments.set);
+  if (read.scene) fmt::print("{}", read.scene->resolved_toml);
+  return report(read.errors);
+}
+
 int list_variants(const Arguments& arguments) {
   const strata::VariantList list = strata::list_variants(arguments.file);
   for (const std::string& name : list.names) fmt::print("{}\n", name);
@@ -65,12 +70,14 @@ int parse_and_do(int argc, char** argv) {
   app.set_version_flag("--version", strata::version());
   app.require_subcommand(1);
   CLI::App* run_command = app.add_subcommand("run", "run a scene");
-  run_command->add_option("scene", arguments.file, "scene file")->required();
-  run_command->add_option("--variant", arguments.variant, "one of the scene's variants");
-  run_command->add_option("--set", arguments.set, "key.path=value; acts after the variant")->allow_extra_args(false);
+  CLI::App* resolve_command = app.add_subcommand("resolve", "the scene that a run would write to scene.toml");
+  for (CLI::App* command : {run_command, resolve_command}) {
+    command->add_option("scene", arguments.file, "scene file")->required();
+    command->add_option("--variant", arguments.variant, "one of the scene's variants");
+    command->add_option("--set", arguments.set, "key.path=value; acts after the variant")->allow_extra_args(false);
+  }
   run_command->add_option("--out", arguments.options.out, "folder of the run; by default runs/SCENE/VARIANT");
   run_command->add_flag("--replace", arguments.options.replace, "in place of a run that the folder holds");
-  run_command->add_flag("--any-time", arguments.options.any_time, "also where it would take more than 30 days");
   CLI::App* check_command = app.add_subcommand("check", "all errors of scenes and their variants, nothing run");
   check_command->add_option("scenes", arguments.files, "scene files")->required();
   CLI::App* variants_command = app.add_subcommand("variants", "names of a scene's variants, one a line");
@@ -97,6 +104,7 @@ int parse_and_do(int argc, char** argv) {
   }
   if (run_command->parsed()) return run(arguments);
   if (check_command->parsed()) return report(strata::check(arguments.files));
+  if (resolve_command->parsed()) return resolve(arguments);
   if (variants_command->parsed()) return list_variants(arguments);
   if (resume_command->parsed()) return resume(arguments);
   if (keys_command->parsed()) fmt::print("{}", strata::keys_as_markdown());

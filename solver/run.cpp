@@ -25,8 +25,7 @@
 #include "output/summary.hpp"
 #include "quasistatic/load_steps.hpp"
 #include "quasistatic/resting_rock.hpp"
-#include "scene/memory_need.hpp"
-#include "scene/time_need.hpp"
+#include "scene/run_size.hpp"
 #include "scene/toml_reader.hpp"
 
 namespace strata {
@@ -353,13 +352,6 @@ void set_up(const Scene& scene, const RunOptions& options) {
   for (const int signal : {SIGXFSZ, SIGPIPE}) std::signal(signal, SIG_IGN);
 }
 
-// What is to be expected of a run, before it starts.
-void tell_size(const Scene& scene) {
-  const std::optional<double> seconds = time_need(scene);
-  fmt::print(stderr, "{:.2g} points, {:.2g} GB, {} on one thread, by estimate\n", points_of(scene),
-             1e-9 * memory_need(scene), seconds ? "about " + duration_text(std::max(1.0, *seconds)) : "some time");
-}
-
 int run_in(const Scene& scene, const RunOptions& options, bool replace, Clock::time_point start) {
   const std::vector<Elasticity> rocks = make_elasticities(scene);
   const RunFolder folder = clear_run_folder(options.out, replace);
@@ -423,15 +415,11 @@ int resume_in(const RunFolder& folder, const RunOptions& options, Clock::time_po
 
 int run_scene(const Scene& scene, const RunOptions& options) {
   const Clock::time_point start = Clock::now();
-  const std::optional<std::string> reason = too_long(scene);
-  if (reason && !options.any_time) {
-    fmt::print(stderr, "{}\n", *reason);
-    return bad_input;
-  }
   set_up(scene, options);
   try {
     const FolderLock lock = make_run_folder(options.out);
-    if (!options.quiet) tell_size(scene);
+    if (!options.quiet)
+      fmt::print(stderr, "{:.2g} points, {:.2g} GB by estimate\n", points_of(scene), 1e-9 * memory_need(scene));
     return run_in(scene, options, options.replace, start);
   } catch (const OutputFailure& failure) {
     fmt::print(stderr, "{}\n", failure.what());

@@ -12,13 +12,12 @@ struct RunOptions {
   int threads = 0;            // 0: all cores
   bool quiet = false;
   bool replace = false;              // of a run that the folder holds
-  bool any_time = false;             // also where the run would take months
   double checkpoint_every_s = 60.0;  // of wall time: what a crash costs at most, and rare enough to cost nothing
 };
 
-/// Runs a scene to its end and writes its folder. Returns the exit status: 0 done, 2 it would take too long, the folder
-/// holds a run already, is in use or cannot be written, be it at the start or later, 3 the numerics failed, 130
-/// interrupted. Throws only what is a bug.
+/// Runs a scene to its end and writes its folder. Returns the exit status: 0 done, 2 the folder holds a run
+/// already, is in use or cannot be written, be it at the start or later, 3 the numerics failed, 130 interrupted. Throws
+/// only what is a bug.
 int run_scene(const Scene& scene, const RunOptions& options);
 
 /// Goes on with the run in `dir` from its last checkpoint, or from the start where there is none, to the same digits;

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/memory_need.hpp"
+#include "scene/run_size.hpp"
 #include "scene/toml_reader.hpp"
 
 namespace {

@@ -1,7 +1,8 @@
-#include "scene/absent_keys.hpp"
-
+// Keys that people look for and that this version does not have.
 #include <algorithm>
 #include <iterator>
+
+#include "scene/keys.hpp"
 
 namespace strata {
 namespace {

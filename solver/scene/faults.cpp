@@ -1,11 +1,8 @@
 #include "scene/faults.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <set>
 #include <tuple>
-
-#include "scene/spelling.hpp"
 
 namespace strata {
 namespace {
@@ -15,11 +12,7 @@ std::string with_visible_controls(std::string_view text) {
   std::string out;
   for (const char c : text) {
     const auto code = static_cast<unsigned char>(c);
-    if (code < 0x20 || code == 0x7f) {
-      out += fmt::format("\\u{:04X}", code);
-    } else {
-      out += c;
-    }
+    out += code < 0x20 || code == 0x7f ? fmt::format("\\u{:04X}", code) : std::string(1, c);
   }
   return out;
 }
@@ -47,8 +40,7 @@ std::string bounded(std::string_view text) {
 std::vector<std::string> as_lines(const Faults& faults) {
   std::vector<Fault> sorted = faults.list;
   std::ranges::stable_sort(sorted, [](const Fault& a, const Fault& b) {
-    const bool a_set = a.where.line == 0;  // what was given on the command line comes last
-    const bool b_set = b.where.line == 0;
+    const bool a_set = a.where.line == 0, b_set = b.where.line == 0;  // what the command line gave comes last
     return std::tie(a_set, a.where.line, a.where.column) < std::tie(b_set, b.where.line, b.where.column);
   });
   std::vector<std::string> lines;
@@ -59,16 +51,6 @@ std::vector<std::string> as_lines(const Faults& faults) {
     if (seen.insert(line).second) lines.push_back(std::move(line));
   }
   return lines;
-}
-
-Where where_is(const Positions& positions, std::string_view path) {
-  while (!path.empty()) {
-    const auto found = positions.at.find(path);
-    if (found != positions.at.end()) return found->second;
-    const std::size_t end = path.find_last_of(".[");
-    path = end == std::string_view::npos ? std::string_view() : path.substr(0, end);
-  }
-  return positions.start;
 }
 
 }  // namespace strata

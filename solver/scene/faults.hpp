@@ -1,11 +1,14 @@
 // What is wrong with a scene, gathered so that all of it is reported in one pass.
 #pragma once
 
-#include <map>
-#include <set>
+#include <fmt/format.h>
+
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
+
+#include "scene/spelling.hpp"
 
 namespace strata {
 
@@ -17,6 +20,17 @@ struct Where {
   int rank = 0;  // 0 the scene itself, 1 its variant, 2 --set
 };
 
+// Numbers in messages are those of TOML.
+template <class Value>
+const Value& shown(const Value& value) {
+  return value;
+}
+inline std::string shown(const double& value) {
+  return number_text(value);
+}
+template <class... Values>
+using Message = fmt::basic_format_string<char, decltype(shown(std::declval<const Values&>()))...>;
+
 struct Fault {
   Where where;
   std::string text;
@@ -26,27 +40,16 @@ struct Faults {
   std::vector<Fault> list;
 
   void add(const Where& where, std::string text) { list.push_back({where, std::move(text)}); }
+
+  template <class... Values>
+  requires(sizeof...(Values) > 0) void add(const Where& where, Message<Values...> text, const Values&... values) {
+    add(where, fmt::format(text, shown(values)...));
+  }
 };
 
 /// The faults as lines "where: what", in the order of the input and each once. Words of more than 100 bytes and texts
 /// of more than 1000 are shortened in the middle, control characters are written out. Throws nothing but
 /// std::bad_alloc.
 std::vector<std::string> as_lines(const Faults& faults);
-
-// Where each key of a scene ("domain.width_m"), each table ("domain") and each element of a list ("strata.layers[1]",
-// "fracture.path_m[0]") was given, and which keys were given with a value that is no use.
-struct Positions {
-  std::map<std::string, Where, std::less<>> at;
-  std::set<std::string, std::less<>> unsound;
-  Where start;  // of the file
-
-  bool given(std::string_view path) const { return at.contains(path); }
-  bool sound(std::string_view path) const { return !unsound.contains(path); }
-  bool usable(std::string_view path) const { return given(path) && sound(path); }
-};
-
-/// The place of `path`, or of the innermost table or list that would hold it, or the start of the file.
-/// Throws nothing but std::bad_alloc.
-Where where_is(const Positions& positions, std::string_view path);
 
 }  // namespace strata

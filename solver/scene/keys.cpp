@@ -4,46 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <set>
+#include <sstream>
 
-#include "scene/absent_keys.hpp"
-#include "scene/spelling.hpp"
+#include <toml++/toml.h>
 
 namespace strata {
 namespace {
 
-std::vector<std::string_view> split(std::string_view path) {
-  std::vector<std::string_view> segments;
-  for (;;) {
-    const std::size_t dot = path.find('.');
-    segments.push_back(path.substr(0, dot));
-    if (dot == std::string_view::npos) return segments;
-    path.remove_prefix(dot + 1);
-  }
-}
-
-// How many leading segments of the key's path the given ones agree with.
-bool agrees(const std::vector<std::string_view>& key, const std::vector<std::string_view>& given, std::size_t count) {
-  for (std::size_t k = 0; k < count; ++k) {
-    if (key[k] != "NAME" && key[k] != given[k]) return false;
-  }
-  return true;
-}
-
-std::string last_segment(std::string_view path) {
-  return std::string(split(path).back());
-}
-
-std::string parent(std::string_view path) {
-  const std::size_t dot = path.rfind('.');
-  return dot == std::string_view::npos ? std::string() : std::string(path.substr(0, dot));
-}
-
-// Keys of other tables that end in the same word: a key in the wrong table.
-std::string same_name_elsewhere(std::string_view path) {
-  for (const Key& key : scene_keys()) {
-    if (key.path.find('[') == std::string::npos && last_segment(key.path) == last_segment(path)) return key.path;
-  }
-  return {};
+// Whether a key's path begins with the segments given, any name standing for NAME.
+bool begins_with(const std::vector<std::string>& key, const std::vector<std::string>& given) {
+  return key.size() >= given.size() && std::equal(given.begin(), given.end(), key.begin(), [](auto& segment, auto& of) {
+           return of == "NAME" || of == segment;
+         });
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -51,65 +25,101 @@ std::string joined(const std::vector<std::string>& words) {
 }
 
 std::string allowed_text(const Key& key) {
-  switch (key.type) {
-    case KeyType::number:
-      return to_text(key.bounds);
-    case KeyType::integer:
-      return fmt::format("{}", fmt::join(key.allowed, ", "));
-    case KeyType::word: {
-      std::vector<std::string> words;
-      for (const Word& word : key.words) words.push_back(word.text);
-      return joined(words);
-    }
-    case KeyType::text:
-      return "text";
-    case KeyType::formulas:
-      return fmt::format("formulas of {}", joined(key.variables));
-    case KeyType::layers:
-    case KeyType::names:
-    case KeyType::points:
-      return "list";
-    case KeyType::anything:
-      break;
-  }
-  return "";
+  if (key.is_number()) return to_text(key.bounds);
+  if (key.is_list()) return "list";
+  if (key.is<Way<std::string>>()) return "text";
+  return (key.is<Way<std::optional<Formulas>>>() ? "formulas of " : "") + joined(key.allowed);
 }
 
-// A scene in which every member that a key leads to exists.
-Scene scene_of_defaults() {
-  Scene scene;
-  scene.rocks.emplace_back();
-  scene.laws.emplace_back();
-  scene.fracture.emplace();
-  return scene;
+// Members as TOML.
+struct ValueText {
+  const Scene& scene;
+
+  std::string operator()(double value) const { return number_text(value); }
+  std::string operator()(int value) const { return std::to_string(value); }
+
+  std::string operator()(const std::string& value) const {
+    std::ostringstream out;
+    out << toml::toml_formatter{toml::value<std::string>(value), toml::format_flags::allow_unicode_strings};
+    return out.str();
+  }
+
+  template <class Value>
+  std::string operator()(const std::optional<Value>& value) const {
+    return value ? (*this)(*value) : std::string();
+  }
+
+  template <class Value, std::size_t size>
+  std::string operator()(const std::array<Value, size>& values) const {
+    return list(values);
+  }
+
+  std::string operator()(const Path& points) const { return list(points); }
+
+  std::string operator()(const InterfacePlace& place) const { return (*this)(scene.laws[place.law].name); }
+  std::string operator()(const std::vector<InterfacePlace>& places) const { return list(places); }
+
+  // Layers end on grid lines or at mid-cell and are put back there when read, so a thickness needs no digits of
+  // round-off.
+  std::string operator()(const std::vector<Layer>& layers) const {
+    std::string text = "[\n";
+    for (const Layer& layer : layers) {
+      text += "  {rock = " + (*this)(scene.rocks[layer.rock].name);
+      const double thickness = layer.to_m - layer.from_m;
+      const double rounded = std::strtod(fmt::format("{:.9g}", thickness).c_str(), nullptr);
+      const bool is_round = std::abs(rounded - thickness) < 1e-7 * scene.numerics.cell_m;
+      if (&layer != &layers.back()) text += ", thickness_m = " + number_text(is_round ? rounded : thickness);
+      text += "},\n";
+    }
+    return text + "]";
+  }
+
+  std::string list(const auto& values) const {
+    std::vector<std::string> texts;
+    for (const auto& value : values) texts.push_back((*this)(value));
+    return '[' + joined(texts) + ']';
+  }
+};
+
+// The lines "name = value" of all keys of a table ("rock.NAME.") that are in force.
+std::string lines(std::string_view table, Scene& scene, std::size_t index) {
+  std::string text;
+  for (const Key& key : scene_keys()) {
+    if (key.table() != table || key.in_list()) continue;
+    if (!key.law.empty() && !key.is_of(word_of(scene.laws[index].kind))) continue;
+    // The inlet is given in one of two ways.
+    if (scene.fluid.rate_m2_s && (key.path == "fluid.inlet.start_Pa" || key.path == "fluid.inlet.rate_Pa_s")) continue;
+    const std::string value = value_text(key, scene, index);
+    if (!value.empty()) text += fmt::format("{} = {}\n", key.name(), value);
+  }
+  return text;
 }
 
 }  // namespace
 
 const Key* find_key(std::string_view path) {
-  const auto given = split(path);
-  for (const Key& key : scene_keys()) {
-    const auto segments = split(key.path);
-    if (segments.size() == given.size() && agrees(segments, given, given.size())) return &key;
-  }
-  return nullptr;
+  const auto given = split(path, ".");
+  const auto key = std::ranges::find_if(scene_keys(), [&](const Key& k) {
+    const auto segments = split(k.path, ".");
+    return segments.size() == given.size() && begins_with(segments, given);
+  });
+  return key == scene_keys().end() ? nullptr : &*key;
 }
 
 bool is_key_table(std::string_view path) {
-  const auto given = split(path);
-  return std::ranges::any_of(scene_keys(), [&](const Key& key) {
-    const auto segments = split(key.path);
-    return segments.size() > given.size() && agrees(segments, given, given.size());
+  return std::ranges::any_of(scene_keys(), [given = split(path, ".")](const Key& key) {
+    const auto segments = split(key.path, ".");
+    return segments.size() > given.size() && begins_with(segments, given);
   });
 }
 
 std::vector<std::string> names_in_table(std::string_view path) {
-  const auto given = path.empty() ? std::vector<std::string_view>() : split(path);
+  const auto given = path.empty() ? std::vector<std::string>() : split(path, ".");
   std::vector<std::string> names;
   for (const Key& key : scene_keys()) {
-    const auto segments = split(key.path);
-    if (segments.size() <= given.size() || !agrees(segments, given, given.size())) continue;
-    std::string name(segments[given.size()]);
+    const auto segments = split(key.path, ".");
+    if (segments.size() <= given.size() || !begins_with(segments, given)) continue;
+    std::string name = segments[given.size()];
     if (path.empty() && name.ends_with("[]")) name.resize(name.size() - 2);
     const bool listed = std::ranges::find(names, name) != names.end();
     if (!listed && name != "NAME" && !name.ends_with("[]")) names.push_back(std::move(name));
@@ -119,58 +129,73 @@ std::vector<std::string> names_in_table(std::string_view path) {
 }
 
 std::string unknown_key_message(std::string_view path) {
-  const std::string table = parent(path);
+  const std::size_t dot = path.rfind('.');
+  const std::string_view table = path.substr(0, dot == path.npos ? 0 : dot), name = path.substr(dot + 1);
   const std::vector<std::string> names = names_in_table(table);
   const std::string message = fmt::format("unknown key {}.", path);
   if (const auto advice = advice_on_absent_key(path); !advice.empty()) return fmt::format("{}{}", message, advice);
   const bool for_more = table.empty() || path.starts_with("fracture.path");  // of what there is one of
-  if (const auto nearest = nearest_word(last_segment(path), names))
-    return fmt::format("{} Did you mean {}?{}", message, *nearest, for_more ? note_on_table(path) : "");
-  const std::string elsewhere = same_name_elsewhere(path);
-  if (!elsewhere.empty()) return message + " Did you mean " + elsewhere + "?";
+  if (const std::string meant = did_you_mean(name, names); !meant.empty())
+    return fmt::format("{}{}{}", message, meant, for_more ? note_on_table(path) : "");
+  for (const Key& key : scene_keys()) {  // of another table
+    if (!key.in_list() && key.name() == name) return fmt::format("{} Did you mean {}?", message, key.path);
+  }
   if (table.empty()) return message + " At the top level there are " + joined(names) + ".";
-  return message + fmt::format(" [{}] has {}.{}", table, joined(names), note_on_table(path));
+  return fmt::format("{} [{}] has {}.{}", message, table, joined(names), note_on_table(path));
 }
 
 std::string to_text(const Bounds& bounds) {
   return fmt::format("{}{}, {}{}", bounds.low_open ? '(' : '[', bounds.low, bounds.high, bounds.high_open ? ')' : ']');
 }
 
-std::string number_text(double value) {
-  std::string text = fmt::format("{}", value);
-  if (std::isfinite(value) && text.find_first_of(".e") == std::string::npos) text += ".0";
-  return text;
+std::string value_text(const Key& key, Scene& scene, std::size_t index) {
+  return std::visit(
+      [&](const auto& way) -> std::string {
+        if constexpr (std::is_same_v<decltype(way), const WordWay&>) {
+          return '"' + split(way.words, ", ")[static_cast<std::size_t>(way.get(scene, index))] + '"';
+        } else {
+          return way == nullptr ? std::string() : ValueText{scene}(way(scene, index));
+        }
+      },
+      key.place);
 }
 
 std::string default_text(const Key& key) {
-  if (key.required) return {};
-  Scene scene = scene_of_defaults();
-  struct Text {
-    const Key& key;
-    Scene& scene;
-    std::string operator()(std::monostate) const { return {}; }
-    std::string operator()(NumberPlace at) const { return number_text(at(scene, 0)); }
-    std::string operator()(OptionalPlace at) const { return at(scene, 0) ? number_text(*at(scene, 0)) : ""; }
-    std::string operator()(IntegerPlace at) const { return fmt::format("{}", at(scene, 0)); }
-    std::string operator()(TextPlace at) const { return '"' + at(scene, 0) + '"'; }
-    std::string operator()(FormulasPlace) const { return {}; }
-    std::string operator()(const WordPlace& at) const {
-      const int value = at.get(scene, 0);
-      const auto word = std::ranges::find(key.words, value, &Word::value);
-      return word == key.words.end() ? "" : '"' + word->text + '"';
-    }
-  };
-  return std::visit(Text{key, scene}, key.place);
+  if (key.required || key.is_list()) return {};
+  Scene scene;
+  scene.rocks.emplace_back();
+  scene.laws.emplace_back();
+  scene.fracture.emplace();
+  return value_text(key, scene, 0);
 }
 
 std::string keys_as_markdown() {
   std::string text = "| key | unit | default | allowed | meaning |\n|---|---|---|---|---|\n";
   for (const Key& key : scene_keys()) {
-    const std::string fallback = key.required ? "required" : default_text(key);
-    const std::string law = key.law.empty() ? "" : fmt::format(" (law \"{}\")", key.law);
-    text +=
-        fmt::format("| `{}` | {} | {} | {} | {}{} |\n", key.path, key.unit, fallback, allowed_text(key), key.help, law);
+    text += fmt::format("| `{}` | {} | {} | {} | {}{} |\n", key.path, key.unit,
+                        key.required ? "required" : default_text(key), allowed_text(key), key.help,
+                        key.law.empty() ? "" : fmt::format(" (law \"{}\")", key.law));
   }
+  return text;
+}
+
+std::string resolved_toml(Scene scene, std::string_view claims) {
+  std::string text;
+  std::set<std::string_view> done;
+  for (const Key& key : scene_keys()) {
+    const std::string_view table = key.table();
+    if (key.in_list() || (table == "fracture." && !scene.fracture) || !done.insert(table).second) continue;
+    const bool of_rocks = table == "rock.NAME.", of_laws = table == "interface.NAME.";
+    const std::size_t end = of_rocks ? scene.rocks.size() : of_laws ? scene.laws.size() : 1;
+    for (std::size_t k = of_laws ? 1 : 0; k < end; ++k) {
+      const std::string body = lines(table, scene, k);
+      const std::string name = of_rocks  ? "rock." + scene.rocks[k].name
+                               : of_laws ? "interface." + scene.laws[k].name
+                                         : std::string(table.substr(0, table.size() - 1));
+      if (!body.empty()) text += table.empty() ? body : fmt::format("\n[{}]\n{}", name, body);
+    }
+  }
+  if (!claims.empty()) text += fmt::format("\n{}\n", claims);
   return text;
 }
 

@@ -7,11 +7,16 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace strata {
 
+// Beside each enumeration stand the words that a scene has for its values, in their order.
 enum class Edge { symmetry, fixed, traction };
+constexpr std::string_view words(Edge) {
+  return "symmetry, fixed, traction";
+}
 
 // A vector's x and y component as formulas (see formula.hpp) of X and Y (m), the place where a particle starts, and
 // where the key says so of the time t (s).
@@ -37,30 +42,27 @@ struct Domain {
   // Whether an edge holds the block's motion along x or y; what none holds is free as a whole.
   bool holds_x() const { return sides == Edge::fixed; }
   bool holds_y() const { return bottom == Edge::symmetry || top == Edge::fixed; }
-
   bool operator==(const Domain&) const = default;
 };
 
 struct InSitu {
   enum class Initialise { uniform, loaded };
+  friend constexpr std::string_view words(Initialise) { return "uniform, loaded"; }
   double vertical_Pa = 0.0;
   double horizontal_Pa = 0.0;
   Initialise initialise = Initialise::uniform;
-
   bool operator==(const InSitu&) const = default;
 };
 
 // What acts on the whole block beyond the in-situ state.
 struct Body {
   std::optional<Formulas> acceleration_m_s2;  // body force per mass, of X, Y, t; absent: none
-
   bool operator==(const Body&) const = default;
 };
 
 // How the block moves at time 0.
 struct Initial {
   std::optional<Formulas> velocity_m_s;  // of X, Y; absent: at rest
-
   bool operator==(const Initial&) const = default;
 };
 
@@ -70,14 +72,15 @@ struct Rock {
   double poisson_ratio = 0.2;
   double density_kg_m3 = 2500.0;
   double toughness_Pa_sqrt_m = 1.45e6;
-
   bool operator==(const Rock&) const = default;
 };
 
 // The law of an interface between two layers. Members of other laws keep their defaults and are not used.
 struct InterfaceLaw {
   enum class Kind { perfect, friction, weak, soft };
+  friend constexpr std::string_view words(Kind) { return "perfect, friction, weak, soft"; }
   enum class Compression { contact, spring };
+  friend constexpr std::string_view words(Compression) { return "contact, spring"; }
   std::string name = "perfect";
   Kind kind = Kind::perfect;
   double coefficient = 0.6;                  // friction
@@ -94,7 +97,6 @@ struct InterfaceLaw {
 
   // Whether its springs go on carrying the in-situ stress, so that their reaction is the change from it.
   bool takes_all_compression() const { return kind == Kind::soft && compression == Compression::spring; }
-
   bool operator==(const InterfaceLaw&) const = default;
 };
 
@@ -103,7 +105,6 @@ struct Layer {
   std::size_t rock = 0;  // index into Scene::rocks
   double from_m = 0.0;
   double to_m = 0.0;
-
   bool operator==(const Layer&) const = default;
 };
 
@@ -111,25 +112,29 @@ struct Layer {
 struct InterfacePlace {
   std::size_t law = 0;  // index into Scene::laws
   double at_m = 0.0;    // position along the stacking axis
-
   bool operator==(const InterfacePlace&) const = default;
 };
 
 struct Strata {
   enum class Along { x, y };
+  friend constexpr std::string_view words(Along) { return "x, y"; }
   Along along = Along::y;
   std::vector<Layer> layers;
   std::vector<InterfacePlace> interfaces;  // layers.size() - 1 of them
-
   bool operator==(const Strata&) const = default;
 };
 
 struct Fracture {
   enum class Growth { none, J, energy };
+  friend constexpr std::string_view words(Growth) { return "none, J, energy"; }
   enum class Direction { straight, max_hoop };
+  friend constexpr std::string_view words(Direction) { return "straight, max_hoop"; }
   enum class Crossing { J, energy };
+  friend constexpr std::string_view words(Crossing) { return "J, energy"; }
   enum class Order { interfaces, larger_margin };
+  friend constexpr std::string_view words(Order) { return "interfaces, larger_margin"; }
   enum class Faces { contact, free };
+  friend constexpr std::string_view words(Faces) { return "contact, free"; }
   std::vector<std::array<double, 2>> path_m;  // an end on the symmetry line comes first
   Growth growth = Growth::J;
   double increment_m = 1.0;
@@ -141,14 +146,16 @@ struct Fracture {
   Faces faces = Faces::contact;
 
   double crossing_increment() const { return crossing_increment_m.value_or(increment_m); }
-
   bool operator==(const Fracture&) const = default;
 };
 
 struct Fluid {
   enum class Law { uniform, paper, reynolds };
+  friend constexpr std::string_view words(Law) { return "uniform, paper, reynolds"; }
   enum class NewPoint { dry, inherit };
+  friend constexpr std::string_view words(NewPoint) { return "dry, inherit"; }
   enum class TimeRule { trapezoid, backward_euler, explicit_euler };
+  friend constexpr std::string_view words(TimeRule) { return "trapezoid, backward-euler, explicit"; }
   Law law = Law::paper;
   double bulk_modulus_Pa = 1.0e9;
   double viscosity_Pa_s = 0.1;
@@ -159,16 +166,20 @@ struct Fluid {
   double cavitation_Pa = 0.0;       // absolute lower bound of the fluid pressure
   NewPoint new_point = NewPoint::dry;
   TimeRule time_rule = TimeRule::trapezoid;
-
   bool operator==(const Fluid&) const = default;
 };
 
 struct Numerics {
   enum class Mechanics { explicit_dynamics, quasistatic };
+  friend constexpr std::string_view words(Mechanics) { return "explicit, quasistatic"; }
   enum class Shape { bspline2, linear, gimp };
+  friend constexpr std::string_view words(Shape) { return "bspline2, linear, gimp"; }
   enum class Transfer { flip, pic, xpic2 };
+  friend constexpr std::string_view words(Transfer) { return "flip, pic, xpic2"; }
   enum class Kinematics { updated, total };
+  friend constexpr std::string_view words(Kinematics) { return "updated, total"; }
   enum class Kernels { fast, plain };
+  friend constexpr std::string_view words(Kernels) { return "fast, plain"; }
   Mechanics mechanics = Mechanics::explicit_dynamics;
   Kinematics kinematics = Kinematics::updated;
   Kernels kernels = Kernels::fast;
@@ -191,7 +202,6 @@ struct Numerics {
 
   // Whether neighbouring bins of particles are lanes of vectors (see state/copies.hpp).
   bool in_lanes() const { return !keeps_places() && kernels == Kernels::fast; }
-
   bool operator==(const Numerics&) const = default;
 };
 
@@ -200,13 +210,11 @@ struct Stop {
   std::optional<double> tip_y_m;
   std::optional<double> inlet_Pa;
   std::optional<double> time_s;
-
   bool operator==(const Stop&) const = default;
 };
 
 struct Output {
   std::optional<double> fields_every_s;  // absent: 1/50 of the run
-
   bool operator==(const Output&) const = default;
 };
 
@@ -236,7 +244,6 @@ struct Scene {
 
   // Coordinate of a place (m) along which layers are stacked.
   double stacking(double x, double y) const { return strata.along == Strata::Along::y ? y : x; }
-
   bool operator==(const Scene&) const = default;
 };
 

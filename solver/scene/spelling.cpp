@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstddef>
 
 #include <fmt/format.h>
@@ -39,28 +40,21 @@ double edit_distance(std::string_view a, std::string_view b) {
   return at(a.size(), b.size());
 }
 
-std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string>& candidates) {
-  // A slip in a longer word is not worth a table of its size squared.
-  constexpr std::size_t longest = 200;
-  if (word.size() > longest) return std::nullopt;
-  std::optional<std::string> nearest;
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
+  constexpr std::size_t longest = 200;  // a slip in a longer word is not worth a table of its size squared
+  std::string nearest;
   double nearest_distance = 0.0;
   for (const std::string& candidate : candidates) {
-    if (candidate.size() > longest) continue;
+    if (std::max(word.size(), candidate.size()) > longest) continue;
     // A third of the letters wrong is still a slip of the fingers; more is another word.
     const double allowed = std::max(1.0, static_cast<double>(std::max(word.size(), candidate.size())) / 3.0);
     double distance = edit_distance(word, candidate);
     if (is_stem(word, candidate) || is_stem(candidate, word)) distance = std::min(distance, 0.9);
-    if (distance > allowed || (nearest && distance >= nearest_distance)) continue;
+    if (distance > allowed || (!nearest.empty() && distance >= nearest_distance)) continue;
     nearest = candidate;
     nearest_distance = distance;
   }
-  return nearest;
-}
-
-std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
-  const auto nearest = nearest_word(word, candidates);
-  return nearest ? " Did you mean " + *nearest + "?" : std::string();
+  return nearest.empty() ? "" : " Did you mean " + nearest + "?";
 }
 
 std::string shortened(std::string_view text, std::size_t longest) {
@@ -79,6 +73,28 @@ std::string_view trimmed(std::string_view text, std::string_view also_behind) {
   const std::size_t first = text.find_first_not_of(" \t\r");
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t\r" + std::string(also_behind)) + 1 - first);
+}
+
+bool is_plain_name(std::string_view name) {
+  return !name.empty() && std::ranges::all_of(name, [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+  });
+}
+
+std::vector<std::string> split(std::string_view text, std::string_view separator) {
+  std::vector<std::string> parts;
+  for (;;) {
+    const std::size_t end = text.find(separator);
+    parts.emplace_back(text.substr(0, end));
+    if (end == std::string_view::npos) return parts;
+    text.remove_prefix(end + separator.size());
+  }
+}
+
+std::string number_text(double value) {
+  std::string text = fmt::format("{}", value);
+  if (std::isfinite(value) && text.find_first_of(".e") == std::string::npos) text += ".0";
+  return text;
 }
 
 }  // namespace strata

@@ -1,4 +1,4 @@
-// Which known word was meant by one that is not known.
+// Texts of messages: which known word was meant by one that is not known, numbers, what is too long to be shown.
 #pragma once
 
 #include <cstddef>
@@ -14,12 +14,8 @@ namespace strata {
 /// a, b: any words, no units. Throws nothing but std::bad_alloc.
 double edit_distance(std::string_view a, std::string_view b);
 
-/// The candidate nearest to `word`, or nothing where none is near enough to be meant.
-/// word: as typed; candidates: the words that would be allowed. Throws nothing but std::bad_alloc.
-std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string>& candidates);
-
 /// " Did you mean X?", or an empty text where no candidate is near; to be put behind an error.
-/// word, candidates: as in nearest_word. Throws nothing but std::bad_alloc.
+/// word: as typed; candidates: the words that would be allowed. Throws nothing but std::bad_alloc.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
 
 /// `text`, or where it has more than `longest` bytes its beginning and its end: "abc...xyz (100000 characters)".
@@ -28,5 +24,14 @@ std::string shortened(std::string_view text, std::size_t longest);
 
 /// `text` without the spaces around it, nor what of `also_behind` is at its end. Throws nothing but std::bad_alloc.
 std::string_view trimmed(std::string_view text, std::string_view also_behind = "");
+
+/// Whether a name is of letters, digits, _ and -, at least one. Throws nothing.
+bool is_plain_name(std::string_view name);
+
+/// The parts of `text` between separators, at least one. Throws nothing but std::bad_alloc.
+std::vector<std::string> split(std::string_view text, std::string_view separator);
+
+/// The shortest text that reads back as the same double, and as a float in TOML. Throws nothing but std::bad_alloc.
+std::string number_text(double value);
 
 }  // namespace strata

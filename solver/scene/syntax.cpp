@@ -8,9 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "scene/absent_keys.hpp"
 #include "scene/spelling.hpp"
-#include "scene/typed_number.hpp"
 
 namespace strata {
 namespace {
@@ -95,9 +93,7 @@ Line read_line(std::string_view text) {
 // A key of which the last name is that of `path`: units and words go by names.
 const Key* key_called(std::string_view path) {
   const std::string_view name = path.substr(path.rfind('.') + 1);
-  const auto key = std::ranges::find_if(scene_keys(), [&](const Key& k) {
-    return k.path == name || (k.path.ends_with(name) && k.path[k.path.size() - name.size() - 1] == '.');
-  });
+  const auto key = std::ranges::find_if(scene_keys(), [&](const Key& k) { return k.name() == name; });
   return name.empty() || key == scene_keys().end() ? nullptr : &*key;
 }
 
@@ -143,25 +139,13 @@ std::string advice_on_list(std::string_view value, const Key* key) {
   });
   const std::string_view behind = trimmed(value.substr(static_cast<std::size_t>(end - value.begin())), "]");
   if (behind.size() < 2) return {};
-  if (key != nullptr && key->type == KeyType::points) return std::string(note_on_table("fracture"));
+  if (key != nullptr && key->is<Way<Path>>()) return std::string(note_on_table("fracture"));
   return " Nothing but a comment stands behind the ] of a list.";
 }
 
 std::string advice_on_word(std::string_view value, const Key* key) {
-  if (key != nullptr && (key->type == KeyType::number || key->type == KeyType::integer)) return " Write a number.";
+  if (key != nullptr && (key->is_number() || key->is<Way<int>>())) return " Write a number.";
   return fmt::format(" Text stands in quotes: \"{}\".", shortened(value, 60));
-}
-
-std::string advice_on_header(std::string_view line, const std::string& why) {
-  if (why.find("redefine") != std::string::npos) {
-    const bool fracture = line.find("[fracture") != std::string_view::npos;
-    return fmt::format("{} is given twice: this is not TOML. Put its keys under one.{}", line,
-                       fracture ? " A scene has one fracture." : "");
-  }
-  return fmt::format(
-      "this is not TOML: {}. The head of a table is [NAME] or [NAME.NAME], alone on its line; a name is of letters, "
-      "digits, _ and -.",
-      why);
 }
 
 // A value or key at the place where the parser stopped, between brackets, commas and the line's ends.
@@ -218,51 +202,52 @@ std::vector<Complaint> complaints_on_values(const Line& line, const std::string&
   return complaints;
 }
 
+// What can be said of a line as a whole, by its text and by why the parser stopped at the byte `at`.
 std::string complaint_on_line(const Line& line, std::size_t at, const std::string& why) {
   const std::string_view content = trimmed(line.part(0, line.end));
-  if (why.find("utf-8") != std::string::npos) return "this is not text in UTF-8. Save the file in UTF-8.";
-  if (content.find('\r') != std::string_view::npos)
+  const auto stopped_by = [&](const char* reason) { return why.find(reason) != std::string::npos; };
+  const auto contains = [&](const char* part) { return content.find(part) != std::string_view::npos; };
+  const bool is_head = content.starts_with('['), assigns = !line.assignments.empty();
+  const Key* key = assigns ? key_called(line.key(line.assignments.front())) : nullptr;
+  if (stopped_by("utf-8")) return "this is not text in UTF-8. Save the file in UTF-8.";
+  if (contains("\r"))
     return "this is not TOML: lines that end with \\r alone. Save the file with the line ends \\n or \\r\\n.";
   if (std::ranges::any_of(content, is_control)) return "this is not TOML: a control character. Remove it.";
   if (is_comment(content)) return "this is not TOML. A comment begins with #.";
   const bool at_start = trimmed(line.part(0, std::min(at, line.end))).empty();
-  const bool begins =
-      table_of(line.text).has_value() || (!line.assignments.empty() && !line.assignments.front().nested);
-  if (at_start && begins && why.find("closing ']'") != std::string::npos)
+  const bool begins = table_of(line.text).has_value() || (assigns && !line.assignments.front().nested);
+  if (at_start && begins && stopped_by("closing ']'"))
     return "this is not TOML. A list that begins above is not closed: put its ] at its end.";
-  if (content.starts_with('[') && line.assignments.empty() && why.find("header") != std::string::npos)
-    return advice_on_header(content, why);
-  if (keys_of_its_own(line) > 1 || (content.starts_with('[') && !line.assignments.empty()))
+  if (is_head && !assigns && stopped_by("redefine") && stopped_by("header")) {
+    return fmt::format("{} is given twice: this is not TOML. Put its keys under one.{}", content,
+                       contains("[fracture") ? " A scene has one fracture." : "");
+  }
+  if (is_head && !assigns && stopped_by("header")) {
+    return fmt::format(
+        "this is not TOML: {}. The head of a table is [NAME] or [NAME.NAME], alone on its line; a name is of letters, "
+        "digits, _ and -.",
+        why);
+  }
+  if (keys_of_its_own(line) > 1 || (is_head && assigns))
     return "this is not TOML. Write each key, and each [table], on a line of its own.";
   const std::size_t colon = content.find_first_of(": \t");
-  if (line.assignments.empty() && colon != std::string_view::npos && key_called(content.substr(0, colon)) != nullptr) {
+  if (!assigns && colon != content.npos && key_called(content.substr(0, colon)) != nullptr) {
     return fmt::format("{}: this is not TOML. Write {} = {}.", shortened(content, 60), content.substr(0, colon),
                        shortened(trimmed(content.substr(colon + 1)), 60));
   }
-  const Key* key = line.assignments.empty() ? nullptr : key_called(line.key(line.assignments.front()));
-  if (why.find("redefine") != std::string::npos && !line.assignments.empty())
+  if (assigns && stopped_by("redefine"))
     return fmt::format("{} is given twice: this is not TOML. Remove one.{}", line.key(line.assignments.front()),
-                       key != nullptr && key->type == KeyType::points ? note_on_table("fracture") : "");
-  if (content.find(",}") != std::string::npos || content.find(", }") != std::string::npos)
-    return "this is not TOML. Take the comma before } away.";
-  if (why.find("inline table") != std::string::npos && why.find("saw '\\n'") != std::string::npos)
+                       key != nullptr && key->is<Way<Path>>() ? note_on_table("fracture") : "");
+  if (contains(",}") || contains(", }")) return "this is not TOML. Take the comma before } away.";
+  if (stopped_by("inline table") && stopped_by("saw '\\n'"))
     return "this is not TOML. A table in braces ends on the line on which it begins; or write [NAME] and a key a line.";
   const std::string_view token = token_at(line, at);
   if (const std::string advice = advice_on_value(token, key); !advice.empty() && !token.empty())
     return fmt::format("{}: this is not TOML.{}", shortened(token, 60), advice);
-  if (why.find("expected comma") != std::string::npos)
-    return fmt::format("this is not TOML: {}. Put a comma between what a list or a table in braces holds.", why);
-  return fmt::format("this is not TOML: {}. Write key = value, text in quotes, lists in [ ], a comment behind #.", why);
-}
-
-std::vector<std::string> lines_of(std::string_view text) {
-  std::vector<std::string> lines;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    lines.emplace_back(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return lines;
+  return fmt::format("this is not TOML: {}. {}.", why,
+                     stopped_by("expected comma")
+                         ? "Put a comma between what a list or a table in braces holds"
+                         : "Write key = value, text in quotes, lists in [ ], a comment behind #");
 }
 
 std::string table_above(const std::vector<std::string>& lines, std::size_t number) {
@@ -310,7 +295,7 @@ std::optional<std::string> mended(const Line& line, const std::vector<Complaint>
 bool mend_line(std::string& text, const toml::parse_error& error, const Origin& origin, Faults& faults) {
   const unsigned number = error.source().begin.line, column = error.source().begin.column;
   const std::string why(error.description());
-  std::vector<std::string> lines = lines_of(text);
+  std::vector<std::string> lines = split(text, "\n");
   lines.resize(std::max<std::size_t>(lines.size(), number));  // the end of the text is behind its last line
   std::string& typed = lines[number - 1];
   const Line line = read_line(typed);

@@ -1,6 +1,7 @@
 // A scene's text as TOML and, where it is none, what to type instead.
 #pragma once
 
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -25,5 +26,10 @@ Parsed parse_toml(std::string_view text, const Origin& origin, Faults& faults);
 /// What to type in place of a value that is no TOML, " Write 10e9: ...", or "" where that is not clear.
 /// key: what the value is for, or nullptr. Throws nothing but std::bad_alloc.
 std::string advice_on_value(std::string_view value, const Key* key);
+
+/// What to type in place of a number with a comma, grouped digits, a unit or more behind it, " Write 10e9: the unit,
+/// Pa, stands in the key."; nothing where `typed` does not begin like a number or may stand as it is. unit: the key's,
+/// "" where it has none, nullptr where the key is not known. Throws nothing but std::bad_alloc.
+std::optional<std::string> advice_on_number(std::string_view typed, const std::string* unit);
 
 }  // namespace strata

@@ -3,17 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <memory>
 #include <sstream>
 #include <utility>
 
-#include "scene/build_scene.hpp"
 #include "scene/entries.hpp"
-#include "scene/resolved.hpp"
+#include "scene/run_size.hpp"
 #include "scene/scene_checks.hpp"
-#include "scene/spelling.hpp"
 #include "scene/syntax.hpp"
 
 namespace strata {
@@ -75,18 +72,12 @@ std::vector<Variant> read_variants(const toml::table& root, const std::string& f
                              "replaces.",
                              variant.name, as_typed(value), variant.name));
     } else {
-      flatten(*value.as_table(), "", origin, {}, true, variant.entries, faults);
+      flatten(*value.as_table(), "", origin, variant.entries, faults);
       variants.push_back(std::move(variant));
     }
   }
   std::ranges::stable_sort(variants, {}, [](const Variant& v) { return std::pair(v.where.line, v.where.column); });
   return variants;
-}
-
-bool is_bare_word(std::string_view text) {
-  return !text.empty() && std::ranges::all_of(text, [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
-  });
 }
 
 // Reads one "key.path=value" into `entries`; the parsed value is put into `tables`, which must live as long.
@@ -103,7 +94,7 @@ void read_setting(const std::string& setting, std::vector<std::unique_ptr<toml::
   const std::string value(trimmed(std::string_view(setting).substr(equals + 1)));
   Faults of_syntax;
   toml::table table = parse_toml("value = " + value, origin, of_syntax).table;
-  if (!of_syntax.list.empty() && is_bare_word(value)) {
+  if (!of_syntax.list.empty() && is_plain_name(value)) {
     table = toml::table{{"value", value}};
   } else if (!of_syntax.list.empty() || table.size() != 1) {
     std::string advice = advice_on_value(value, find_key(path));
@@ -118,7 +109,7 @@ void read_setting(const std::string& setting, std::vector<std::unique_ptr<toml::
     return;
   }
   tables.push_back(std::make_unique<toml::table>(std::move(table)));
-  flatten_value(path, *tables.back()->get("value"), where, origin, true, entries, faults);
+  flatten_value(path, *tables.back()->get("value"), where, origin, entries, faults);
 }
 
 // The [[claim]] tables as they will stand in the resolved scene.
@@ -130,6 +121,13 @@ std::string claims_text(const toml::table& root) {
   std::ostringstream out;
   out << toml::toml_formatter{table, toml::format_flags::allow_unicode_strings};
   return out.str();
+}
+
+// Turns the path of a fracture that ends on the symmetry line so that it starts there.
+void start_at_symmetry_line(Scene& scene) {
+  if (!scene.fracture || scene.domain.bottom != Edge::symmetry) return;
+  auto& path_m = scene.fracture->path_m;
+  if (path_m.back()[1] == 0.0 && path_m.front()[1] != 0.0) std::ranges::reverse(path_m);
 }
 
 void lay_variant(const std::string& name, const std::vector<Variant>& variants, const std::string& file_name,
@@ -157,7 +155,8 @@ ReadResult read_scene_text(std::string_view text, const std::string& file_name, 
   if (!parsed.whole) return {std::nullopt, as_lines(of_syntax)};
   Faults faults;
   Entries entries;
-  flatten(parsed.table, "", origin, {"variants", "claim"}, false, entries, faults);
+  entries.at[""].where = {file_name + ":1:1", 1, 1, 0};
+  flatten(parsed.table, "", origin, entries, faults);
   if (const toml::node* claims = parsed.table.get("claim")) check_claims(*claims, origin, faults);
   lay_variant(variant, read_variants(parsed.table, file_name, faults), file_name, entries, faults);
   std::vector<std::unique_ptr<toml::table>> tables;
@@ -166,11 +165,10 @@ ReadResult read_scene_text(std::string_view text, const std::string& file_name, 
     read_setting(setting, tables, above, faults);
     lay_over(entries, above);
   }
-  const Positions positions = positions_of(entries, {file_name + ":1:1", 1, 1, 0});
-  Scene scene = build_scene(entries, positions, faults);
+  Scene scene = build_scene(entries, faults);
   if (scene.name.empty()) scene.name = std::filesystem::path(file_name).stem().string();
   if (!variant.empty()) scene.variant = variant;
-  check_scene(scene, positions, faults);
+  check_scene({scene, entries, faults});
   // Of a line that is no TOML enough has been said.
   std::erase_if(faults.list, [&](const Fault& fault) { return parsed.mended.contains(fault.where.line); });
   faults.list.insert(faults.list.end(), of_syntax.list.begin(), of_syntax.list.end());
@@ -200,6 +198,31 @@ VariantList list_variants(const std::filesystem::path& file) {
   const FileText read = file_text(file);
   if (!read.error.empty()) return {{}, {read.error}};
   return list_variants_text(read.text, file.string());
+}
+
+ReadResult read_scene_that_fits(const std::filesystem::path& file, const std::string& variant,
+                                const std::vector<std::string>& set) {
+  ReadResult result = read_scene(file, variant, set);
+  if (!result.scene) return result;
+  if (const auto reason = too_large(*result.scene, available_memory())) {
+    return {std::nullopt, {file.string() + ":1:1: " + *reason}};
+  }
+  return result;
+}
+
+std::vector<std::string> check(const std::vector<std::string>& files) {
+  std::vector<std::string> lines;
+  for (const std::string& file : files) {
+    const std::vector<std::string> of_scene = read_scene_that_fits(file, "", {}).errors;
+    lines.insert(lines.end(), of_scene.begin(), of_scene.end());
+    for (const std::string& variant : list_variants(file).names) {
+      for (const std::string& line : read_scene_that_fits(file, variant, {}).errors) {
+        const bool known = std::ranges::find(of_scene, line) != of_scene.end();
+        if (!known) lines.push_back(line + " [variant " + variant + "]");
+      }
+    }
+  }
+  return lines;
 }
 
 }  // namespace strata

@@ -1,14 +1,13 @@
-#include "scene/typed_number.hpp"
+#include "scene/syntax.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <regex>
 #include <utility>
 #include <vector>
-
-#include "scene/spelling.hpp"
 
 namespace strata {
 namespace {
@@ -61,22 +60,6 @@ std::size_t count_digits(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::find_if_not(text, is_digit) - text.begin());
 }
 
-// Length of the digits at the start of `text`, with what stands between them.
-std::size_t count_body(std::string_view text) {
-  std::size_t at = 0;
-  for (; at < text.size(); ++at) {
-    const char c = text[at];
-    if (is_digit(c)) continue;
-    const std::size_t follow = count_digits(text.substr(at + 1));
-    const bool behind_digit = at > 0 && is_digit(text[at - 1]);
-    if ((c == '.' && (behind_digit || follow > 0))) continue;
-    if (std::string_view(",'_").find(c) != std::string_view::npos && behind_digit && follow > 0) continue;
-    if (c == ' ' && behind_digit && follow == 3) continue;
-    break;
-  }
-  return at;
-}
-
 // Whether all groups behind the first one have three digits, as those of thousands do.
 bool are_thousands(std::string_view body, char mark) {
   for (std::size_t at = body.find(mark); at != std::string_view::npos; at = body.find(mark, at + 1)) {
@@ -105,36 +88,19 @@ bool read_body(std::string body, Number& number) {
   return last == std::string::npos || body.size() > 1;
 }
 
-// Takes "e9", "d9", "*10^9" or "x 10**9" off the start of `rest`; the exponent, or "" where there is none.
-std::string take_exponent(std::string& rest) {
-  std::string text = rest;
-  std::erase(text, ' ');
-  std::size_t at = 0;
-  if (text.size() > 1 && std::string_view("eEdD").find(text[0]) != std::string_view::npos) at = 1;
-  for (const std::string_view ten : {"*10^", "x10^", "X10^", "*10**", "x10**"}) {
-    if (text.starts_with(ten)) at = ten.size();
-  }
-  if (at == 0) return {};
-  const std::size_t sign = at < text.size() && (text[at] == '-' || text[at] == '+') ? 1 : 0;
-  const std::size_t digits = count_digits(std::string_view(text).substr(at + sign));
-  if (digits == 0 || digits > 4) return {};  // more is no power of ten that a double has
-  const std::string exponent = text.substr(at, sign + digits);
-  std::size_t taken = 0;
-  for (std::size_t letters = at + sign + digits; letters > 0; ++taken) letters -= rest[taken] == ' ' ? 0 : 1;
-  rest = trimmed(std::string_view(rest).substr(taken));
-  return exponent.starts_with('+') ? exponent.substr(1) : exponent;
-}
-
+// Sign, digits with what stands between them, "e9", "d9", "*10^9" or "x 10**9", and what is behind.
 std::optional<Number> read_number(std::string_view typed) {
+  static const std::regex form(R"(([-+]?)\s*((?:\d+|(?=\.\d))(?:\.\d*|[,'_]\d+| \d{3}(?!\d))*))"
+                               R"((?: *(?:[eEdD]|[*xX] *10 *(?:\^|\*\*)) *\+?(-?\d{1,4})(?!\d))?\s*(.*))");
   const std::string text = with_plain_signs(typed);
+  constexpr std::size_t longest = 200;  // std::regex calls itself for each letter
+  std::smatch parts;
+  if (text.size() > longest || !std::regex_match(text, parts, form)) return std::nullopt;
   Number number;
-  const bool signed_ = text.starts_with('-') || text.starts_with('+');
-  if (text.starts_with('-')) number.sign = "-";
-  const std::string from(trimmed(std::string_view(text).substr(signed_ ? 1 : 0)));
-  const std::size_t length = count_body(from);
-  if (length == 0 || !read_body(from.substr(0, length), number)) return std::nullopt;
-  number.behind = trimmed(std::string_view(from).substr(length));
-  number.exponent = take_exponent(number.behind);
+  if (parts[1] == "-") number.sign = "-";
+  if (!read_body(parts[2], number)) return std::nullopt;
+  number.exponent = parts[3];
+  number.behind = parts[4];
   number.either = number.either && number.exponent.empty();
   return number;
 }
@@ -154,15 +120,15 @@ bool same_letters(std::string_view a, std::string_view b) {
 
 // The power of ten by which a number in `typed` becomes one in `unit`, where it is one of its prefixes.
 std::optional<int> power_of_ten(std::string_view typed, std::string_view unit) {
-  static constexpr std::pair<char, int> prefixes[] = {{'G', 9},  {'g', 9},  {'M', 6},  {'k', 3}, {'K', 3},
-                                                      {'c', -2}, {'m', -3}, {'u', -6}, {'n', -9}};
+  constexpr std::string_view prefixes = "GgMkKcmun";
+  constexpr int powers[] = {9, 9, 6, 3, 3, -2, -3, -6, -9};
   const std::string is = bare_unit(typed), wanted = bare_unit(unit);
   if (same_letters(is, wanted)) return 0;
   const bool takes_prefix = std::isalpha(static_cast<unsigned char>(unit[0])) != 0 && !unit.starts_with("m^");
   if (!takes_prefix || !same_letters(is.substr(1), wanted)) return std::nullopt;
   if (is[0] == 'm' && is.substr(1) != wanted) return std::nullopt;  // mpa: milli or mega
-  const auto prefix = std::ranges::find(prefixes, is[0], &std::pair<char, int>::first);
-  return prefix == std::end(prefixes) ? std::nullopt : std::optional(prefix->second);
+  const std::size_t prefix = prefixes.find(is[0]);
+  return prefix == prefixes.npos ? std::nullopt : std::optional(powers[prefix]);
 }
 
 // What to type where more than a number was typed.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <limits>
 #include <set>
@@ -12,18 +13,20 @@
 using namespace strata;
 
 TEST_CASE("Every key is declared once, has help, and leads somewhere or says why not") {
-  std::set<std::string> paths;
+  std::set<std::string_view> paths;
   for (const Key& key : scene_keys()) {
     CAPTURE(key.path);
     CHECK(paths.insert(key.path).second);
     CHECK_FALSE(key.help.empty());
-    if (key.type == KeyType::number) CHECK(key.bounds.low < key.bounds.high);
-    if (key.type == KeyType::word) CHECK_FALSE(key.words.empty());
-    if (key.type == KeyType::integer) CHECK_FALSE(key.allowed.empty());
-    const bool list = key.type == KeyType::layers || key.type == KeyType::names || key.type == KeyType::points;
-    const bool element = key.path.find('[') != std::string::npos;
-    const bool leads = !std::holds_alternative<std::monostate>(key.place);
-    CHECK((leads || list || element));
+    if (key.is_number()) CHECK(key.bounds.low < key.bounds.high);
+    if (key.is<WordWay>() || key.is<Way<int>>()) CHECK_FALSE(key.allowed.empty());
+    const bool leads = std::visit(
+        [](const auto& way) {
+          if constexpr (std::is_same_v<decltype(way), const WordWay&>) return way.get != nullptr;
+          if constexpr (!std::is_same_v<decltype(way), const WordWay&>) return way != nullptr;
+        },
+        key.place);
+    CHECK(leads != key.in_list());
   }
 }
 
@@ -32,17 +35,32 @@ TEST_CASE("Every default is one that its key allows") {
     const std::string text = default_text(key);
     CAPTURE(key.path, text);
     if (text.empty()) continue;
-    if (key.type == KeyType::number) {
-      const double value = std::stod(text);
-      CHECK((key.bounds.low_open ? value > key.bounds.low : value >= key.bounds.low));
-      CHECK((key.bounds.high_open ? value < key.bounds.high : value <= key.bounds.high));
-    }
-    if (key.type == KeyType::word) {
-      bool offered = false;
-      for (const Word& word : key.words) offered = offered || ('"' + word.text + '"' == text);
-      CHECK(offered);
+    if (key.is_number()) CHECK(key.bounds.contain(std::stod(text)));
+    if (key.is<Way<int>>()) CHECK(std::ranges::find(key.allowed, text) != key.allowed.end());
+    if (key.is<WordWay>()) {
+      CHECK(std::ranges::find(key.allowed, text.substr(1, text.size() - 2)) != key.allowed.end());
     }
   }
+}
+
+// Requires bounds to hold their ends where they are closed and not where they are open.
+TEST_CASE("Bounds are open or closed at each end by itself") {
+  const Bounds low{0.0, 1.0, true, false}, high{0.0, 1.0, false, true};
+  CHECK((!low.contain(0.0) && low.contain(0.5) && low.contain(1.0) && !low.contain(1.1)));
+  CHECK((high.contain(0.0) && high.contain(0.5) && !high.contain(1.0) && !high.contain(-0.1)));
+}
+
+// Requires each key's words to be among those of its enumeration, so that what is typed is what is set.
+TEST_CASE("Words that are offered are those of the member") {
+  for (const Key& key : scene_keys()) {
+    const auto* way = std::get_if<WordWay>(&key.place);
+    if (way == nullptr) continue;
+    const auto words = split(way->words, ", ");
+    CAPTURE(key.path);
+    for (const std::string& word : key.allowed) CHECK(std::ranges::find(words, word) != words.end());
+  }
+  CHECK(word_of(Fluid::TimeRule::backward_euler) == "backward-euler");
+  CHECK(word_of(Numerics::Mechanics::explicit_dynamics) == "explicit");
 }
 
 TEST_CASE("Defaults are those of the scene") {
@@ -98,5 +116,5 @@ TEST_CASE("A number's text reads back as the same number and is a float in TOML"
 
 TEST_CASE("The table in Markdown has a row for each key") {
   const std::string table = keys_as_markdown();
-  for (const Key& key : scene_keys()) CHECK(table.find("| `" + key.path + "` |") != std::string::npos);
+  for (const Key& key : scene_keys()) CHECK(table.find("| `" + std::string(key.path) + "` |") != std::string::npos);
 }

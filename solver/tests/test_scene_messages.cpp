@@ -1,6 +1,6 @@
 // What is said of values that are typed as people write them, and not as TOML or a key takes them.
 #include "scene/spelling.hpp"
-#include "scene/typed_number.hpp"
+#include "scene/syntax.hpp"
 #include "scene_text.hpp"
 
 using namespace strata;

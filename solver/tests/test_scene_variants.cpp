@@ -1,4 +1,3 @@
-#include "scene/check.hpp"
 #include "scene_text.hpp"
 #include "temporary_folder.hpp"
 

@@ -357,12 +357,3 @@ def test_memory_is_estimated_a_little_above_what_a_run_takes(tmp_path: Path, nam
     estimate_MB = 1e3 * float(re.search(r"([\d.e+-]+) GB", done.stderr).group(1))  # type: ignore[union-attr]
     peak_MB = json.loads((tmp_path / "X" / "summary.json").read_text())["peak_memory_MB"]
     assert 1.0 < estimate_MB / peak_MB < 1.3
-
-
-def test_a_run_of_months_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "block.toml").write_text(BLOCK)
-    done = strata("run", "block.toml", "--set", "stop.time_s=1e9", "--out", "X", cwd=tmp_path)
-    assert done.returncode == 2
-    assert "would take too long" in done.stderr and "days" in done.stderr and "--any-time" in done.stderr
-    assert not (tmp_path / "X").exists()
-    assert strata("check", "block.toml", cwd=tmp_path).returncode == 0

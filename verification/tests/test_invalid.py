@@ -102,6 +102,27 @@ def test_variants_prints_names_alone(tmp_path: Path) -> None:
     assert (done.returncode, done.stdout) == (2, "")
 
 
+def test_resolve_prints_what_a_run_writes(tmp_path: Path) -> None:
+    """`resolve` prints the scene.toml of the run with the same variant and settings, and nothing else; no folder appears."""
+    (tmp_path / "good.toml").write_text(GOOD)
+    chosen = ["good.toml", "--variant", "fine", "--set", "stop.time_s=1e-4", "--set", "numerics.damping_1_s=3"]
+    done = strata(tmp_path, "resolve", *chosen)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert [path.name for path in tmp_path.iterdir()] == ["good.toml"]
+    assert "cell_m = 0.5\n" in done.stdout and "damping_1_s = 3.0\n" in done.stdout and "time_s = 0.0001\n" in done.stdout
+    assert strata(tmp_path, "run", *chosen, "--out", "X", "--quiet").returncode == 0
+    assert (tmp_path / "X" / "scene.toml").read_text() == done.stdout
+
+
+def test_resolve_says_all_that_is_wrong(tmp_path: Path) -> None:
+    """`resolve` of bad input ends with 2 and all errors, and prints no scene."""
+    (tmp_path / "bad.toml").write_text(GOOD.replace("width_m = 8", "width_m = -8").replace("height_m", "heigth_m"))
+    done = strata(tmp_path, "resolve", "bad.toml", "--set", "numerics.shape=gmp")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "width_m = -8 is outside (0, inf)" in done.stderr and "Did you mean height_m?" in done.stderr
+    assert '--set numerics.shape=gmp: numerics.shape = "gmp" is not allowed' in done.stderr
+
+
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
