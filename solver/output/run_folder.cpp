@@ -37,30 +37,19 @@ class Descriptor {
   int descriptor_;
 };
 
-void write_new(const std::filesystem::path& file, std::string_view text, Sync sync) {
-  const Descriptor out(file, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC);
-  if (out.get() < 0) fail(file, "be written", errno);
-  while (!text.empty()) {
-    const ssize_t written = ::write(out.get(), text.data(), text.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(file, "be written", errno);
-    text.remove_prefix(static_cast<std::size_t>(written));
-  }
-  if (sync == Sync::yes && ::fsync(out.get()) != 0) fail(file, "be synced", errno);
-}
-
 std::filesystem::path with_ending(std::filesystem::path file, const char* ending) {
   return file += ending;
 }
 
 // The summary first: without it nothing is taken for a run that has ended.
-std::array<std::filesystem::path, 6> files_of(const RunFolder& folder) {
-  return {folder.summary(), folder.checkpoint(), folder.history(), folder.result(), folder.xdmf(), folder.scene()};
+std::array<std::filesystem::path, 7> files_of(const RunFolder& folder) {
+  return {folder.summary(), folder.checkpoint(),        folder.history(), folder.result(),
+          folder.xdmf(),    fields_of(folder.result()), folder.scene()};
 }
 
 void remove_file(const std::filesystem::path& file) {
   std::error_code error;
-  std::filesystem::remove(file, error);
+  std::filesystem::remove_all(file, error);
   if (error) throw OutputFailure(fmt::format("{}: cannot be replaced: {}", file.string(), error.message()));
 }
 
@@ -100,17 +89,18 @@ RunFolder clear_run_folder(const std::filesystem::path& path, bool replace) {
     }
   }
   for (const auto& file : files_of(folder)) {
-    for (const char* ending : {".tmp", ".change", ".change.tmp"}) remove_file(with_ending(file, ending));
+    remove_file(with_ending(file, ".tmp"));
     if (file != folder.scene()) remove_file(file);
   }
   return folder;
 }
 
-void atomic_write(const std::filesystem::path& file, std::string_view text, Sync sync) {
-  std::filesystem::path beside = file;
-  beside += ".tmp";
+void write_beside(const std::filesystem::path& file, Sync sync,
+                  const std::function<void(const std::filesystem::path& beside)>& write) {
+  const std::filesystem::path beside = with_ending(file, ".tmp");
   try {
-    write_new(beside, text, sync);
+    write(beside);
+    if (sync == Sync::yes) sync_file(beside);
     if (std::rename(beside.c_str(), file.c_str()) != 0) fail(file, "be replaced", errno);
   } catch (...) {
     std::remove(beside.c_str());
@@ -121,6 +111,28 @@ void atomic_write(const std::filesystem::path& file, std::string_view text, Sync
   const auto parent = file.parent_path();
   const Descriptor folder(parent.empty() ? std::filesystem::path(".") : parent, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder.get() >= 0) ::fsync(folder.get());
+}
+
+void atomic_write(const std::filesystem::path& file, std::string_view text, Sync sync) {
+  write_beside(file, sync, [text](const std::filesystem::path& beside) {
+    const Descriptor out(beside, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC);
+    if (out.get() < 0) fail(beside, "be written", errno);
+    for (std::string_view rest = text; !rest.empty();) {
+      const ssize_t written = ::write(out.get(), rest.data(), rest.size());
+      if (written < 0 && errno != EINTR) fail(beside, "be written", errno);
+      if (written > 0) rest.remove_prefix(static_cast<std::size_t>(written));
+    }
+  });
+}
+
+void copy_with_room(const std::filesystem::path& from, const std::filesystem::path& to, std::uint64_t bytes) {
+  std::error_code error;
+  std::filesystem::copy_file(from, to, std::filesystem::copy_options::overwrite_existing, error);
+  if (error) fail(to, "be written", error.value());
+  const Descriptor out(to, O_WRONLY | O_CLOEXEC);
+  if (out.get() < 0) fail(to, "be written", errno);
+  if (const int full = ::posix_fallocate(out.get(), 0, static_cast<off_t>(bytes)); full != 0)
+    fail(to, "be written", full);
 }
 
 void append_at(const std::filesystem::path& file, std::uint64_t bytes, std::string_view text) {
