@@ -230,12 +230,6 @@ std::string resume_text(const Run& run, const RunFolder& folder) {
                      run.saved_step > 0 ? fmt::format("step {}", run.saved_step) : "the start");
 }
 
-// The fields of the output times, which result.h5 holds now.
-void remove_fields(const RunFolder& folder) {
-  std::error_code left;  // they harm nobody
-  std::filesystem::remove_all(fields_of(folder.result()), left);
-}
-
 // The run to its end, its failure or its interruption: the exit status. The last leaves no summary.
 int run_to_end(Run& run, const RunFolder& folder, const RunOptions& options, RunRecord& record) {
   Progress progress(run.scene, run.state, options.quiet);
@@ -259,7 +253,6 @@ int run_to_end(Run& run, const RunFolder& folder, const RunOptions& options, Run
   if (exit == interrupted) return exit;
   run.recorder.finish();
   write_summary(folder.summary(), run.scene, run.state, record);
-  remove_fields(folder);
   return exit;
 }
 
@@ -383,7 +376,6 @@ int resume_in(const RunFolder& folder, const RunOptions& options, Clock::time_po
   require_unchanged_scene(folder, scene);
   if (std::filesystem::exists(folder.summary())) {
     if (!options.quiet) fmt::print(stderr, "{}\n", how_it_ended(folder));
-    remove_fields(folder);
     return done;
   }
   const std::string begun_by = made_with(folder.result()).version;

@@ -38,6 +38,7 @@ Result checked(Result result, const std::string& what, const char* doing) {
 // How files are opened; the library, which prints its errors unless told not to, is told so before the first.
 Handle file_access() {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  H5set_free_list_limits(0, 0, 0, 0, 0, 0);  // what the library frees is not kept for the next file
   Handle access(checked(H5Pcreate(H5P_FILE_ACCESS), "HDF5", "set up file access"), H5Pclose);
   checked(H5Pset_file_locking(access.id(), false, true), "HDF5", "do without file locks");
   return access;
@@ -135,6 +136,13 @@ void write_file(const std::filesystem::path& file, bool anew, std::size_t room, 
 
 void change_in_place(const std::filesystem::path& file, const Change& change) {
   const Handle access = file_access();
+  // What the library knows of the file: 2 MB of it and more, ten times as large in memory, if it may.
+  H5AC_cache_config_t known{};
+  known.version = H5AC__CURR_CACHE_CONFIG_VERSION;
+  checked(H5Pget_mdc_config(access.id(), &known), file.string(), "be set up");
+  known.set_initial_size = true;
+  known.initial_size = known.min_size = known.max_size = std::size_t{1} << 15U;
+  checked(H5Pset_mdc_config(access.id(), &known), file.string(), "be set up");
   const Handle opened(checked(H5Fopen(file.c_str(), H5F_ACC_RDWR, access.id()), file.string(), "be opened"), H5Fclose);
   change(opened.id());
   checked(H5Fflush(opened.id(), H5F_SCOPE_GLOBAL), file.string(), "be written");

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "output/hdf5_io.hpp"
@@ -99,13 +99,13 @@ std::vector<std::size_t> by_id(const Particles& particles) {
   return order;
 }
 
-// Fields that deflate shortens much: the low bytes of others are noise, over which its search takes as long as small
-// runs do and that it leaves three quarters of.
-hdf5::Storage storage_of(const Scene& scene, std::string_view field) {
-  const bool at_rest = scene.numerics.mechanics == Numerics::Mechanics::quasistatic;
-  const bool repeats = field == "id" || field == "rock" || field == "volume_m2" || field == "x_m" || field == "y_m" ||
-                       (at_rest && field.starts_with("v_"));
-  return repeats ? hdf5::Storage::packed : hdf5::Storage::plain;
+// Deflate shortens places, areas, labels and fields of one value much. The low bytes of others are noise, over which
+// its search takes as long as small runs do and of which it leaves three quarters.
+template <class Values>
+void write_field(hdf5::Id group, const std::string& name, const Values& values, const std::string& unit) {
+  const bool packed = name == "id" || name == "rock" || name == "volume_m2" || name == "x_m" || name == "y_m" ||
+                      std::ranges::adjacent_find(values, std::not_equal_to{}) == values.end();
+  hdf5::write(group, name, values, unit, packed ? hdf5::Storage::packed : hdf5::Storage::plain);
 }
 
 void write_particles(hdf5::Id group, const Scene& scene, const State& state) {
@@ -115,7 +115,7 @@ void write_particles(hdf5::Id group, const Scene& scene, const State& state) {
   std::vector<float> field(order.size());
   const auto put = [&](const char* name, const char* unit, auto value) {
     std::transform(order.begin(), order.end(), field.begin(), [&](auto p) { return static_cast<float>(value(p)); });
-    hdf5::write(group, name, field, unit, storage_of(scene, name));
+    write_field(group, name, field, unit);
   };
   const auto put_array = [&](const char* name, const char* unit, const SpreadArray& values) {
     put(name, unit, [&](std::size_t p) { return values[p]; });
@@ -123,7 +123,7 @@ void write_particles(hdf5::Id group, const Scene& scene, const State& state) {
   std::vector<std::int32_t> label(order.size());
   const auto put_label = [&](const char* name, const auto& values) {
     std::transform(order.begin(), order.end(), label.begin(), [&](auto p) { return values[p]; });
-    hdf5::write(group, name, label, "1", storage_of(scene, name));
+    write_field(group, name, label, "1");
   };
   const double moved = scene.numerics.keeps_places() ? 1.0 : 0.0;  // positions are where the rock now is
   put("x_m", "m", [&](std::size_t p) { return particles.x[p] + moved * particles.u_x[p]; });
@@ -168,6 +168,12 @@ void require_written(Work work) {
   } catch (const std::runtime_error& error) {
     throw OutputFailure(error.what());
   }
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directory(folder, error);
+  if (error) throw OutputFailure(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
 }
 
 void set_made_with(hdf5::Id root, const MadeWith& made) {
@@ -226,12 +232,11 @@ MadeWith made_with(const std::filesystem::path& file) {
 ResultFile::ResultFile(const std::filesystem::path& file) : file_(file) {
   hdf5::write_file(file, true, index_room, [&](hdf5::Id root) { start_index(root); });
   write_xdmf();
-  std::error_code error;
-  std::filesystem::create_directory(fields_of(file), error);
-  if (error) throw OutputFailure(fmt::format("{}: cannot be made: {}", fields_of(file).string(), error.message()));
+  make_folder(fields_of(file));
 }
 
-ResultFile::ResultFile(const std::filesystem::path& file, std::size_t outputs) : file_(file) {
+ResultFile::ResultFile(const std::filesystem::path& file, std::size_t outputs) : file_(file), synced_(outputs) {
+  const MadeWith made = made_with(file);
   {
     const hdf5::Handle result = hdf5::open_file(file);
     const std::vector<double> times = hdf5::read(result.id(), "times");
@@ -239,22 +244,28 @@ ResultFile::ResultFile(const std::filesystem::path& file, std::size_t outputs) :
       throw std::runtime_error(
           fmt::format("{}: holds {} output times where {} were expected", file.string(), times.size(), outputs));
     }
+    make_folder(fields_of(file));
     for (std::size_t k = 0; k < outputs; ++k) {
-      const hdf5::Handle fields = hdf5::open_file(fields_at(k));
-      const bool fractured = hdf5::exists(fields.id(), "fracture");
-      outputs_.push_back({times[k], hdf5::length(fields.id(), "particles/x_m"),
-                          fractured ? hdf5::length(fields.id(), "fracture/x_m") : 0,
-                          hdf5::exists(fields.id(), "interfaces")});
+      const auto path = [&](std::size_t kind) { return std::string(kinds[kind]) + '/' + number_of(k); };
+      const auto there = [&](std::size_t kind) { return hdf5::exists(result.id(), path(kind)); };
+      const auto count = [&](std::size_t kind) { return hdf5::length(result.id(), path(kind) + "/x_m"); };
+      if (!std::filesystem::exists(fields_at(k))) {  // they were gathered already
+        hdf5::write_file(fields_at(k), true, index_room, [&](hdf5::Id root) {
+          for (std::size_t kind = 0; kind < std::size(kinds); ++kind) {
+            if (there(kind)) hdf5::copy(result.id(), path(kind), root, kinds[kind]);
+          }
+        });
+        synced_ = std::min(synced_, k);
+      }
+      outputs_.push_back({times[k], count(0), there(1) ? count(1) : 0, there(2)});
     }
   }
-  const MadeWith made = made_with(file);
   hdf5::write_file(file, true, index_room, [&](hdf5::Id root) {
     start_index(root);
     for (std::size_t k = 0; k < outputs; ++k) link_fields(root, k, outputs_[k]);
     if (outputs > 0) set_made_with(root, made);
   });
   write_xdmf();
-  synced_ = outputs;
 }
 
 void ResultFile::write_output(const Scene& scene, const State& state) {
@@ -302,10 +313,12 @@ void ResultFile::finish(const std::vector<HistoryRow>& rows) {
     for (std::size_t k = 0; k < outputs_.size(); ++k) size += std::filesystem::file_size(fields_at(k));
     size += columns.size() * sizeof(double) * (rows.size() + 1024);
     write_beside(file_, Sync::yes, [&](const std::filesystem::path& beside) {
-      copy_with_room(file_, beside, size);
+      write_with_room(beside, read_whole(file_), size);
       hdf5::change_in_place(beside, gather);
     });
   });
+  std::error_code left;  // it harms nobody
+  std::filesystem::remove_all(fields_of(file_), left);
 }
 
 std::filesystem::path ResultFile::fields_at(std::size_t output) const {

@@ -61,8 +61,8 @@ class ResultFile {
   /// Waits until what was written is on the disc; throws OutputFailure where it cannot be.
   void sync();
 
-  /// Gathers all fields in the file, with the rows (all of them, from the start) under /history. The folder of the
-  /// fields stays: it goes when the run is known to have ended. Throws OutputFailure where the disc has no room.
+  /// Gathers all fields in the file, with the rows (all of them, from the start) under /history: the last that is done
+  /// to it. Throws OutputFailure, with all as it was, where the disc has no room.
   void finish(const std::vector<HistoryRow>& rows);
 
   /// Number of output times in the file.

@@ -42,9 +42,8 @@ std::filesystem::path with_ending(std::filesystem::path file, const char* ending
 }
 
 // The summary first: without it nothing is taken for a run that has ended.
-std::array<std::filesystem::path, 7> files_of(const RunFolder& folder) {
-  return {folder.summary(), folder.checkpoint(),        folder.history(), folder.result(),
-          folder.xdmf(),    fields_of(folder.result()), folder.scene()};
+std::array<std::filesystem::path, 6> files_of(const RunFolder& folder) {
+  return {folder.summary(), folder.checkpoint(), folder.history(), folder.result(), folder.xdmf(), folder.scene()};
 }
 
 void remove_file(const std::filesystem::path& file) {
@@ -92,6 +91,7 @@ RunFolder clear_run_folder(const std::filesystem::path& path, bool replace) {
     remove_file(with_ending(file, ".tmp"));
     if (file != folder.scene()) remove_file(file);
   }
+  remove_file(fields_of(folder.result()));
   return folder;
 }
 
@@ -114,25 +114,19 @@ void write_beside(const std::filesystem::path& file, Sync sync,
 }
 
 void atomic_write(const std::filesystem::path& file, std::string_view text, Sync sync) {
-  write_beside(file, sync, [text](const std::filesystem::path& beside) {
-    const Descriptor out(beside, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC);
-    if (out.get() < 0) fail(beside, "be written", errno);
-    for (std::string_view rest = text; !rest.empty();) {
-      const ssize_t written = ::write(out.get(), rest.data(), rest.size());
-      if (written < 0 && errno != EINTR) fail(beside, "be written", errno);
-      if (written > 0) rest.remove_prefix(static_cast<std::size_t>(written));
-    }
-  });
+  write_beside(file, sync, [text](const std::filesystem::path& beside) { write_with_room(beside, text, 0); });
 }
 
-void copy_with_room(const std::filesystem::path& from, const std::filesystem::path& to, std::uint64_t bytes) {
-  std::error_code error;
-  std::filesystem::copy_file(from, to, std::filesystem::copy_options::overwrite_existing, error);
-  if (error) fail(to, "be written", error.value());
-  const Descriptor out(to, O_WRONLY | O_CLOEXEC);
-  if (out.get() < 0) fail(to, "be written", errno);
-  if (const int full = ::posix_fallocate(out.get(), 0, static_cast<off_t>(bytes)); full != 0)
-    fail(to, "be written", full);
+void write_with_room(const std::filesystem::path& file, std::string_view text, std::uint64_t bytes) {
+  const Descriptor out(file, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC);
+  if (out.get() < 0) fail(file, "be written", errno);
+  while (!text.empty()) {
+    const ssize_t written = ::write(out.get(), text.data(), text.size());
+    if (written < 0 && errno != EINTR) fail(file, "be written", errno);
+    if (written > 0) text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  const int full = bytes > 0 ? ::posix_fallocate(out.get(), 0, static_cast<off_t>(bytes)) : 0;
+  if (full != 0) fail(file, "be written", full);
 }
 
 void append_at(const std::filesystem::path& file, std::uint64_t bytes, std::string_view text) {

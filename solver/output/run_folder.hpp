@@ -71,9 +71,9 @@ void write_beside(const std::filesystem::path& file, Sync sync,
 /// write_beside(); throws as that.
 void atomic_write(const std::filesystem::path& file, std::string_view text, Sync sync = Sync::yes);
 
-/// Copies a file and takes `bytes` (no fewer than it has) of the disc for the copy, so that what is written within them
-/// later is not refused. Throws OutputFailure where the disc has no such room.
-void copy_with_room(const std::filesystem::path& from, const std::filesystem::path& to, std::uint64_t bytes);
+/// Writes `text` to a new `file` and takes so many bytes of the disc for it, so that what is written within them later
+/// is not refused. Throws OutputFailure where the disc has no such room.
+void write_with_room(const std::filesystem::path& file, std::string_view text, std::uint64_t bytes);
 
 /// Adds `text` by one call of the system to the end of `file`, which must be its `bytes` long. Throws OutputFailure,
 /// with the file as it was, where the disc refuses it, or where the file is gone or has another length.

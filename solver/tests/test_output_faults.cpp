@@ -113,9 +113,8 @@ TEST_CASE("fields are gathered in one file as a whole or not at all") {
   }
   CHECK(whole_times(path) == std::vector<double>{0.0, 0.1, 0.2});
   result.finish({});
-  std::filesystem::remove_all(fields_of(path));
+  CHECK_FALSE(std::filesystem::exists(fields_of(path)));
   CHECK(whole_times(path) == std::vector<double>{0.0, 0.1, 0.2});
-  CHECK(content_of(path).find("00001.h5") == std::string::npos);
 }
 
 TEST_CASE("fields that are gone, or a result file that is, end the run with the reason") {
