@@ -85,24 +85,21 @@ std::optional<std::string> reason_to_stop(const Scene& scene, const State& state
   return std::nullopt;
 }
 
-struct Outcome {
-  int exit = done;
-  std::string reason;
-};
-
 // What a run holds while it goes on.
 struct Run {
   const Scene& scene;
   const std::vector<Elasticity>& rocks;
   Recorder& recorder;
-  State state;
-  State good;               // the last state that was known to be sound,
-  OutputMark good_mark;     // how far the output had come then,
-  std::int64_t saved_step;  // and the step of the one that a resumed run would find
-  double particle_steps = 0.0;
-  double last_output = -1.0;           // time of the last output (s)
-  std::optional<Quasistatic> statics;  // of a run without inertia
-  WeighGrowth weigh;                   // of one with inertia
+  Clock::time_point start;      // of the process
+  Checkpoint good;              // the last state that was known to be sound, and how far the output had come then
+  State state = good.state;     // the present one
+  std::int64_t saved_step = 0;  // of the state that a resumed run would find
+  double interval = 0.0;        // of output times (s)
+  double particle_steps = 0.0;  // of this process
+  std::optional<Quasistatic> statics{};  // of a run without inertia
+  WeighGrowth weigh{};                   // of one with inertia
+
+  double next_output() const { return static_cast<double>(recorder.outputs()) * interval; }
 };
 
 void add_stop_event(State& state) {
@@ -131,29 +128,27 @@ void complete_fields(Run& run) {
 }
 
 void output(Run& run) {
-  if (run.state.time == run.last_output) return;
+  if (run.state.time == run.recorder.last_output_s()) return;
   complete_fields(run);
   run.recorder.output(run.scene, run.state);
-  run.last_output = run.state.time;
 }
 
 // How far a step without inertia may go (s): to the next output, or to the end.
-double next_stop(const Run& run, double interval) {
-  const double next_output = static_cast<double>(run.recorder.outputs()) * interval;
+double next_stop(const Run& run) {
   const double end = run.scene.stop.time_s.value_or(HUGE_VAL);
   const Fluid& fluid = run.scene.fluid;
   const double full = run.scene.stop.inlet_Pa && fluid.rate_Pa_s > 0.0
                           ? (*run.scene.stop.inlet_Pa - fluid.start_Pa) / fluid.rate_Pa_s
                           : HUGE_VAL;
-  return std::min({next_output, end, full});
+  return std::min({run.next_output(), end, full});
 }
 
 // Whether the step of inertia that begins ends at an output or with the run, so that a row of the history follows.
-bool row_follows(const Run& run, double interval) {
+bool row_follows(const Run& run) {
   const State& state = run.state;
   const Stop& stop = run.scene.stop;
   const double end = state.time + state.dt, slack = 0.5 * state.dt;
-  if (end >= static_cast<double>(run.recorder.outputs()) * interval - slack) return true;
+  if (end >= run.next_output() - slack) return true;
   if (stop.time_s && end >= *stop.time_s - slack) return true;
   const Fluid& fluid = run.scene.fluid;
   return stop.inlet_Pa && fluid.start_Pa + fluid.rate_Pa_s * end >= *stop.inlet_Pa * (1.0 - 1e-9);
@@ -171,16 +166,16 @@ std::int64_t steps_between_sound_states(const Run& run) {
 }
 
 // One step and what it leaves to write: fields at output times, a row of the history after growth.
-void step_and_record(Run& run, double interval) {
+void step_and_record(Run& run) {
   const std::size_t points = fracture_points(run.state);
   if (run.statics) {
-    advance_quasistatic(run.scene, run.rocks, next_stop(run, interval), run.state, *run.statics);
+    advance_quasistatic(run.scene, run.rocks, next_stop(run), run.state, *run.statics);
   } else {
-    advance(run.scene, run.rocks, run.state, run.weigh, row_follows(run, interval));
+    advance(run.scene, run.rocks, run.state, run.weigh, row_follows(run));
   }
   run.particle_steps += static_cast<double>(run.state.particles.size());
-  const double slack = run.statics ? 1e-9 * interval : 0.5 * run.state.dt;
-  if (settled(run) && run.state.time >= static_cast<double>(run.recorder.outputs()) * interval - slack) {
+  const double slack = run.statics ? 1e-9 * run.interval : 0.5 * run.state.dt;
+  if (settled(run) && run.state.time >= run.next_output() - slack) {
     output(run);
   } else if (fracture_points(run.state) != points) {
     if (!run.statics) run.state.ledger.strain = strain_energy(run.rocks, run.state.particles);
@@ -190,30 +185,28 @@ void step_and_record(Run& run, double interval) {
 }
 
 void save_good_state(Run& run) {
-  if (run.good.step <= run.saved_step) return;
-  run.recorder.checkpoint(run.scene, run.good, run.good_mark);
-  run.saved_step = run.good.step;
+  if (run.good.state.step <= run.saved_step) return;
+  run.recorder.checkpoint(run.scene, run.good.state, run.good.mark);
+  run.saved_step = run.good.state.step;
 }
 
 // Keeps the state where it is as a resumed run finds it.
 void keep_if_sound(Run& run) {
-  if (run.state.step % steps_between_sound_states(run) != 0 || run.state.step <= run.good.step) return;
-  run.good = run.state;
-  run.good_mark = run.recorder.mark();
+  if (run.state.step % steps_between_sound_states(run) != 0 || run.state.step <= run.good.state.step) return;
+  run.good = {run.state, run.recorder.mark()};
   if (run.statics) restart_quasistatic(run.scene, run.rocks, run.state, *run.statics);  // as a resumed run starts
   run.weigh = growth_weighing(run.scene, run.rocks);
 }
 
-// Steps from run.state to the end of the run.
-Outcome march(Run& run, double checkpoint_every_s, Progress& progress) {
-  const double interval = output_interval(run.scene);
+// Steps from run.state to the end of the run: why it is over, or nothing where it is interrupted.
+std::optional<std::string> march(Run& run, double checkpoint_every_s, Progress& progress) {
   Clock::time_point last_checkpoint = Clock::now();
   while (true) {
     if (settled(run) && run.recorder.outputs() == 0) output(run);
     if (auto reason = reason_to_stop(run.scene, run.state); reason && settled(run)) {
       add_stop_event(run.state);
       output(run);
-      return {done, *reason};
+      return reason;
     }
     keep_if_sound(run);
     const bool stop = asked_to_stop != 0;
@@ -223,9 +216,9 @@ Outcome march(Run& run, double checkpoint_every_s, Progress& progress) {
     }
     if (stop) {
       complete_fields(run);  // for what is said of them
-      return {interrupted, ""};
+      return std::nullopt;
     }
-    step_and_record(run, interval);
+    step_and_record(run);
     progress.show(run.scene, run.state);
   }
 }
@@ -236,34 +229,30 @@ std::string resume_text(const Run& run, const RunFolder& folder) {
                      run.saved_step > 0 ? fmt::format("step {}", run.saved_step) : "the start");
 }
 
-// The run to its end or its failure, with the summary.
-Outcome run_to_end(Run& run, const RunFolder& folder, const RunOptions& options, RunRecord& record,
-                   Clock::time_point start) {
-  Outcome outcome;
+// The run to its end, its failure or its interruption: the exit status. The last leaves no summary.
+int run_to_end(Run& run, const RunFolder& folder, const RunOptions& options, RunRecord& record) {
   Progress progress(run.scene, run.state, options.quiet);
+  int exit = done;
   try {
     if (is_quasistatic(run.scene)) start_quasistatic(run.scene, run.rocks, run.state, run.statics.emplace());
-    run.good = run.state;
+    run.good.state = run.state;
     looks_at_signals = 1;
-    outcome = march(run, options.checkpoint_every_s, progress);
+    const std::optional<std::string> reason = march(run, options.checkpoint_every_s, progress);
+    if (!reason) exit = interrupted, record.status = "interrupted";
+    record.reason = reason ? *reason : resume_text(run, folder);
   } catch (const NumericalFailure& failure) {
-    outcome = {numerics_failed, fmt::format("{}. The last good state, of step {}, is in checkpoint.bin.",
-                                            failure.what(), run.good.step)};
-    record.status = "failed";
-    run.state = run.good;
-    run.recorder.checkpoint(run.scene, run.good, run.good_mark);
+    exit = numerics_failed, record.status = "failed";
+    record.reason =
+        fmt::format("{}. The last good state, of step {}, is in checkpoint.bin.", failure.what(), run.good.state.step);
+    run.state = run.good.state;
+    run.recorder.checkpoint(run.scene, run.good.state, run.good.mark);
   }
-  record.wall_s = seconds_since(start);
-  if (outcome.exit == interrupted) {
-    record.status = "interrupted";
-    record.reason = outcome.reason = resume_text(run, folder);
-    return outcome;
-  }
-  run.recorder.finish();
-  record.reason = outcome.reason;
+  record.wall_s = seconds_since(run.start);
   record.particle_steps = run.particle_steps;
+  if (exit == interrupted) return exit;
+  run.recorder.finish();
   write_summary(folder.summary(), run.scene, run.state, record);
-  return outcome;
+  return exit;
 }
 
 RunRecord make_record(const Scene& scene) {
@@ -287,20 +276,24 @@ std::string after_output_failure(const OutputFailure& failure, const Run& run, c
                      resume_text(run, folder));
 }
 
-int run_from(Run run, const RunFolder& folder, const RunOptions& options, Clock::time_point start) {
+int run_from(Run run, const RunFolder& folder, const RunOptions& options) {
+  run.saved_step = run.state.step;
+  run.interval = output_interval(run.scene);
+  run.weigh = growth_weighing(run.scene, run.rocks);
   RunRecord record = make_record(run.scene);
-  Outcome outcome;
+  int exit = done;
   try {
-    outcome = run_to_end(run, folder, options, record, start);
+    exit = run_to_end(run, folder, options, record);
   } catch (const OutputFailure& failure) {
-    outcome = {bad_input, after_output_failure(failure, run, folder)};
+    fmt::print(stderr, "{}\n", after_output_failure(failure, run, folder));
+    return bad_input;
   }
-  if (!options.quiet && outcome.exit != bad_input) {
+  if (!options.quiet) {
     fmt::print(stderr, "{}", closing_lines(run.scene, run.state, record, folder.path));
-  } else if (outcome.exit != done) {
-    fmt::print(stderr, "{}\n", outcome.exit == interrupted ? "interrupted; " + outcome.reason : outcome.reason);
+  } else if (exit != done) {
+    fmt::print(stderr, "{}{}\n", exit == interrupted ? "interrupted; " : "", record.reason);
   }
-  return outcome.exit;
+  return exit;
 }
 
 // The summary of a run that fails before it has a first state.
@@ -358,10 +351,8 @@ int run_in(const Scene& scene, const RunOptions& options, bool replace, Clock::t
   atomic_write(folder.scene(), scene.resolved_toml);
   Recorder recorder(folder);
   try {
-    const State state = initialise(scene, rocks);
-    return run_from({scene, rocks, recorder, state, state, recorder.mark(), 0, 0.0, -1.0, std::nullopt,
-                     growth_weighing(scene, rocks)},
-                    folder, options, start);
+    Checkpoint begin{initialise(scene, rocks), recorder.mark()};
+    return run_from({scene, rocks, recorder, start, std::move(begin)}, folder, options);
   } catch (const NumericalFailure& failure) {
     return fail_at_start(scene, folder, failure, start);
   }
@@ -399,16 +390,23 @@ int resume_in(const RunFolder& folder, const RunOptions& options, Clock::time_po
     return run_in(scene, same, true, start);
   }
   const std::vector<Elasticity> rocks = make_elasticities(scene);
-  State& state = checkpoint->state;
   try {
-    restore(scene, state);
+    restore(scene, checkpoint->state);
   } catch (const NumericalFailure& failure) {
     return fail_at_start(scene, folder, failure, start);
   }
-  const double last_output = recorder->last_output_s();
-  return run_from({scene, rocks, *recorder, state, state, checkpoint->mark, state.step, 0.0, last_output, std::nullopt,
-                   growth_weighing(scene, rocks)},
-                  folder, options, start);
+  return run_from({scene, rocks, *recorder, start, std::move(*checkpoint)}, folder, options);
+}
+
+// The exit status of what is done in a folder, which may fail.
+template <class Work>
+int saying_failures(Work work) {
+  try {
+    return work();
+  } catch (const OutputFailure& failure) {
+    fmt::print(stderr, "{}\n", failure.what());
+    return bad_input;
+  }
 }
 
 }  // namespace
@@ -416,26 +414,20 @@ int resume_in(const RunFolder& folder, const RunOptions& options, Clock::time_po
 int run_scene(const Scene& scene, const RunOptions& options) {
   const Clock::time_point start = Clock::now();
   set_up(scene, options);
-  try {
+  return saying_failures([&] {
     const FolderLock lock = make_run_folder(options.out);
     if (!options.quiet)
       fmt::print(stderr, "{:.2g} points, {:.2g} GB by estimate\n", points_of(scene), 1e-9 * memory_need(scene));
     return run_in(scene, options, options.replace, start);
-  } catch (const OutputFailure& failure) {
-    fmt::print(stderr, "{}\n", failure.what());
-    return bad_input;
-  }
+  });
 }
 
 int resume_run(const std::filesystem::path& dir, const RunOptions& options) {
   const Clock::time_point start = Clock::now();
-  try {
+  return saying_failures([&] {
     const FolderLock lock(dir);
     return resume_in(RunFolder{dir}, options, start);
-  } catch (const OutputFailure& failure) {
-    fmt::print(stderr, "{}\n", failure.what());
-    return bad_input;
-  }
+  });
 }
 
 }  // namespace strata

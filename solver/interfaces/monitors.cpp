@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <string>
-#include <utility>
 
 #include "interfaces/surface_law.hpp"
 
@@ -82,23 +81,10 @@ void watch_deformation(State& state) {
 }
 
 void require_finite(const State& state) {
-  const Ledger& l = state.ledger;
-  if (l.finite()) return;
+  if (state.ledger.finite()) return;
   std::string which;
-  for (const auto& [name, energy] : {std::pair{"kinetic", l.kinetic},
-                                     {"strain", l.strain},
-                                     {"interface_strain", l.interface_strain},
-                                     {"fluid_work", l.fluid_work},
-                                     {"in_situ_work", l.in_situ_work},
-                                     {"body_work", l.body_work},
-                                     {"damping", l.damping},
-                                     {"transfer", l.transfer},
-                                     {"integration", l.integration},
-                                     {"friction", l.friction},
-                                     {"failure", l.failure},
-                                     {"fracture", l.fracture},
-                                     {"excess", l.excess}}) {
-    if (!std::isfinite(energy)) which += (which.empty() ? "" : ", ") + std::string(name);
+  for (const auto& [name, value] : ledger_energies) {
+    if (!std::isfinite(state.ledger.*value)) which += (which.empty() ? "" : ", ") + std::string(name);
   }
   throw NumericalFailure(
       fmt::format("step {}, t = {:.6g} s: energies of the ledger are no finite numbers: {}. Check the "

@@ -93,10 +93,8 @@ void fields(Archive& ar, Is<Event> auto& event) {
 
 template <class Archive>
 void fields(Archive& ar, Is<Ledger> auto& ledger) {
-  auto& [kinetic, strain, interface_strain, fluid_work, in_situ_work, body_work, initial_kinetic, edge_work, damping,
-         transfer, integration, friction, failure, fracture, excess, largest] = ledger;
-  ar(kinetic, strain, interface_strain, fluid_work, in_situ_work, body_work, initial_kinetic, edge_work, damping,
-     transfer, integration, friction, failure, fracture, excess, largest);
+  for (const auto& energy : ledger_energies) ar(ledger.*energy.value);
+  ar(ledger.largest);
 }
 
 template <class Archive>
@@ -129,86 +127,64 @@ void fields(Archive& ar, Is<OutputMark> auto& mark) {
   ar(history.rows, history.bytes, outputs);
 }
 
-class Saver {
- public:
-  template <class... T>
-  void operator()(const T&... values) {
-    (put(values), ...);
-  }
-  std::string bytes;
-
- private:
+// Where bytes go, and where they come from.
+struct Saved {
+  static constexpr bool loads = false;
   void raw(const void* from, std::size_t n) { bytes.append(static_cast<const char*>(from), n); }
-
-  template <class T>
-  void put(const T& value) {
-    if constexpr (is_plain<T>) {
-      raw(&value, sizeof value);
-    } else if constexpr (std::is_same_v<T, Vec2>) {
-      raw(value.data(), 2 * sizeof(double));
-    } else {
-      fields(*this, value);
-    }
-  }
-  void put(const std::string& text) {
-    put(std::uint64_t{text.size()});
-    raw(text.data(), text.size());
-  }
-  template <class T, class Allocator>
-  void put(const std::vector<T, Allocator>& values) {
-    put(std::uint64_t{values.size()});
-    if constexpr (is_plain<T>) {
-      raw(values.data(), values.size() * sizeof(T));
-    } else {
-      for (const T& value : values) put(value);
-    }
-  }
+  std::string bytes;
 };
-
-class Loader {
- public:
-  explicit Loader(std::string_view bytes) : rest(bytes) {}
-  template <class... T>
-  void operator()(T&... values) {
-    (get(values), ...);
-  }
-  std::string_view rest;
-
- private:
+struct Loaded {
+  static constexpr bool loads = true;
   void raw(void* to, std::size_t n) {
-    if (n > rest.size()) throw std::runtime_error("ends too early");
+    require(n);
     if (n > 0) std::memcpy(to, rest.data(), n);
     rest.remove_prefix(n);
   }
-  // Number of elements of at least a byte each, so that a wrong one cannot ask for more memory than the file is long.
-  std::size_t count() {
-    std::uint64_t n = 0;
-    raw(&n, sizeof n);
+  void require(std::size_t n) const {
     if (n > rest.size()) throw std::runtime_error("ends too early");
-    return n;
+  }
+  std::string_view rest;
+};
+
+// Saves values one behind another, or loads them.
+template <class Store>
+struct Archive {
+  Store store;
+
+  template <class... T>
+  void operator()(T&&... values) {
+    (one(values), ...);
   }
 
+ private:
   template <class T>
-  void get(T& value) {
-    if constexpr (is_plain<T>) {
-      raw(&value, sizeof value);
-    } else if constexpr (std::is_same_v<T, Vec2>) {
-      raw(value.data(), 2 * sizeof(double));
+  void one(T& value) {
+    if constexpr (is_plain<std::remove_const_t<T>>) {
+      store.raw(&value, sizeof value);
+    } else if constexpr (Is<T, Vec2>) {
+      store.raw(value.data(), 2 * sizeof(double));
+    } else if constexpr (requires { value.capacity(); }) {
+      list(value);
     } else {
       fields(*this, value);
     }
   }
-  void get(std::string& text) {
-    text.resize(count());
-    raw(text.data(), text.size());
-  }
-  template <class T, class Allocator>
-  void get(std::vector<T, Allocator>& values) {
-    values.resize(count());
-    if constexpr (is_plain<T>) {
-      raw(values.data(), values.size() * sizeof(T));
+
+  // A text or a vector. Elements take a byte at least, so that a wrong number of them cannot ask for more memory than
+  // the file is long.
+  template <class List>
+  void list(List& values) {
+    std::uint64_t n = values.size();
+    one(n);
+    if constexpr (Store::loads) {
+      store.require(n);
+      values.resize(n);
+    }
+    using Element = typename List::value_type;
+    if constexpr (is_plain<Element>) {
+      store.raw(values.data(), n * sizeof(Element));
     } else {
-      for (T& value : values) get(value);
+      for (auto& value : values) one(value);
     }
   }
 };
@@ -225,12 +201,12 @@ std::uint64_t scene_hash(const Scene& scene) {
 
 void save_checkpoint(const std::filesystem::path& file, const Scene& scene, const State& state,
                      const OutputMark& mark) {
-  Saver content;
+  Archive<Saved> content;
   content(mark, state);
-  Saver out;
-  out.bytes = magic;
-  out(byte_order, format_version, scene_hash(scene), std::uint64_t{content.bytes.size()}, checksum(content.bytes));
-  atomic_write(file, out.bytes + content.bytes);
+  Archive<Saved> out{{std::string(magic)}};
+  const std::string& bytes = content.store.bytes;
+  out(byte_order, format_version, scene_hash(scene), std::uint64_t{bytes.size()}, checksum(bytes));
+  atomic_write(file, out.store.bytes + bytes);
 }
 
 Checkpoint load_checkpoint(const std::filesystem::path& file, const Scene& scene) {
@@ -238,7 +214,8 @@ Checkpoint load_checkpoint(const std::filesystem::path& file, const Scene& scene
   if (!bytes.starts_with(magic)) refuse(file, "is no checkpoint of strata");
   Checkpoint checkpoint;
   try {
-    Loader header(std::string_view(bytes).substr(magic.size()));
+    Archive<Loaded> header{{std::string_view(bytes).substr(magic.size())}};
+    const std::string_view& rest = header.store.rest;
     std::uint32_t order = 0, version = 0;
     std::uint64_t hash = 0, size = 0, sum = 0;
     header(order, version);
@@ -253,10 +230,9 @@ Checkpoint load_checkpoint(const std::filesystem::path& file, const Scene& scene
                       "keys. Put scene.toml back as it was, use that version, or run the scene anew with --replace.",
                       file.string()));
     }
-    if (header.rest.size() != size || checksum(header.rest) != sum)
-      refuse(file, "is torn: its content is not complete");
+    if (rest.size() != size || checksum(rest) != sum) refuse(file, "is torn: its content is not complete");
     header(checkpoint.mark, checkpoint.state);
-    if (!header.rest.empty()) refuse(file, "is torn: it holds more than a state");
+    if (!rest.empty()) refuse(file, "is torn: it holds more than a state");
   } catch (const std::runtime_error& error) {
     if (std::string_view(error.what()) != "ends too early") throw;
     refuse(file, "is torn: it ends too early");

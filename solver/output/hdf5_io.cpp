@@ -4,10 +4,9 @@
 #include <hdf5.h>
 
 #include <algorithm>
-#include <cstddef>
+#include <optional>
 #include <stdexcept>
 #include <type_traits>
-#include <vector>
 
 #include "output/run_folder.hpp"
 
@@ -16,22 +15,6 @@ namespace strata::hdf5 {
 static_assert(std::is_same_v<hid_t, Id> && std::is_same_v<herr_t, int>);
 
 namespace {
-
-// The library prints its errors unless told not to; they are exceptions here.
-class Silence {
- public:
-  Silence() {
-    H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-  Silence(const Silence&) = delete;
-  Silence& operator=(const Silence&) = delete;
-  ~Silence() { H5Eset_auto2(H5E_DEFAULT, print_, data_); }
-
- private:
-  H5E_auto2_t print_ = nullptr;
-  void* data_ = nullptr;
-};
 
 // The deepest message of the library's error stack, which tells the cause.
 std::string cause() {
@@ -46,26 +29,19 @@ std::string cause() {
   return text;
 }
 
-[[noreturn]] void fail(const std::string& what, const char* doing) {
-  throw std::runtime_error(fmt::format("{}: cannot {}: {}", what, doing, cause()));
-}
-
 template <class Result>
 Result checked(Result result, const std::string& what, const char* doing) {
-  if (result < 0) fail(what, doing);
+  if (result < 0) throw std::runtime_error(fmt::format("{}: cannot {}: {}", what, doing, cause()));
   return result;
 }
 
+// How files are opened; the library, which prints its errors unless told not to, is told so before the first.
 Handle file_access() {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  H5set_free_list_limits(0, 0, 0, 0, 0, 0);  // what the library frees is not kept for the next file
   Handle access(checked(H5Pcreate(H5P_FILE_ACCESS), "HDF5", "set up file access"), H5Pclose);
   checked(H5Pset_file_locking(access.id(), false, true), "HDF5", "do without file locks");
   return access;
-}
-
-Handle space_of(std::size_t n, bool extendible) {
-  const hsize_t now = n;
-  const hsize_t most = extendible ? H5S_UNLIMITED : now;
-  return {checked(H5Screate_simple(1, &now, &most), "HDF5", "make a data space"), H5Sclose};
 }
 
 Handle text_type() {
@@ -79,128 +55,107 @@ Handle open_dataset(Id parent, const std::string& name) {
   return {checked(H5Dopen2(parent, name.c_str(), H5P_DEFAULT), name, "be opened"), H5Dclose};
 }
 
-enum class Storage { contiguous, compressed, extendible };
-
-// Elements of a chunk of a compressed data set of n: one chunk for most fields.
-hsize_t chunk_of(std::size_t n) {
-  return std::min<std::size_t>(n, std::size_t{1} << 18U);
-}
-
-bool deflates() {
-  return H5Zfilter_avail(H5Z_FILTER_DEFLATE) > 0;
-}
-
-// Makes a data set that does not record when: files of equal runs are equal. The element type on disc is that in
-// memory.
-Handle make_dataset(Id parent, const std::string& name, hid_t type, std::size_t n, Storage storage) {
+// Makes a data set of n elements that does not record when: files of equal runs are equal. Where it has chunks their
+// length is given; one that is to be packed by a level of deflate has, and so has one whose length may change.
+Handle make_dataset(Id parent, const std::string& name, hid_t type, hsize_t n, std::optional<hsize_t> chunk,
+                    bool packed) {
   const Handle properties(checked(H5Pcreate(H5P_DATASET_CREATE), name, "be set up"), H5Pclose);
   H5Pset_obj_track_times(properties.id(), false);
-  if (storage == Storage::extendible || (storage == Storage::compressed && n > 0)) {
-    // Small chunks where the length is not known beforehand.
-    const hsize_t chunk = storage == Storage::extendible ? 512 : chunk_of(n);
-    checked(H5Pset_chunk(properties.id(), 1, &chunk), name, "be chunked");
-  }
-  if (storage == Storage::compressed && n > 0 && deflates()) {
+  if (chunk) checked(H5Pset_chunk(properties.id(), 1, &*chunk), name, "be chunked");
+  if (packed) {
     checked(H5Pset_shuffle(properties.id()), name, "be shuffled");
     checked(H5Pset_deflate(properties.id(), 1), name, "be compressed");
   }
-  const Handle space = space_of(n, storage == Storage::extendible);
+  const hsize_t most = chunk && !packed ? H5S_UNLIMITED : n;
+  const Handle space(checked(H5Screate_simple(1, &n, &most), name, "be set up"), H5Sclose);
   return {checked(H5Dcreate2(parent, name.c_str(), type, space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT), name,
                   "be made"),
           H5Dclose};
 }
 
-// Writes the chunks of a compressed data set, packed here: the filters' own search takes three times as long.
-void write_chunks(Id set, const std::string& name, std::span<const std::byte> values, Packer& packer) {
-  constexpr std::size_t width = 4;
-  const std::size_t n = values.size() / width, chunk = chunk_of(n);
-  for (std::size_t from = 0; from < n; from += chunk) {
-    const std::size_t count = std::min(chunk, n - from);
-    std::span<const std::byte> part = values.subspan(width * from, width * count);
-    std::vector<std::byte> whole;
-    if (count < chunk) {  // the last one is filled up
-      whole.assign(part.begin(), part.end());
-      whole.resize(width * chunk);
-      part = whole;
-    }
-    const std::vector<unsigned char> packed = packer.shuffled_and_deflated(part);
-    const hsize_t offset = from;
-    checked(H5Dwrite_chunk(set, H5P_DEFAULT, 0, &offset, packed.size(), packed.data()), name, "be written");
-  }
-}
-
+// The element type on disc is that in memory.
 template <class T>
 void write_dataset(Id parent, const std::string& name, hid_t type, std::span<const T> values, const std::string& unit,
-                   Storage storage, Packer* packer = nullptr) {
-  const Silence silence;
+                   Storage storage) {
+  const bool packed = storage == Storage::packed && !values.empty();
+  constexpr std::size_t longest = std::size_t{1} << 18U;  // of a chunk: one for most fields
+  const auto chunk = packed ? std::optional<hsize_t>(std::min(values.size(), longest)) : std::nullopt;
   {
-    const Handle set = make_dataset(parent, name, type, values.size(), storage);
-    if (packer != nullptr && !values.empty() && deflates())
-      write_chunks(set.id(), name, std::as_bytes(values), *packer);
-    else
-      checked(H5Dwrite(set.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), name, "be written");
+    const Handle set = make_dataset(parent, name, type, values.size(), chunk, packed);
+    checked(H5Dwrite(set.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), name, "be written");
   }
   set_attribute(parent, name, "unit", unit);
 }
 
 void put_attribute(Id parent, const std::string& name, const std::string& attribute, hid_t type, const void* value) {
-  const Silence silence;
   const std::string what = name + "@" + attribute;
-  const htri_t there = H5Aexists_by_name(parent, name.c_str(), attribute.c_str(), H5P_DEFAULT);
+  if (H5Aexists_by_name(parent, name.c_str(), attribute.c_str(), H5P_DEFAULT) > 0)
+    checked(H5Adelete_by_name(parent, name.c_str(), attribute.c_str(), H5P_DEFAULT), what, "be replaced");
   const Handle space(checked(H5Screate(H5S_SCALAR), what, "be made"), H5Sclose);
-  const Handle made(
-      checked(there > 0 ? H5Aopen_by_name(parent, name.c_str(), attribute.c_str(), H5P_DEFAULT, H5P_DEFAULT)
-                        : H5Acreate_by_name(parent, name.c_str(), attribute.c_str(), type, space.id(), H5P_DEFAULT,
-                                            H5P_DEFAULT, H5P_DEFAULT),
-              what, "be made"),
-      H5Aclose);
+  const Handle made(checked(H5Acreate_by_name(parent, name.c_str(), attribute.c_str(), type, space.id(), H5P_DEFAULT,
+                                              H5P_DEFAULT, H5P_DEFAULT),
+                            what, "be made"),
+                    H5Aclose);
   checked(H5Awrite(made.id(), type, value), what, "be written");
 }
 
-Handle open_attribute(Id parent, const std::string& name, const std::string& attribute) {
-  return {checked(H5Aopen_by_name(parent, name.c_str(), attribute.c_str(), H5P_DEFAULT, H5P_DEFAULT),
-                  name + "@" + attribute, "be opened"),
-          H5Aclose};
+void get_attribute(Id parent, const std::string& name, const std::string& attribute, hid_t type, void* value) {
+  const std::string what = name + "@" + attribute;
+  const Handle from(
+      checked(H5Aopen_by_name(parent, name.c_str(), attribute.c_str(), H5P_DEFAULT, H5P_DEFAULT), what, "be opened"),
+      H5Aclose);
+  checked(H5Aread(from.id(), type, value), what, "be read");
 }
 
 }  // namespace
 
-void make_file(const std::filesystem::path& file) {
-  // An image in memory, so that what the disc refuses is said by the system and not by the library.
-  const Silence silence;
+Handle open_file(const std::filesystem::path& file) {
   const Handle access = file_access();
-  checked(H5Pset_fapl_core(access.id(), std::size_t{1} << 16, false), file.string(), "be made in memory");
-  std::string image;
-  {
-    const Handle made(
-        checked(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), file.string(), "be made"), H5Fclose);
-    checked(H5Fflush(made.id(), H5F_SCOPE_GLOBAL), file.string(), "be made");
-    image.resize(static_cast<std::size_t>(checked(H5Fget_file_image(made.id(), nullptr, 0), file.string(), "be made")));
-    checked(H5Fget_file_image(made.id(), image.data(), image.size()), file.string(), "be made");
-  }
-  atomic_write(file, image);
+  return {checked(H5Fopen(file.c_str(), H5F_ACC_RDONLY, access.id()), file.string(), "be opened"), H5Fclose};
 }
 
-Handle open_file(const std::filesystem::path& file, bool writable) {
-  const Silence silence;
+void write_file(const std::filesystem::path& file, bool anew, std::size_t room, const Change& change) {
+  // The library has the file in memory alone, so that what the disc refuses is said by the system.
   const Handle access = file_access();
-  return {
-      checked(H5Fopen(file.c_str(), writable ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access.id()), file.string(), "be opened"),
-      H5Fclose};
+  checked(H5Pset_fapl_core(access.id(), room, false), file.string(), "be made in memory");
+  // Most fields are of one chunk: a tree of 64, as is the default, takes 2 kB of each.
+  const Handle tree(checked(H5Pcreate(H5P_FILE_CREATE), "HDF5", "set up a file"), H5Pclose);
+  H5Pset_istore_k(tree.id(), 1);
+  const Handle made(checked(anew ? H5Fcreate(file.c_str(), H5F_ACC_TRUNC, tree.id(), access.id())
+                                 : H5Fopen(file.c_str(), H5F_ACC_RDWR, access.id()),
+                            file.string(), "be opened"),
+                    H5Fclose);
+  change(made.id());
+  checked(H5Fflush(made.id(), H5F_SCOPE_GLOBAL), file.string(), "be made");
+  const auto size = static_cast<std::size_t>(
+      checked(H5Fget_file_image(made.id(), nullptr, 0), file.string(), "be made"));  // what is used of it
+  void* bytes = nullptr;
+  checked(H5Fget_vfd_handle(made.id(), H5P_DEFAULT, &bytes), file.string(), "be made");
+  atomic_write(file, {*static_cast<const char**>(bytes), size}, Sync::no);
+}
+
+void change_in_place(const std::filesystem::path& file, const Change& change) {
+  const Handle access = file_access();
+  // What the library knows of the file: 2 MB of it and more, ten times as large in memory, if it may.
+  H5AC_cache_config_t known{};
+  known.version = H5AC__CURR_CACHE_CONFIG_VERSION;
+  checked(H5Pget_mdc_config(access.id(), &known), file.string(), "be set up");
+  known.set_initial_size = true;
+  known.initial_size = known.min_size = known.max_size = std::size_t{1} << 15U;
+  checked(H5Pset_mdc_config(access.id(), &known), file.string(), "be set up");
+  const Handle opened(checked(H5Fopen(file.c_str(), H5F_ACC_RDWR, access.id()), file.string(), "be opened"), H5Fclose);
+  change(opened.id());
+  checked(H5Fflush(opened.id(), H5F_SCOPE_GLOBAL), file.string(), "be written");
 }
 
 Handle group(Id parent, const std::string& name) {
-  const Silence silence;
-  if (exists(parent, name)) {
-    return {checked(H5Gopen2(parent, name.c_str(), H5P_DEFAULT), name, "be opened"), H5Gclose};
-  }
+  if (exists(parent, name)) return {checked(H5Gopen2(parent, name.c_str(), H5P_DEFAULT), name, "be opened"), H5Gclose};
   const Handle links(checked(H5Pcreate(H5P_LINK_CREATE), name, "be set up"), H5Pclose);
   H5Pset_create_intermediate_group(links.id(), 1);
   return {checked(H5Gcreate2(parent, name.c_str(), links.id(), H5P_DEFAULT, H5P_DEFAULT), name, "be made"), H5Gclose};
 }
 
 bool exists(Id parent, const std::string& path) {
-  const Silence silence;
   for (std::size_t end = path.find('/'); end != std::string::npos; end = path.find('/', end + 1)) {
     if (end > 0 && H5Lexists(parent, path.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
   }
@@ -208,7 +163,6 @@ bool exists(Id parent, const std::string& path) {
 }
 
 std::vector<std::string> names(Id parent) {
-  const Silence silence;
   std::vector<std::string> list;
   const auto visit = [](hid_t, const char* name, const H5L_info_t*, void* out) -> herr_t {
     static_cast<std::vector<std::string>*>(out)->emplace_back(name);
@@ -218,40 +172,35 @@ std::vector<std::string> names(Id parent) {
   return list;
 }
 
-void remove(Id parent, const std::string& name) {
-  const Silence silence;
-  checked(H5Ldelete(parent, name.c_str(), H5P_DEFAULT), name, "be removed");
+void link_to_file(Id parent, const std::string& name, const std::string& file, const std::string& path) {
+  checked(H5Lcreate_external(file.c_str(), path.c_str(), parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT), name,
+          "be linked");
+}
+
+void copy(Id from, const std::string& path, Id parent, const std::string& name) {
+  if (exists(parent, name)) checked(H5Ldelete(parent, name.c_str(), H5P_DEFAULT), name, "be replaced");
+  checked(H5Ocopy(from, path.c_str(), parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT), name, "be copied");
 }
 
 void write(Id parent, const std::string& name, std::span<const double> values, const std::string& unit) {
-  write_dataset(parent, name, H5T_NATIVE_DOUBLE, values, unit, Storage::contiguous);
+  write_dataset(parent, name, H5T_NATIVE_DOUBLE, values, unit, Storage::plain);
 }
 
-void write(Id parent, const std::string& name, std::span<const std::int32_t> values, const std::string& unit) {
-  write_dataset(parent, name, H5T_NATIVE_INT32, values, unit, Storage::contiguous);
+void write(Id parent, const std::string& name, std::span<const float> values, const std::string& unit,
+           Storage storage) {
+  write_dataset(parent, name, H5T_NATIVE_FLOAT, values, unit, storage);
 }
 
-void write_compressed(Id parent, const std::string& name, std::span<const float> values, const std::string& unit,
-                      Packer& packer) {
-  write_dataset(parent, name, H5T_NATIVE_FLOAT, values, unit, Storage::compressed, &packer);
-}
-
-void write_compressed(Id parent, const std::string& name, std::span<const std::int32_t> values, const std::string& unit,
-                      Packer& packer) {
-  write_dataset(parent, name, H5T_NATIVE_INT32, values, unit, Storage::compressed, &packer);
-}
-
-void link(Id parent, const std::string& name, const std::string& path) {
-  const Silence silence;
-  checked(H5Lcreate_hard(parent, path.c_str(), parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT), name, "be linked");
+void write(Id parent, const std::string& name, std::span<const std::int32_t> values, const std::string& unit,
+           Storage storage) {
+  write_dataset(parent, name, H5T_NATIVE_INT32, values, unit, storage);
 }
 
 void rewrite(Id parent, const std::string& name, std::span<const double> values, const std::string& unit) {
   if (!exists(parent, name)) {
-    write_dataset(parent, name, H5T_NATIVE_DOUBLE, values, unit, Storage::extendible);
-    return;
+    const Handle made = make_dataset(parent, name, H5T_NATIVE_DOUBLE, 0, 512, false);
+    set_attribute(parent, name, "unit", unit);
   }
-  const Silence silence;
   const Handle set = open_dataset(parent, name);
   const hsize_t n = values.size();
   checked(H5Dset_extent(set.id(), &n), name, "be resized");
@@ -259,14 +208,12 @@ void rewrite(Id parent, const std::string& name, std::span<const double> values,
 }
 
 std::size_t length(Id parent, const std::string& name) {
-  const Silence silence;
   const Handle set = open_dataset(parent, name);
   const Handle space(checked(H5Dget_space(set.id()), name, "be measured"), H5Sclose);
   return static_cast<std::size_t>(checked(H5Sget_simple_extent_npoints(space.id()), name, "be measured"));
 }
 
 std::vector<double> read(Id parent, const std::string& name) {
-  const Silence silence;
   std::vector<double> values(length(parent, name));
   const Handle set = open_dataset(parent, name);
   checked(H5Dread(set.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), name, "be read");
@@ -278,25 +225,19 @@ void set_attribute(Id parent, const std::string& name, const std::string& attrib
 }
 
 void set_attribute(Id parent, const std::string& name, const std::string& attribute, const std::string& value) {
-  const Handle type = text_type();
   const char* text = value.c_str();
-  put_attribute(parent, name, attribute, type.id(), &text);
+  put_attribute(parent, name, attribute, text_type().id(), &text);
 }
 
 double number_attribute(Id parent, const std::string& name, const std::string& attribute) {
-  const Silence silence;
-  const Handle from = open_attribute(parent, name, attribute);
   double value = 0.0;
-  checked(H5Aread(from.id(), H5T_NATIVE_DOUBLE, &value), name, "be read");
+  get_attribute(parent, name, attribute, H5T_NATIVE_DOUBLE, &value);
   return value;
 }
 
 std::string text_attribute(Id parent, const std::string& name, const std::string& attribute) {
-  const Silence silence;
-  const Handle from = open_attribute(parent, name, attribute);
-  const Handle type = text_type();
   char* text = nullptr;
-  checked(H5Aread(from.id(), type.id(), &text), name, "be read");
+  get_attribute(parent, name, attribute, text_type().id(), &text);
   std::string value = text;
   H5free_memory(text);
   return value;

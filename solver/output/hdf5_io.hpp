@@ -4,17 +4,16 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
-
-#include "output/packing.hpp"
 
 namespace strata::hdf5 {
 
 using Id = std::int64_t;  // the library's hid_t, without its header
 
-// Owns a file or a group.
+// Owns a file, a group or another object of the library.
 class Handle {
  public:
   using Close = int (*)(Id);
@@ -33,12 +32,18 @@ class Handle {
   Close close_;
 };
 
-/// Makes an empty `file` in place of what was there, in one piece. Throws OutputFailure where it cannot be written.
-void make_file(const std::filesystem::path& file);
+/// Opens `file` to be read. No lock is taken, so that a reader cannot stop a run.
+Handle open_file(const std::filesystem::path& file);
 
-/// Opens `file` to be read, or to be changed by tests; what a run writes goes through FileChange. No lock is taken, so
-/// that a reader cannot stop a run.
-Handle open_file(const std::filesystem::path& file, bool writable);
+using Change = std::function<void(Id root)>;
+
+/// Makes `file`, or changes it where it is not to be made `anew`, in memory (room: about what it takes, bytes) and
+/// writes it in one piece. Throws OutputFailure, with the file as it was, where it cannot be written.
+void write_file(const std::filesystem::path& file, bool anew, std::size_t room, const Change& change);
+
+/// Changes `file` where it lies, for files that are too large for memory: a process that is killed meanwhile leaves it
+/// torn. What is written must have its room on the disc already.
+void change_in_place(const std::filesystem::path& file, const Change& change);
 
 /// The group `name` below `parent`, made with the groups above it where it is missing.
 Handle group(Id parent, const std::string& name);
@@ -49,19 +54,20 @@ bool exists(Id parent, const std::string& path);
 /// Names of what is in a group, in alphabetical order.
 std::vector<std::string> names(Id parent);
 
-/// Takes the link `name` out of `parent`.
-void remove(Id parent, const std::string& name);
+/// Lets `name` below `parent` stand for what has the name `path` in `file`, named from the folder of this one.
+void link_to_file(Id parent, const std::string& name, const std::string& file, const std::string& path);
 
-/// Writes a new 1-D data set with its attribute `unit`; compressed ones are for large fields.
+/// Copies what is at `path` below `from` to `name` below `parent`, in place of what has that name.
+void copy(Id from, const std::string& path, Id parent, const std::string& name);
+
+// How numbers are stored: as they are, or shuffled and deflated by the library's filters.
+enum class Storage { plain, packed };
+
+/// Writes a new 1-D data set with its attribute `unit`.
 void write(Id parent, const std::string& name, std::span<const double> values, const std::string& unit);
-void write(Id parent, const std::string& name, std::span<const std::int32_t> values, const std::string& unit);
-void write_compressed(Id parent, const std::string& name, std::span<const float> values, const std::string& unit,
-                      Packer& packer);
-void write_compressed(Id parent, const std::string& name, std::span<const std::int32_t> values, const std::string& unit,
-                      Packer& packer);
-
-/// Gives the data set at `path`, from the root ("/..."), the further name `name` below `parent`.
-void link(Id parent, const std::string& name, const std::string& path);
+void write(Id parent, const std::string& name, std::span<const float> values, const std::string& unit, Storage storage);
+void write(Id parent, const std::string& name, std::span<const std::int32_t> values, const std::string& unit,
+           Storage storage = Storage::plain);
 
 /// Writes a 1-D data set that may have another length the next time, made where it is missing.
 void rewrite(Id parent, const std::string& name, std::span<const double> values, const std::string& unit);

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <system_error>
@@ -19,55 +20,76 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-constexpr HistoryColumn columns[] = {
-    {"time_s", "s", &HistoryRow::time_s},
-    {"inlet_Pa", "Pa", &HistoryRow::inlet_Pa},
-    {"tip_x_m", "m", &HistoryRow::tip_x_m},
-    {"tip_y_m", "m", &HistoryRow::tip_y_m},
-    {"height_m", "m", &HistoryRow::height_m},
-    {"J_N_m", "N/m", &HistoryRow::J_N_m},
-    {"K_I_Pa_sqrt_m", "Pa m^0.5", &HistoryRow::K_I_Pa_sqrt_m},
-    {"K_II_Pa_sqrt_m", "Pa m^0.5", &HistoryRow::K_II_Pa_sqrt_m},
-    {"mouth_opening_m", "m", &HistoryRow::mouth_opening_m},
-    {"fracture_volume_m2", "m^2", &HistoryRow::fracture_volume_m2},
-    {"kinetic_J", "J/m", &HistoryRow::kinetic_J},
-    {"strain_J", "J/m", &HistoryRow::strain_J},
-    {"interface_strain_J", "J/m", &HistoryRow::interface_strain_J},
-    {"fluid_work_J", "J/m", &HistoryRow::fluid_work_J},
-    {"in_situ_work_J", "J/m", &HistoryRow::in_situ_work_J},
-    {"edge_work_J", "J/m", &HistoryRow::edge_work_J},
-    {"damping_J", "J/m", &HistoryRow::damping_J},
-    {"transfer_J", "J/m", &HistoryRow::transfer_J},
-    {"integration_J", "J/m", &HistoryRow::integration_J},
-    {"friction_J", "J/m", &HistoryRow::friction_J},
-    {"failure_J", "J/m", &HistoryRow::failure_J},
-    {"fracture_J", "J/m", &HistoryRow::fracture_J},
-    {"excess_J", "J/m", &HistoryRow::excess_J},
-    {"energy_closure", "1", &HistoryRow::energy_closure},
-    {"J_spread", "1", &HistoryRow::J_spread},
-    {"kink_deg", "deg", &HistoryRow::kink_deg},
-    {"at_interface", "1", &HistoryRow::at_interface},
-    {"ring_m", "m", &HistoryRow::ring_m},
-    {"G_N_m", "N/m", &HistoryRow::G_N_m},
-    {"G_by_J_N_m", "N/m", &HistoryRow::G_by_J_N_m},
-    {"fluid_volume_balance", "1", &HistoryRow::fluid_volume_balance},
-    {"body_work_J", "J/m", &HistoryRow::body_work_J},
-    {"initial_kinetic_J", "J/m", &HistoryRow::initial_kinetic_J},
-    {"near", "1", &HistoryRow::near},
+// What a row is made of.
+struct Told {
+  const State& state;
+  const Tip* tip;  // the leading one, or none
+  Vec2 x;          // where it is
+  TipNumbers numbers;
+
+  template <class Value>
+  double of_tip(Value value) const {
+    return tip != nullptr ? static_cast<double>(value(*tip)) : nan;
+  }
 };
-static_assert(sizeof(HistoryRow) == std::size(columns) * sizeof(double), "every member of HistoryRow is a column");
+
+struct Column {
+  HistoryColumn shown;
+  std::function<double(const Told&)> value;
+};
+
+// Those that the first versions had come first, so that files of all can be laid side by side.
+std::vector<Column> make_columns() {
+  std::vector<Column> all{
+      {{"time_s", "s"}, [](const Told& t) { return t.state.time; }},
+      {{"inlet_Pa", "Pa"}, [](const Told& t) { return t.state.has_fracture ? t.state.fluid.inlet_Pa : 0.0; }},
+      {{"tip_x_m", "m"}, [](const Told& t) { return t.x.x(); }},
+      {{"tip_y_m", "m"}, [](const Told& t) { return t.x.y(); }},
+      {{"height_m", "m"}, [](const Told& t) { return t.x.y(); }},  // above y = 0, the symmetry line
+      {{"J_N_m", "N/m"}, [](const Told& t) { return t.numbers.J_N_m; }},
+      {{"K_I_Pa_sqrt_m", "Pa m^0.5"}, [](const Told& t) { return t.numbers.K_I_Pa_sqrt_m; }},
+      {{"K_II_Pa_sqrt_m", "Pa m^0.5"}, [](const Told& t) { return t.numbers.K_II_Pa_sqrt_m; }},
+      {{"mouth_opening_m", "m"}, [](const Told& t) { return mouth_opening(t.state); }},
+      {{"fracture_volume_m2", "m^2"}, [](const Told& t) { return fracture_volume(t.state); }},
+  };
+  const auto add_energies = [&](bool first) {
+    for (const auto& energy : ledger_energies) {
+      if (first == (energy.value == &Ledger::body_work || energy.value == &Ledger::initial_kinetic)) continue;
+      all.push_back({{energy.name + std::string("_J"), "J/m"},
+                     [value = energy.value](const Told& t) { return t.state.ledger.*value; }});
+    }
+  };
+  add_energies(true);
+  for (const Column& column : std::initializer_list<Column>{
+           {{"energy_closure", "1"}, [](const Told& t) { return t.state.ledger.closure(); }},
+           {{"J_spread", "1"}, [](const Told& t) { return t.numbers.J_spread; }},
+           {{"kink_deg", "deg"}, [](const Told& t) { return t.numbers.kink_deg; }},
+           {{"at_interface", "1"}, [](const Told& t) { return t.of_tip(at_interface); }},
+           {{"ring_m", "m"}, [](const Told& t) { return t.of_tip([](const Tip& tip) { return tip.ring_m; }); }},
+           {{"G_N_m", "N/m"}, [](const Told& t) { return t.of_tip([](const Tip& tip) { return tip.G; }); }},
+           {{"G_by_J_N_m", "N/m"}, [](const Told& t) { return t.of_tip([](const Tip& tip) { return tip.G_by_J; }); }},
+           {{"fluid_volume_balance", "1"}, [](const Told& t) { return t.state.monitors.volume_balance; }}})
+    all.push_back(column);
+  add_energies(false);
+  all.push_back({{"near", "1"}, [](const Told& t) { return t.of_tip([](const Tip& tip) { return tip.near; }); }});
+  return all;
+}
+
+const std::vector<Column>& columns() {
+  static const std::vector<Column> all = make_columns();
+  return all;
+}
 
 std::string header() {
   std::string line;
-  for (const HistoryColumn& column : columns) line += fmt::format("{}{}", line.empty() ? "" : ",", column.name);
+  for (const HistoryColumn& column : history_columns()) line += (line.empty() ? "" : ",") + column.name;
   return line + '\n';
 }
 
 std::string text_of(const HistoryRow& row) {
   fmt::memory_buffer line;
-  for (const HistoryColumn& column : columns) {
+  for (const double value : row) {
     if (line.size() > 0) line.push_back(',');
-    const double value = row.*column.value;
     fmt::format_to(std::back_inserter(line), "{}", std::isnan(value) ? nan : value);  // nan has no sign in the file
   }
   line.push_back('\n');
@@ -78,9 +100,10 @@ std::string text_of(const HistoryRow& row) {
 bool parse_row(std::string_view line, HistoryRow& row) {
   const char* at = line.data();
   const char* const end = at + line.size();
-  for (const HistoryColumn& column : columns) {
-    const auto [rest, error] = std::from_chars(at, end, row.*column.value);
-    const bool last = &column == std::end(columns) - 1;
+  row.resize(columns().size());
+  for (double& value : row) {
+    const auto [rest, error] = std::from_chars(at, end, value);
+    const bool last = &value == &row.back();
     if (error != std::errc{} || (last ? rest != end : rest == end || *rest != ',')) return false;
     at = rest + (last ? 0 : 1);
   }
@@ -116,7 +139,12 @@ std::string first_bytes(const std::filesystem::path& file, std::uint64_t bytes) 
 }  // namespace
 
 std::span<const HistoryColumn> history_columns() {
-  return columns;
+  static const std::vector<HistoryColumn> shown = [] {
+    std::vector<HistoryColumn> list;
+    for (const Column& column : columns()) list.push_back(column.shown);
+    return list;
+  }();
+  return shown;
 }
 
 const Tip* leading_tip(const State& state) {
@@ -147,46 +175,12 @@ double fracture_volume(const State& state) {
 }
 
 HistoryRow history_row(const Scene& scene, const State& state) {
-  HistoryRow row;
-  row.time_s = state.time;
-  row.inlet_Pa = state.has_fracture ? state.fluid.inlet_Pa : 0.0;
-  row.mouth_opening_m = mouth_opening(state);
-  row.fracture_volume_m2 = fracture_volume(state);
   const Tip* tip = leading_tip(state);
   if (state.has_fracture && tip == nullptr) throw std::logic_error("history_row: the fracture has no tip");
-  const Vec2 x = tip ? tip_position(state, *tip) : Vec2{nan, nan};
-  row.tip_x_m = x.x();
-  row.tip_y_m = x.y();
-  row.height_m = x.y();
-  const TipNumbers told = tip ? tip_numbers(scene, *tip) : TipNumbers{nan, nan, nan, nan, nan, ""};
-  row.J_N_m = told.J_N_m;
-  row.K_I_Pa_sqrt_m = told.K_I_Pa_sqrt_m;
-  row.K_II_Pa_sqrt_m = told.K_II_Pa_sqrt_m;
-  row.J_spread = told.J_spread;
-  row.kink_deg = told.kink_deg;
-  row.at_interface = tip ? (at_interface(*tip) ? 1.0 : 0.0) : nan;
-  row.near = tip ? static_cast<double>(tip->near) : nan;
-  row.ring_m = tip ? tip->ring_m : nan;
-  row.G_N_m = tip ? tip->G : nan;
-  row.G_by_J_N_m = tip ? tip->G_by_J : nan;
-  row.fluid_volume_balance = state.monitors.volume_balance;
-  const Ledger& ledger = state.ledger;
-  row.kinetic_J = ledger.kinetic;
-  row.strain_J = ledger.strain;
-  row.interface_strain_J = ledger.interface_strain;
-  row.fluid_work_J = ledger.fluid_work;
-  row.in_situ_work_J = ledger.in_situ_work;
-  row.edge_work_J = ledger.edge_work;
-  row.body_work_J = ledger.body_work;
-  row.initial_kinetic_J = ledger.initial_kinetic;
-  row.damping_J = ledger.damping;
-  row.transfer_J = ledger.transfer;
-  row.integration_J = ledger.integration;
-  row.friction_J = ledger.friction;
-  row.failure_J = ledger.failure;
-  row.fracture_J = ledger.fracture;
-  row.excess_J = ledger.excess;
-  row.energy_closure = ledger.closure();
+  const Told told{state, tip, tip ? tip_position(state, *tip) : Vec2{nan, nan},
+                  tip ? tip_numbers(scene, *tip) : TipNumbers{nan, nan, nan, nan, nan, ""}};
+  HistoryRow row;
+  for (const Column& column : columns()) row.push_back(column.value(told));
   return row;
 }
 

@@ -12,44 +12,19 @@
 
 namespace strata {
 
-// A row. The tip is the leading one, with the largest y; its numbers are nan where they are none (tip_numbers.hpp), and
-// so is what belongs to a tip where there is no fracture (opening, volume and inlet pressure are 0 then). Energies are
-// per metre of thickness, as in Ledger.
-struct HistoryRow {
-  double time_s = 0.0;
-  double inlet_Pa = 0.0;
-  double tip_x_m = 0.0, tip_y_m = 0.0;
-  double height_m = 0.0;  // of the leading tip above y = 0, the symmetry line
-  double J_N_m = 0.0;
-  double K_I_Pa_sqrt_m = 0.0, K_II_Pa_sqrt_m = 0.0;
-  double mouth_opening_m = 0.0;
-  double fracture_volume_m2 = 0.0;
-  double kinetic_J = 0.0, strain_J = 0.0, interface_strain_J = 0.0;
-  double fluid_work_J = 0.0, in_situ_work_J = 0.0, edge_work_J = 0.0;
-  double damping_J = 0.0, transfer_J = 0.0, integration_J = 0.0, friction_J = 0.0, failure_J = 0.0, fracture_J = 0.0,
-         excess_J = 0.0;
-  double energy_closure = 0.0;
-  double J_spread = 0.0;
-  double kink_deg = 0.0;
-  double at_interface = 0.0;  // 1 where an interface or another rock is too near to trust J and K, 0 elsewhere
-  double ring_m = 0.0;
-  double G_N_m = 0.0;                 // energy released by the tip's last increment, by its length
-  double G_by_J_N_m = 0.0;            // the same from J along the increment; 0 where the tip all but closes on it
-  double fluid_volume_balance = 0.0;  // fluid missing over what was injected (law = "reynolds")
-  double body_work_J = 0.0;           // of the body force
-  double initial_kinetic_J = 0.0;     // of the velocities that particles start with
-  double near = 0.0;                  // what is too near to trust J and K: number of the Obstacle, 0 where nothing
-};
-
-// A column: its name, which is that of the member, and its unit.
+// A column's name, which ends in its unit, and the unit apart.
 struct HistoryColumn {
-  const char* name;
+  std::string name;
   const char* unit;
-  double HistoryRow::*value;
 };
 
-/// The columns in the order of history.csv; throws nothing.
+/// The columns in the order of history.csv; throws nothing but std::bad_alloc.
 std::span<const HistoryColumn> history_columns();
+
+// A row: a value of each column. The tip is the leading one, with the largest y; its numbers are nan where they are
+// none (tip_numbers.hpp), and so is what belongs to a tip where there is no fracture (opening, volume and inlet
+// pressure are 0 then). Energies are per metre of thickness, as in Ledger.
+using HistoryRow = std::vector<double>;
 
 /// The row that describes a state. Throws std::logic_error where a fracture has no tip.
 HistoryRow history_row(const Scene& scene, const State& state);

@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <functional>
 #include <limits>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-#include "output/file_change.hpp"
 #include "output/hdf5_io.hpp"
 #include "output/run_folder.hpp"
 #include "output/summary.hpp"
@@ -19,6 +18,9 @@
 namespace strata {
 
 namespace {
+
+constexpr const char* kinds[] = {"particles", "fracture", "interfaces"};
+constexpr std::size_t index_room = std::size_t{1} << 16U;  // bytes that are taken at a time
 
 std::string number_of(std::size_t output) {
   return fmt::format("{:05}", output);
@@ -97,42 +99,31 @@ std::vector<std::size_t> by_id(const Particles& particles) {
   return order;
 }
 
-bool same_bytes(std::span<const std::byte> a, std::span<const std::byte> b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size()) == 0);
+// Deflate shortens places, areas, labels and fields of one value much. The low bytes of others are noise, over which
+// its search takes as long as small runs do and of which it leaves three quarters.
+template <class Values>
+void write_field(hdf5::Id group, const std::string& name, const Values& values, const std::string& unit) {
+  const bool packed = name == "id" || name == "rock" || name == "volume_m2" || name == "x_m" || name == "y_m" ||
+                      std::ranges::adjacent_find(values, std::not_equal_to{}) == values.end();
+  hdf5::write(group, name, values, unit, packed ? hdf5::Storage::packed : hdf5::Storage::plain);
 }
 
-// Fields that seldom change, so that it pays to keep them for the next output time.
-bool is_steady(const Scene& scene, const std::string& field) {
-  const bool at_rest = scene.numerics.mechanics == Numerics::Mechanics::quasistatic;
-  return field == "id" || field == "rock" || field == "volume_m2" || (at_rest && field.starts_with("v_"));
-}
-
-// Writes the particles' fields into `group` and returns the steady ones; those that are as in `last`, of the group at
-// the path `before`, are linked to.
-ParticleFields write_particles(hdf5::Id group, const Scene& scene, const State& state, const ParticleFields& last,
-                               const std::string& before, Packer& packer) {
+void write_particles(hdf5::Id group, const Scene& scene, const State& state) {
   const Particles& particles = state.particles;
   const std::vector<Elasticity> rocks = make_elasticities(scene);
   const std::vector<std::size_t> order = by_id(particles);
-
-  ParticleFields written;
-  const auto write = [&](const std::string& name, const char* unit, const auto& values) {
-    const auto bytes = std::as_bytes(std::span(values));
-    const auto old = last.find(name);
-    if (old != last.end() && same_bytes(old->second, bytes)) {
-      hdf5::link(group, name, before + "/" + name);
-    } else {
-      hdf5::write_compressed(group, name, values, unit, packer);
-    }
-    if (is_steady(scene, name)) written.emplace(name, std::vector<std::byte>(bytes.begin(), bytes.end()));
-  };
   std::vector<float> field(order.size());
   const auto put = [&](const char* name, const char* unit, auto value) {
     std::transform(order.begin(), order.end(), field.begin(), [&](auto p) { return static_cast<float>(value(p)); });
-    write(name, unit, field);
+    write_field(group, name, field, unit);
   };
   const auto put_array = [&](const char* name, const char* unit, const SpreadArray& values) {
     put(name, unit, [&](std::size_t p) { return values[p]; });
+  };
+  std::vector<std::int32_t> label(order.size());
+  const auto put_label = [&](const char* name, const auto& values) {
+    std::transform(order.begin(), order.end(), label.begin(), [&](auto p) { return values[p]; });
+    write_field(group, name, label, "1");
   };
   const double moved = scene.numerics.keeps_places() ? 1.0 : 0.0;  // positions are where the rock now is
   put("x_m", "m", [&](std::size_t p) { return particles.x[p] + moved * particles.u_x[p]; });
@@ -145,14 +136,19 @@ ParticleFields write_particles(hdf5::Id group, const Scene& scene, const State& 
   put("s_xx_Pa", "Pa", [&](std::size_t p) { return total_stress(rocks, particles, p).xx; });
   put("s_yy_Pa", "Pa", [&](std::size_t p) { return total_stress(rocks, particles, p).yy; });
   put("s_xy_Pa", "Pa", [&](std::size_t p) { return total_stress(rocks, particles, p).xy; });
-
-  std::vector<std::int32_t> label(order.size());
-  std::transform(order.begin(), order.end(), label.begin(), [&](auto p) { return particles.id[p]; });
-  write("id", "1", label);
-  std::transform(order.begin(), order.end(), label.begin(), [&](auto p) { return particles.rock[p]; });
-  write("rock", "1", label);
+  put_label("id", particles.id);
+  put_label("rock", particles.rock);
   hdf5::set_attribute(group, ".", "time_s", state.time);
-  return written;
+}
+
+void write_fields(hdf5::Id root, const Scene& scene, const State& state) {
+  write_particles(hdf5::group(root, "particles").id(), scene, state);
+  if (state.has_fracture) write_fracture(hdf5::group(root, "fracture").id(), scene, state);
+  for (const Surface& surface : state.surfaces) {
+    if (surface.kind != Surface::Kind::interface) continue;
+    const std::string name = fmt::format("interfaces/{}", interface_of(scene, surface));
+    write_interface(hdf5::group(root, name).id(), scene, surface);
+  }
 }
 
 template <class Outputs>
@@ -162,12 +158,27 @@ std::vector<double> times_of(const Outputs& outputs) {
   return times;
 }
 
-// Opens the file, lets `change` write to it and closes it; it changes as a whole or not at all.
-template <class Change>
-void change_file(const std::filesystem::path& path, Change change) {
-  hdf5::FileChange file(path);
-  change(file.id());
-  file.commit();
+// What the library refuses where a file is written is a failure of the output.
+template <class Work>
+void require_written(Work work) {
+  try {
+    work();
+  } catch (const OutputFailure&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    throw OutputFailure(error.what());
+  }
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directory(folder, error);
+  if (error) throw OutputFailure(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+}
+
+void set_made_with(hdf5::Id root, const MadeWith& made) {
+  hdf5::set_attribute(root, ".", "scene", made.scene);
+  hdf5::set_attribute(root, ".", "version", made.version);
 }
 
 std::string grid_of(const std::string& name, const std::string& topology, std::size_t n, const std::string& group,
@@ -211,8 +222,7 @@ Stress total_stress(const std::vector<Elasticity>& rocks, const Particles& parti
 
 MadeWith made_with(const std::filesystem::path& file) {
   try {
-    hdf5::finish_change(file);
-    const hdf5::Handle result = hdf5::open_file(file, false);
+    const hdf5::Handle result = hdf5::open_file(file);
     return {hdf5::text_attribute(result.id(), ".", "scene"), hdf5::text_attribute(result.id(), ".", "version")};
   } catch (const std::runtime_error&) {
     return {};
@@ -220,76 +230,114 @@ MadeWith made_with(const std::filesystem::path& file) {
 }
 
 ResultFile::ResultFile(const std::filesystem::path& file) : file_(file) {
-  hdf5::make_file(file);
-  change_file(file, [&](hdf5::Id root) {
-    hdf5::rewrite(root, "times", {}, "s");
-    for (const char* name : {"history", "particles", "fracture", "interfaces"}) hdf5::group(root, name);
-  });
+  hdf5::write_file(file, true, index_room, [&](hdf5::Id root) { start_index(root); });
   write_xdmf();
+  make_folder(fields_of(file));
 }
 
-ResultFile::ResultFile(const std::filesystem::path& file, std::size_t outputs) : file_(file) {
-  hdf5::finish_change(file);
+ResultFile::ResultFile(const std::filesystem::path& file, std::size_t outputs) : file_(file), synced_(outputs) {
+  const MadeWith made = made_with(file);
   {
-    const hdf5::Handle result = hdf5::open_file(file, false);
+    const hdf5::Handle result = hdf5::open_file(file);
     const std::vector<double> times = hdf5::read(result.id(), "times");
     if (times.size() < outputs) {
       throw std::runtime_error(
           fmt::format("{}: holds {} output times where {} were expected", file.string(), times.size(), outputs));
     }
+    make_folder(fields_of(file));
     for (std::size_t k = 0; k < outputs; ++k) {
-      const std::string line = "fracture/" + number_of(k) + "/x_m";
-      outputs_.push_back({times[k], hdf5::length(result.id(), "particles/" + number_of(k) + "/x_m"),
-                          hdf5::exists(result.id(), line) ? hdf5::length(result.id(), line) : 0});
+      const auto path = [&](std::size_t kind) { return std::string(kinds[kind]) + '/' + number_of(k); };
+      const auto there = [&](std::size_t kind) { return hdf5::exists(result.id(), path(kind)); };
+      const auto count = [&](std::size_t kind) { return hdf5::length(result.id(), path(kind) + "/x_m"); };
+      if (!std::filesystem::exists(fields_at(k))) {  // they were gathered already
+        hdf5::write_file(fields_at(k), true, index_room, [&](hdf5::Id root) {
+          for (std::size_t kind = 0; kind < std::size(kinds); ++kind) {
+            if (there(kind)) hdf5::copy(result.id(), path(kind), root, kinds[kind]);
+          }
+        });
+        synced_ = std::min(synced_, k);
+      }
+      outputs_.push_back({times[k], count(0), there(1) ? count(1) : 0, there(2)});
     }
   }
-  change_file(file, [&](hdf5::Id root) {
-    for (const char* kind : {"particles", "fracture", "interfaces"}) {
-      const hdf5::Handle group = hdf5::group(root, kind);
-      for (const std::string& name : hdf5::names(group.id())) {
-        if (std::stoul(name) >= outputs) hdf5::remove(group.id(), name);
-      }
-    }
-    hdf5::rewrite(root, "times", times_of(outputs_), "s");
+  hdf5::write_file(file, true, index_room, [&](hdf5::Id root) {
+    start_index(root);
+    for (std::size_t k = 0; k < outputs; ++k) link_fields(root, k, outputs_[k]);
+    if (outputs > 0) set_made_with(root, made);
   });
   write_xdmf();
 }
 
 void ResultFile::write_output(const Scene& scene, const State& state) {
-  const std::string number = number_of(outputs_.size());
-  std::vector<OutputSize> outputs = outputs_;
-  outputs.push_back(
-      {state.time, state.particles.size(), state.has_fracture ? state.fracture().vertices.size() : std::size_t{0}});
-  ParticleFields fields;
-  change_file(file_, [&](hdf5::Id root) {
-    if (outputs_.empty()) {
-      hdf5::set_attribute(root, ".", "scene", scene.resolved_toml);
-      hdf5::set_attribute(root, ".", "version", version());
-    }
-    const std::string before = outputs_.empty() ? "" : "/particles/" + number_of(outputs_.size() - 1);
-    fields = write_particles(hdf5::group(root, "particles/" + number).id(), scene, state, last_, before, packer_);
-    if (state.has_fracture) write_fracture(hdf5::group(root, "fracture/" + number).id(), scene, state);
-    for (const Surface& surface : state.surfaces) {
-      if (surface.kind != Surface::Kind::interface) continue;
-      const std::string name = fmt::format("interfaces/{}/{}", number, interface_of(scene, surface));
-      write_interface(hdf5::group(root, name).id(), scene, surface);
-    }
-    hdf5::rewrite(root, "times", times_of(outputs), "s");
+  const std::size_t k = outputs_.size(), particles = state.particles.size();
+  constexpr std::size_t of_particle = 12 * sizeof(float);
+  const bool interfaces =
+      std::ranges::any_of(state.surfaces, [](const Surface& s) { return s.kind == Surface::Kind::interface; });
+  std::vector<Output> outputs = outputs_;
+  outputs.push_back({state.time, particles, state.has_fracture ? state.fracture().vertices.size() : 0, interfaces});
+  require_written([&] {
+    hdf5::write_file(fields_at(k), true, index_room + of_particle * particles,
+                     [&](hdf5::Id root) { write_fields(root, scene, state); });
+    hdf5::write_file(file_, false, index_room, [&](hdf5::Id root) {
+      if (k == 0) set_made_with(root, {scene.resolved_toml, version()});
+      link_fields(root, k, outputs[k]);
+      hdf5::rewrite(root, "times", times_of(outputs), "s");
+    });
   });
   outputs_ = std::move(outputs);
-  last_ = std::move(fields);
   write_xdmf();
 }
 
-void ResultFile::write_history(const std::vector<HistoryRow>& rows) {
-  change_file(file_, [&](hdf5::Id root) {
-    const hdf5::Handle group = hdf5::group(root, "history");
-    std::vector<double> values(rows.size());
-    for (const HistoryColumn& column : history_columns()) {
-      std::transform(rows.begin(), rows.end(), values.begin(), [&](const auto& row) { return row.*column.value; });
-      hdf5::rewrite(group.id(), column.name, values, column.unit);
+void ResultFile::sync() {
+  for (; synced_ < outputs_.size(); ++synced_) sync_file(fields_at(synced_));
+  sync_file(file_);
+}
+
+void ResultFile::finish(const std::vector<HistoryRow>& rows) {
+  const std::span<const HistoryColumn> columns = history_columns();
+  const auto gather = [&](hdf5::Id root) {
+    for (std::size_t k = 0; k < outputs_.size(); ++k) {
+      const hdf5::Handle fields = hdf5::open_file(fields_at(k));
+      for (const std::string& kind : hdf5::names(fields.id()))
+        hdf5::copy(fields.id(), kind, hdf5::group(root, kind).id(), number_of(k));
     }
+    const hdf5::Handle history = hdf5::group(root, "history");
+    std::vector<double> values(rows.size());
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      std::ranges::transform(rows, values.begin(), [&](const HistoryRow& row) { return row[c]; });
+      hdf5::rewrite(history.id(), columns[c].name, values, columns[c].unit);
+    }
+  };
+  require_written([&] {
+    std::uintmax_t size = std::filesystem::file_size(file_);
+    for (std::size_t k = 0; k < outputs_.size(); ++k) size += std::filesystem::file_size(fields_at(k));
+    size += columns.size() * sizeof(double) * (rows.size() + 1024);
+    write_beside(file_, Sync::yes, [&](const std::filesystem::path& beside) {
+      write_with_room(beside, read_whole(file_), size);
+      hdf5::change_in_place(beside, gather);
+    });
   });
+  std::error_code left;  // it harms nobody
+  std::filesystem::remove_all(fields_of(file_), left);
+}
+
+std::filesystem::path ResultFile::fields_at(std::size_t output) const {
+  return fields_of(file_) / (number_of(output) + ".h5");
+}
+
+void ResultFile::start_index(hdf5::Id root) const {
+  hdf5::rewrite(root, "times", times_of(outputs_), "s");
+  hdf5::group(root, "history");
+  for (const char* kind : kinds) hdf5::group(root, kind);
+}
+
+void ResultFile::link_fields(hdf5::Id root, std::size_t number, const Output& output) const {
+  const std::string file = fields_of(file_.filename()) / (number_of(number) + ".h5");
+  const bool there[] = {true, output.vertices > 0, output.interfaces};
+  for (std::size_t k = 0; k < std::size(kinds); ++k) {
+    if (!there[k]) continue;
+    hdf5::link_to_file(hdf5::group(root, kinds[k]).id(), number_of(number), file, std::string("/") + kinds[k]);
+  }
 }
 
 void ResultFile::write_xdmf() const {
@@ -298,7 +346,7 @@ void ResultFile::write_xdmf() const {
       "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n"
       "    <Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
   for (std::size_t k = 0; k < outputs_.size(); ++k) {
-    const OutputSize& output = outputs_[k];
+    const Output& output = outputs_[k];
     text += fmt::format(
         "      <Grid Name=\"{}\" GridType=\"Collection\" CollectionType=\"Spatial\">\n        <Time Value=\"{}\"/>\n",
         number_of(k), output.time_s);

@@ -12,18 +12,16 @@
 //
 // Every data set has an attribute `unit`. The number of particles may differ from one output time to the next. The
 // normal points from the - to the + side, which is on the left of the path; the tangent runs along the path. Fields of
-// particles are stored in single precision, all else in double; id, rock, volume and, without inertia, velocity
-// that have not changed since the output time before are the same data sets under further names.
+// particles are stored in single precision, all else in double.
 #pragma once
 
 #include <cstddef>
 #include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
+#include "output/hdf5_io.hpp"
 #include "output/history.hpp"
-#include "output/packing.hpp"
 #include "scene/scene.hpp"
 #include "state/elasticity.hpp"
 #include "state/state.hpp"
@@ -43,11 +41,10 @@ struct MadeWith {
 /// What result.h5 says of the run that it is of; throws nothing but std::bad_alloc.
 MadeWith made_with(const std::filesystem::path& file);
 
-// The bytes of fields of particles that seldom change, by their names.
-using ParticleFields = std::map<std::string, std::vector<std::byte>>;
-
-// The file is open only while something is written, so that others may read it during the run; each writing changes it
-// as a whole or not at all, also where the process is killed meanwhile (file_change.hpp).
+// While a run goes on the fields of each output time are a file of their own, result.h5.fields/00000.h5, that is
+// written once, and result.h5 refers to them by external links, which readers follow unasked: it is small and replaced
+// in one piece. So an output costs the same whatever was written before, and whenever the process is killed all can be
+// read. In the end all is copied into result.h5, the place of the one that referred to it.
 class ResultFile {
  public:
   /// Starts `file` in place of what was there. Throws OutputFailure if it cannot be written.
@@ -61,25 +58,32 @@ class ResultFile {
   /// cannot be written.
   void write_output(const Scene& scene, const State& state);
 
-  /// Puts the rows (all of them, from the start) under /history. Throws OutputFailure where it cannot be written.
-  void write_history(const std::vector<HistoryRow>& rows);
+  /// Waits until what was written is on the disc; throws OutputFailure where it cannot be.
+  void sync();
+
+  /// Gathers all fields in the file, with the rows (all of them, from the start) under /history: the last that is done
+  /// to it. Throws OutputFailure, with all as it was, where the disc has no room.
+  void finish(const std::vector<HistoryRow>& rows);
 
   /// Number of output times in the file.
   std::size_t outputs() const { return outputs_.size(); }
   double last_time_s() const { return outputs_.empty() ? -1.0 : outputs_.back().time_s; }  // -1: none yet
 
  private:
-  // What the .xdmf needs to know about an output time.
-  struct OutputSize {
+  // What the file and the .xdmf say of an output time.
+  struct Output {
     double time_s = 0.0;
     std::size_t particles = 0;
     std::size_t vertices = 0;  // of the fracture; 0 without one
+    bool interfaces = false;
   };
+  std::filesystem::path fields_at(std::size_t output) const;
+  void start_index(hdf5::Id root) const;
+  void link_fields(hdf5::Id root, std::size_t number, const Output& output) const;
   void write_xdmf() const;
   std::filesystem::path file_;
-  std::vector<OutputSize> outputs_;
-  ParticleFields last_;  // of the last output time, where it was written here
-  Packer packer_;
+  std::vector<Output> outputs_;
+  std::size_t synced_ = 0;  // output times that are on the disc for certain
 };
 
 }  // namespace strata

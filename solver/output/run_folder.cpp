@@ -37,18 +37,6 @@ class Descriptor {
   int descriptor_;
 };
 
-void write_new(const std::filesystem::path& file, std::string_view text, Sync sync) {
-  const Descriptor out(file, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC);
-  if (out.get() < 0) fail(file, "be written", errno);
-  while (!text.empty()) {
-    const ssize_t written = ::write(out.get(), text.data(), text.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(file, "be written", errno);
-    text.remove_prefix(static_cast<std::size_t>(written));
-  }
-  if (sync == Sync::yes && ::fsync(out.get()) != 0) fail(file, "be synced", errno);
-}
-
 std::filesystem::path with_ending(std::filesystem::path file, const char* ending) {
   return file += ending;
 }
@@ -60,7 +48,7 @@ std::array<std::filesystem::path, 6> files_of(const RunFolder& folder) {
 
 void remove_file(const std::filesystem::path& file) {
   std::error_code error;
-  std::filesystem::remove(file, error);
+  std::filesystem::remove_all(file, error);
   if (error) throw OutputFailure(fmt::format("{}: cannot be replaced: {}", file.string(), error.message()));
 }
 
@@ -100,17 +88,19 @@ RunFolder clear_run_folder(const std::filesystem::path& path, bool replace) {
     }
   }
   for (const auto& file : files_of(folder)) {
-    for (const char* ending : {".tmp", ".change", ".change.tmp"}) remove_file(with_ending(file, ending));
+    remove_file(with_ending(file, ".tmp"));
     if (file != folder.scene()) remove_file(file);
   }
+  remove_file(fields_of(folder.result()));
   return folder;
 }
 
-void atomic_write(const std::filesystem::path& file, std::string_view text, Sync sync) {
-  std::filesystem::path beside = file;
-  beside += ".tmp";
+void write_beside(const std::filesystem::path& file, Sync sync,
+                  const std::function<void(const std::filesystem::path& beside)>& write) {
+  const std::filesystem::path beside = with_ending(file, ".tmp");
   try {
-    write_new(beside, text, sync);
+    write(beside);
+    if (sync == Sync::yes) sync_file(beside);
     if (std::rename(beside.c_str(), file.c_str()) != 0) fail(file, "be replaced", errno);
   } catch (...) {
     std::remove(beside.c_str());
@@ -121,6 +111,22 @@ void atomic_write(const std::filesystem::path& file, std::string_view text, Sync
   const auto parent = file.parent_path();
   const Descriptor folder(parent.empty() ? std::filesystem::path(".") : parent, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder.get() >= 0) ::fsync(folder.get());
+}
+
+void atomic_write(const std::filesystem::path& file, std::string_view text, Sync sync) {
+  write_beside(file, sync, [text](const std::filesystem::path& beside) { write_with_room(beside, text, 0); });
+}
+
+void write_with_room(const std::filesystem::path& file, std::string_view text, std::uint64_t bytes) {
+  const Descriptor out(file, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC);
+  if (out.get() < 0) fail(file, "be written", errno);
+  while (!text.empty()) {
+    const ssize_t written = ::write(out.get(), text.data(), text.size());
+    if (written < 0 && errno != EINTR) fail(file, "be written", errno);
+    if (written > 0) text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  const int full = bytes > 0 ? ::posix_fallocate(out.get(), 0, static_cast<off_t>(bytes)) : 0;
+  if (full != 0) fail(file, "be written", full);
 }
 
 void append_at(const std::filesystem::path& file, std::uint64_t bytes, std::string_view text) {

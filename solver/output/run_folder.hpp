@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -13,6 +14,11 @@ namespace strata {
 struct OutputFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+
+/// The folder beside a result file that holds its fields until the run has ended. Throws nothing but std::bad_alloc.
+inline std::filesystem::path fields_of(std::filesystem::path result) {
+  return result += ".fields";
+}
 
 struct RunFolder {
   std::filesystem::path path;
@@ -55,9 +61,19 @@ RunFolder clear_run_folder(const std::filesystem::path& path, bool replace);
 // process in any case.
 enum class Sync { no, yes };
 
-/// Writes `text` to `file` so that at any time either the old or the new content is there: to a file beside it, then
-/// renamed. Throws OutputFailure, naming the file and the system's reason.
+/// Lets `write` write a file beside `file`, which is then renamed to it, so that at any time either the old or the new
+/// content is there; where that throws, the one beside is removed. Throws OutputFailure, naming the file and the
+/// system's reason.
+void write_beside(const std::filesystem::path& file, Sync sync,
+                  const std::function<void(const std::filesystem::path& beside)>& write);
+
+/// Writes `text` to `file` so that at any time either the old or the new content is there, by
+/// write_beside(); throws as that.
 void atomic_write(const std::filesystem::path& file, std::string_view text, Sync sync = Sync::yes);
+
+/// Writes `text` to a new `file` and takes so many bytes of the disc for it, so that what is written within them later
+/// is not refused. Throws OutputFailure where the disc has no such room.
+void write_with_room(const std::filesystem::path& file, std::string_view text, std::uint64_t bytes);
 
 /// Adds `text` by one call of the system to the end of `file`, which must be its `bytes` long. Throws OutputFailure,
 /// with the file as it was, where the disc refuses it, or where the file is gone or has another length.

@@ -17,26 +17,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json energy_json(const Ledger& ledger) {
-  return {{"kinetic_J", ledger.kinetic},
-          {"strain_J", ledger.strain},
-          {"interface_strain_J", ledger.interface_strain},
-          {"fluid_work_J", ledger.fluid_work},
-          {"in_situ_work_J", ledger.in_situ_work},
-          {"edge_work_J", ledger.edge_work},
-          {"body_work_J", ledger.body_work},
-          {"initial_kinetic_J", ledger.initial_kinetic},
-          {"damping_J", ledger.damping},
-          {"transfer_J", ledger.transfer},
-          {"integration_J", ledger.integration},
-          {"friction_J", ledger.friction},
-          {"failure_J", ledger.failure},
-          {"fracture_J", ledger.fracture},
-          {"excess_J", ledger.excess},
-          {"stored_J", ledger.stored()},
-          {"supplied_J", ledger.supplied()},
-          {"dissipated_J", ledger.dissipated()},
-          {"largest_J", ledger.largest},
-          {"closure", ledger.closure()}};
+  Json json;
+  for (const auto& [name, value] : ledger_energies) json[name + std::string("_J")] = ledger.*value;
+  json.update({{"stored_J", ledger.stored()},
+               {"supplied_J", ledger.supplied()},
+               {"dissipated_J", ledger.dissipated()},
+               {"largest_J", ledger.largest},
+               {"closure", ledger.closure()}});
+  return json;
 }
 
 Json tips_json(const Scene& scene, const State& state) {

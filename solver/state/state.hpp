@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -107,6 +108,32 @@ struct Ledger {
     note_largest(largest, kinetic);
   }
 };
+
+// An energy of the ledger by its name.
+struct LedgerEnergy {
+  const char* name;
+  double Ledger::*value;
+};
+
+// All of them, those that are stored first, then what was supplied and what was dissipated.
+inline constexpr LedgerEnergy ledger_energies[] = {
+    {"kinetic", &Ledger::kinetic},
+    {"strain", &Ledger::strain},
+    {"interface_strain", &Ledger::interface_strain},
+    {"fluid_work", &Ledger::fluid_work},
+    {"in_situ_work", &Ledger::in_situ_work},
+    {"edge_work", &Ledger::edge_work},
+    {"body_work", &Ledger::body_work},
+    {"initial_kinetic", &Ledger::initial_kinetic},
+    {"damping", &Ledger::damping},
+    {"transfer", &Ledger::transfer},
+    {"integration", &Ledger::integration},
+    {"friction", &Ledger::friction},
+    {"failure", &Ledger::failure},
+    {"fracture", &Ledger::fracture},
+    {"excess", &Ledger::excess},
+};
+static_assert(sizeof(Ledger) == (std::size(ledger_energies) + 1) * sizeof(double), "all but the scale are listed");
 
 // What a checkpoint writes.
 struct SavedState {

@@ -1,13 +1,17 @@
 // A made-up scene and state for the tests of the output: every number is different and none is round.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "output/checkpoint.hpp"
+#include "output/history.hpp"
 #include "scene/scene.hpp"
 #include "state/state.hpp"
 #include "temporary_folder.hpp"
@@ -17,6 +21,15 @@ namespace strata::test {
 inline std::string content_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+// The value of a row under a column's name.
+template <class Row>
+auto& of(Row&& row, std::string_view name) {
+  const auto columns = history_columns();
+  const auto at = std::ranges::find(columns, name, &HistoryColumn::name);
+  if (at == columns.end()) throw std::logic_error("no such column");
+  return row.at(static_cast<std::size_t>(at - columns.begin()));
 }
 
 // Numbers that need all their digits, a different one each time.

@@ -11,7 +11,6 @@
 
 #include <fstream>
 
-#include "output/file_change.hpp"
 #include "output/hdf5_io.hpp"
 #include "output/recorder.hpp"
 #include "output_state.hpp"
@@ -49,7 +48,7 @@ State state_at(int k) {
 
 // Times in the file; all that belongs to them is read.
 std::vector<double> whole_times(const std::filesystem::path& path) {
-  const auto file = hdf5::open_file(path, false);
+  const auto file = hdf5::open_file(path);
   std::vector<double> times = hdf5::read(file.id(), "times");
   for (const char* kind : {"particles", "fracture", "interfaces"}) {
     REQUIRE(hdf5::names(hdf5::group(file.id(), kind).id()).size() == times.size());
@@ -90,52 +89,48 @@ TEST_CASE("a disc that is full at any byte leaves the result file as it was, and
     ++failed;
     REQUIRE(result.outputs() == 1);
     REQUIRE(content_of(path) == before);
-    REQUIRE_FALSE(std::filesystem::exists(folder.path / "result.h5.change"));
+    REQUIRE_FALSE(std::filesystem::exists(folder.path / "result.h5.tmp"));
+    REQUIRE_FALSE(std::filesystem::exists(folder.path / "result.h5.fields" / "00001.h5.tmp"));
   }
   CHECK(failed > 20);
   CHECK(whole_times(path) == std::vector<double>{0.0, 0.1});
   CHECK(result.outputs() == 2);
 }
 
-TEST_CASE("a change that is not committed leaves the file as it was, to the byte") {
+// Requires that a disc that is full when the fields are gathered leaves the file that refers to them, byte for byte,
+// and that what is gathered says the same without them.
+TEST_CASE("fields are gathered in one file as a whole or not at all") {
   const TemporaryFolder folder;
   const auto path = folder.path / "result.h5";
-  ResultFile(path).write_output(made_scene(), state_at(0));
+  ResultFile result(path);
+  for (int k = 0; k < 3; ++k) result.write_output(made_scene(), state_at(k));
   const std::string before = content_of(path);
-  {
-    hdf5::FileChange change(path);
-    hdf5::remove(change.id(), "particles");
-    hdf5::write(change.id(), "much", std::vector<double>(5000, 1.0 / 3.0), "1");
-    CHECK_FALSE(hdf5::exists(change.id(), "particles"));
-    CHECK(hdf5::read(change.id(), "much") == std::vector<double>(5000, 1.0 / 3.0));
+  for (const std::uint64_t bytes : {std::uint64_t{100}, std::uint64_t{before.size() + 1000}, std::uint64_t{60000}}) {
+    const Limit limit(bytes);
+    CHECK_THROWS_WITH(result.finish({}), Catch::Contains("result.h5.tmp: cannot be written: File too large"));
+    CHECK(content_of(path) == before);
+    CHECK_FALSE(std::filesystem::exists(folder.path / "result.h5.tmp"));
   }
-  CHECK(content_of(path) == before);
+  CHECK(whole_times(path) == std::vector<double>{0.0, 0.1, 0.2});
+  result.finish({});
+  CHECK_FALSE(std::filesystem::exists(fields_of(path)));
+  CHECK(whole_times(path) == std::vector<double>{0.0, 0.1, 0.2});
 }
 
-TEST_CASE("a change that was cut short while its pages were put in place is finished from its note") {
+TEST_CASE("fields that are gone, or a result file that is, end the run with the reason") {
   const TemporaryFolder folder;
-  const auto path = folder.path / "result.h5", note = folder.path / "result.h5.change";
+  const auto path = folder.path / "result.h5";
   ResultFile result(path);
   result.write_output(made_scene(), state_at(0));
-  const std::string before = content_of(path);
-  // The note is written to a file beside it, renamed and removed: another name of that file keeps what it says.
-  std::ofstream(folder.path / "kept") << "";
-  std::filesystem::create_hard_link(folder.path / "kept", folder.path / "result.h5.change.tmp");
-  result.write_output(made_scene(), state_at(1));
-  const std::string after = content_of(path), said = content_of(folder.path / "kept");
-  REQUIRE(said.size() > 4096);
-  REQUIRE_FALSE(std::filesystem::exists(note));
-  // Killed in the middle: what is new at the end is there, of the pages before it only the first.
-  std::ofstream(path, std::ios::binary) << after.substr(0, 1000) + before.substr(1000) + after.substr(before.size());
-  std::ofstream(note, std::ios::binary) << said;
-  CHECK(ResultFile(path, 2).outputs() == 2);
-  CHECK_FALSE(std::filesystem::exists(note));
-  CHECK(whole_times(path) == std::vector<double>{0.0, 0.1});
-  // Killed while the note was written, it says nothing, and the file was not touched.
-  std::ofstream(path, std::ios::binary) << before;
-  std::ofstream(note, std::ios::binary) << said.substr(0, said.size() / 2);
-  CHECK(ResultFile(path, 1).outputs() == 1);
-  CHECK_FALSE(std::filesystem::exists(note));
+  std::filesystem::rename(fields_of(path), folder.path / "elsewhere");
+  CHECK_THROWS_AS(result.finish({}), OutputFailure);
+  CHECK_THROWS_WITH(result.write_output(made_scene(), state_at(1)), Catch::Contains("No such file or directory"));
+  CHECK_THROWS_AS(ResultFile(path, 1), std::runtime_error);  // the run starts anew
+  std::filesystem::rename(folder.path / "elsewhere", fields_of(path));
+  std::filesystem::remove(path);
+  CHECK_THROWS_AS(result.write_output(made_scene(), state_at(1)), OutputFailure);
+  CHECK_THROWS_AS(result.finish({}), OutputFailure);
+  CHECK(result.outputs() == 1);
 }
 
 TEST_CASE("a result file and a history can be read whenever the writing process was killed") {
@@ -153,7 +148,6 @@ TEST_CASE("a result file and a history can be read whenever the writing process 
     ::usleep(std::uniform_int_distribution<unsigned>(0, 20000)(random));
     ::kill(child, SIGKILL);
     ::waitpid(child, nullptr, 0);
-    hdf5::finish_change(files.result());  // it matters where the process lost its processor between two pages
     const std::vector<double> times = whole_times(files.result());
     for (std::size_t k = 0; k < times.size(); ++k) REQUIRE(times[k] == 0.1 * static_cast<int>(k));
     // The kernel ends a write between two pages where the process is killed: a row may be cut short, as a checkpoint's
@@ -172,20 +166,21 @@ TEST_CASE("a row that the disc refuses is not half there; a history that is gone
   const TemporaryFolder folder;
   const auto file = folder.path / "history.csv";
   HistoryWriter writer(file);
-  writer.append(HistoryRow{});
+  const HistoryRow row(history_columns().size());
+  writer.append(row);
   const std::string before = content_of(file);
   for (const std::uint64_t more : std::initializer_list<std::uint64_t>{0, 1, 20, 40}) {
     const Limit limit(before.size() + more);
-    CHECK_THROWS_WITH(writer.append(HistoryRow{}), Catch::Contains("history.csv: cannot be written"));
+    CHECK_THROWS_WITH(writer.append(row), Catch::Contains("history.csv: cannot be written"));
     CHECK(content_of(file) == before);
   }
   CHECK(writer.rows().size() == 1);
-  writer.append(HistoryRow{});
+  writer.append(row);
   CHECK(read_history(file).size() == 2);
   std::ofstream(file, std::ios::app) << "x";
-  CHECK_THROWS_WITH(writer.append(HistoryRow{}), Catch::Contains("another program has changed it"));
+  CHECK_THROWS_WITH(writer.append(row), Catch::Contains("another program has changed it"));
   std::filesystem::remove(file);
-  CHECK_THROWS_WITH(writer.append(HistoryRow{}), Catch::Contains("No such file or directory"));
+  CHECK_THROWS_WITH(writer.append(row), Catch::Contains("No such file or directory"));
   CHECK_FALSE(std::filesystem::exists(file));
 }
 
@@ -222,7 +217,7 @@ TEST_CASE("a folder that holds a run is refused unless it is to be replaced, whi
     CHECK(std::filesystem::exists(file) == (file == folder.scene()));  // the new one takes its place in one piece
     std::filesystem::remove(file);
   }
-  for (const char* left : {"result.h5.change", "summary.json.tmp", "result.h5.change.tmp"}) {
+  for (const char* left : {"summary.json.tmp", "result.h5.tmp", "result.h5.fields"}) {
     atomic_write(path / left, "text");
     clear_run_folder(path, false);
     CHECK_FALSE(std::filesystem::exists(path / left));

@@ -116,14 +116,14 @@ TEST_CASE("numbers of a tip that are none are null, with the reason") {
     for (const char* key : keys) CHECK(told().at(key).is_null());
     CHECK(told().at("reason").get<std::string>().find(name) != std::string::npos);
     CHECK(told().at("at_interface") == (what == Obstacle::interface || what == Obstacle::rock_border));
-    CHECK(std::isnan(history_row(scene, state).J_N_m));
+    CHECK(std::isnan(of(history_row(scene, state), "J_N_m")));
   }
   tip.closed = true, tip.J = tip.K_I = tip.K_II = 0.0;  // whatever the rings cross
   CHECK(told().at("K_I_Pa_sqrt_m") == 0.0);
   CHECK(told().at("J_N_m") == 0.0);
   CHECK(told().at("kink_deg").is_null());
   CHECK(told().at("reason").get<std::string>().find("closed") != std::string::npos);
-  CHECK(std::isnan(history_row(scene, state).kink_deg));
+  CHECK(std::isnan(of(history_row(scene, state), "kink_deg")));
   tip.closed = tip.crossed = false, tip.K_I = 1e6;
   for (const double J : {20.0, -20.0}) {
     for (const bool inertia : {false, true}) {

@@ -141,7 +141,7 @@ TEST_CASE("positions are written where the rock is") {
   Run run(crack(Kinematics::total, 200.0));
   run.advance(200);
   ResultFile(folder.path / "result.h5").write_output(run.scene, run.state);
-  const auto file = hdf5::open_file(folder.path / "result.h5", false);
+  const auto file = hdf5::open_file(folder.path / "result.h5");
   const auto x = hdf5::read(file.id(), "particles/00000/x_m"), u = hdf5::read(file.id(), "particles/00000/u_x_m");
   const std::vector<Vec2> before = places(run.state);
   double most = 0.0;

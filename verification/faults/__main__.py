@@ -30,8 +30,8 @@ def as_record(tallies: list[Tally], seed: int, every_s: float) -> dict[str, obje
 
 def table(tallies: list[Tally]) -> str:
     """The campaign as text."""
-    header = ("scene", "kills", "checkpoint", "start", "no folder", "ended", "notes", "runs", "identical")
-    numbers = [(t.kills, t.from_checkpoint, t.from_start, t.before_folder, t.after_end, t.changes_finished, t.trials, t.identical) for t in tallies]
+    header = ("scene", "kills", "checkpoint", "start", "no folder", "ended", "runs", "identical")
+    numbers = [(t.kills, t.from_checkpoint, t.from_start, t.before_folder, t.after_end, t.trials, t.identical) for t in tallies]
     lines = aligned([header, *((t.name, *map(str, row)) for t, row in zip(tallies, numbers))], range(1, len(header)))
     return "\n".join([*lines, *(f"  {problem}" for t in tallies for problem in t.problems)])
 

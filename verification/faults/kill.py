@@ -29,7 +29,6 @@ class Tally:
     from_start: int = 0            # there being no checkpoint yet,
     before_folder: int = 0         # or, before the folder said of which scene it is, run again
     after_end: int = 0             # killed with the summary written
-    changes_finished: int = 0      # a change of result.h5 was cut short and finished by the resumed run
     identical: int = 0
     problems: list[str] = field(default_factory=list)
 
@@ -60,8 +59,6 @@ def run_until(arguments: list[str], limit_s: float | None) -> tuple[int, str]:
 def note_kill(tally: Tally, folder: Path) -> None:
     """Count a kill and where the next process will begin, and look whether anything is torn."""
     tally.kills += 1
-    cut_short = (folder / "result.h5.change").exists()
-    tally.changes_finished += cut_short
     if (folder / "summary.json").exists():
         tally.after_end += 1
     elif (folder / "checkpoint.bin").exists():
@@ -70,8 +67,7 @@ def note_kill(tally: Tally, folder: Path) -> None:
         tally.from_start += 1
     else:
         tally.before_folder += 1
-    if not cut_short:
-        tally.problems += [f"after kill {tally.kills}: {line}" for line in torn(folder)]
+    tally.problems += [f"after kill {tally.kills}: {line}" for line in torn(folder)]
 
 
 def try_once(killed: Killed, alone: Path, work: Path, tally: Tally, every_s: float, rng: random.Random) -> None:

@@ -57,7 +57,7 @@ def strata(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 def content(folder: Path) -> dict[str, bytes]:
     """All files of a folder."""
-    return {file.name: file.read_bytes() for file in folder.iterdir()}
+    return {str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob("*") if file.is_file()}
 
 
 @pytest.fixture(scope="module")
