@@ -4,12 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "explicit/momentum.hpp"
 #include "fracture/growth.hpp"
 #include "interfaces/columns.hpp"
-#include "quasistatic/loaded_stress.hpp"
-#include "explicit/momentum.hpp"
 #include "interfaces/failure.hpp"
 #include "interfaces/tip_ties.hpp"
+#include "quasistatic/loaded_stress.hpp"
 #include "scene/path_geometry.hpp"
 #include "scene/points_across.hpp"
 #include "state/body_force.hpp"

@@ -3,12 +3,12 @@
 
 #include <catch2/catch.hpp>
 
-#include "quasistatic/load_steps.hpp"
+#include "explicit/transfers.hpp"
 #include "interfaces/failure.hpp"
 #include "interfaces/surface_tractions.hpp"
-#include "explicit/transfers.hpp"
 #include "output/checkpoint.hpp"
 #include "output_state.hpp"
+#include "quasistatic/load_steps.hpp"
 #include "state/rebuild.hpp"
 #include "statics.hpp"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "quasistatic/fluid_step.hpp"
 #include "flow/paper_flow.hpp"
+#include "quasistatic/fluid_step.hpp"
 #include "statics.hpp"
 
 using namespace strata;
