@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
-from reports.charts.ablation_chart import draw_ablation
-from reports.sections import Picture, Section, Table, put_figure
-from reports.words import experiment_name, listed, number, plain, share
+from reports.charts.parts import draw_ablation
+from reports.figures import Figure, Section, Table
+from reports.shown import Shown
+from reports.words import NONE, amount, base_words, experiment_name, listed, number, plain, share, small_unit
 from verification.ablation.effects import CHANGES, NEEDED, NOTHING, SPARED, WANTED, Tried, free, missing, needs, not_needed
 from verification.ablation.ingredients import LEFT_OUT, MODELLED, RESOLVED
 from verification.ablation.reasons import REASONS, Reasons, reason_for, reasons
@@ -28,41 +28,27 @@ _GROUPS = {MODELLED: "modelled", RESOLVED: "resolved", LEFT_OUT: "gone without"}
 _INTERFACES = {"interface_1": "an interface that acts", "interface_2": "a second one"}  # rows that scenes share, whatever the law
 
 
-@dataclass(frozen=True)
-class Cell:
-    """What leaving an ingredient out of a scene does: share (None where that cannot be said), verdict, time over the scene's own."""
-
-    share: float | None
-    verdict: str
-    time: float
-
-
-@dataclass(frozen=True)
-class AblationFigure:
-    """Rows of ingredients with their group, columns of scenes; a cell is None where the scene does not have the ingredient."""
-
-    title: str
-    columns: tuple[str, ...]
-    rows: tuple[tuple[str, str, tuple[Cell | None, ...]], ...]
-
-
-def section(runs: Path, out: Path) -> Section | None:
+def section(runs: Path) -> Section | None:
     """The part of the page from the records beside the folder of runs; None where there are none."""
     root = runs.parent
-    return section_of(read_all(root / RECORDS.relative_to(RECORDS.parents[2])), reasons(root / REASONS.relative_to(REASONS.parents[2])), out)
+    return section_of(read_all(root / RECORDS.relative_to(RECORDS.parents[2])), reasons(root / REASONS.relative_to(REASONS.parents[2])))
 
 
-def section_of(kept: Sequence[Kept], why: Reasons, out: Path) -> Section | None:
+def section_of(kept: Sequence[Kept], why: Reasons) -> Section | None:
     """The part of the page from tables and reasons."""
     if not kept:
         return None
-    figure = ablation_figure(kept)
-    pictures: list[Picture] = [put_figure(draw_ablation(figure), out, "ablation", figure.title, CAPTION)]
-    return Section(title="What each experiment needs", intro=f"{figure.title}. {METHOD}", figures=pictures, tables=[table_of(one, why) for one in kept])
+    data = ablation_figure(kept)
+    return Section(title="What each experiment needs", intro=f"{data.title}. {METHOD}", figures=[Figure("ablation", data, draw_ablation, CAPTION)],
+                   tables=[table_of(one, why) for one in kept])
 
 
-def ablation_figure(kept: Sequence[Kept]) -> AblationFigure:
-    """What is drawn: the tables in which more than the interfaces was left out."""
+def ablation_figure(kept: Sequence[Kept]) -> Shown:
+    """What is drawn: the tables in which more than the interfaces was left out.
+
+    Rows of ingredients with their group, columns of scenes. A cell, None where the scene does not have the ingredient: share (None where that
+    cannot be said), whether something else happens, time over the scene's own.
+    """
     whole = [one for one in kept if one.extent != "interfaces"] or list(kept)
     labels: dict[str, tuple[str, str]] = {}
     for group in _GROUPS:
@@ -71,21 +57,15 @@ def ablation_figure(kept: Sequence[Kept]) -> AblationFigure:
             for line in one.lines:
                 if line.group == group:
                     labels.setdefault(line.id, (_INTERFACES.get(line.id, line.label), _GROUPS[group]))
+    tried = [{line.id: line for line in reversed(one.lines) if line.applies} for one in whole]
     rows = []
     for name, (label, group) in labels.items():
-        cells = tuple(_cell(one, name) for one in whole)
-        if any(cell is not None for cell in cells):
+        cells = [Shown(share=own[name].largest, changes=own[name].verdict == CHANGES, time=own[name].cpu_s / one.cpu_s) if name in own else None
+                 for one, own in zip(whole, tried)]
+        if any(cells):
             rows.append((label, group, cells))
-    columns = tuple(f"{experiment_name(one.experiment).replace('Experiment', 'Exp.')}\n{plain(one.variant)}" for one in whole)
-    return AblationFigure(finding(whole), columns, tuple(rows))
-
-
-def _cell(one: Kept, name: str) -> Cell | None:
-    """The cell of a table's line, None where the ingredient does not apply."""
-    line = next((line for line in one.lines if line.id == name and line.applies), None)
-    if line is None:
-        return None
-    return Cell(line.largest, line.verdict, line.cpu_s / one.cpu_s)
+    columns = [f"{experiment_name(one.experiment).replace('Experiment', 'Exp.')}\n{plain(one.variant)}" for one in whole]
+    return Shown(title=finding(whole), columns=columns, rows=rows)
 
 
 def finding(kept: Sequence[Kept]) -> str:
@@ -104,21 +84,21 @@ def finding(kept: Sequence[Kept]) -> str:
 
 def table_of(one: Kept, why: Reasons) -> Table:
     """The table of a scene: what was left out, the effect on each number, the time, the verdict and why it is kept."""
-    header = ["left out", "instead", *(f"{label} ({'kPa' if unit == 'Pa' else unit})" for _, label, unit in one.quantities),
-              "largest", "time", "for 1 %"]  # fmt: skip
-    own = [_value(one.base.get(name), unit) for name, _, unit in one.quantities]
+    header = ["left out", "instead", *(f"{label} ({small_unit(unit)})" for _, label, unit in one.quantities),
+              "largest", "time", "for 1 %"]
+    own = [base_words(one.base.get(name), unit) for name, _, unit in one.quantities]
     rows, marked = [["nothing", "", *own, "", f"{number(one.cpu_s, 3)}\u00a0s", ""]], []
     for line in one.lines:
         if not line.applies:
-            rows.append([line.label, line.reason, *("–" for _ in one.quantities), "", "", ""])
+            rows.append([line.label, line.reason, *(NONE for _ in one.quantities), "", "", ""])
             continue
         added = line.group == LEFT_OUT
         cells = [_effect(line, name, unit) for name, _, unit in one.quantities]
         if line.verdict == NOTHING or (added and line.verdict in (NEEDED, CHANGES)):
             marked.append(len(rows))
-        largest = "–" if line.largest is None else share(line.largest)
+        largest = NONE if line.largest is None else share(line.largest)
         rows.append([f"(added) {line.label}" if added else line.label, "modelled" if added else line.done, *cells, largest,
-                     f"×\u00a0{number(line.cpu_s / one.cpu_s, 2)}", verdict_words(line, one, why)])  # fmt: skip
+                     f"×\u00a0{number(line.cpu_s / one.cpu_s, 2)}", verdict_words(line, one, why)])
     title = f"{experiment_name(one.experiment)}, {plain(one.variant)}"
     return Table(title=title, header=header, rows=rows, marked=marked, note=note_of(one))
 
@@ -147,18 +127,9 @@ def note_of(one: Kept) -> str:
     return " ".join([*told, f"Version {one.version}."])
 
 
-def _value(value: float | None, unit: str) -> str:
-    """A number of the scene's own run."""
-    if value is None:
-        return "–"
-    return f"{value / 1e6:.4f}\u00a0MPa" if unit == "Pa" else f"{value:.4g}\u00a0{unit}"
-
-
 def _effect(line: Tried, name: str, unit: str) -> str:
     """An effect with its share, or why there is none."""
     effect = line.effects.get(name)
     if effect is None or effect.value is None:
-        return effect.note if effect is not None and effect.note else "–"
-    size = f"{effect.value / 1e3:+.2f}" if unit == "Pa" else f"{effect.value:+.3f}"
-    part = f" ({share(line.shares[name])})" if name in line.shares else ""
-    return f"{size}{part}".replace("-", "−")
+        return effect.note if effect is not None and effect.note else NONE
+    return amount(effect.value, unit) + (f" ({share(line.shares[name])})".replace("-", "−") if name in line.shares else "")

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from reports.outcome import Arrest, Outcome, longest, outcome_of
+from reports.outcome import Arrest, Outcome, outcome_of
 from reports.runs import Run
+from reports.shown import Shown
 from reports.words import plain, share
 from verification.harness.observables import distances_to, path_length, resample
 from verification.harness.scenes import MECHANICS
@@ -16,8 +17,7 @@ from verification.harness.scenes import MECHANICS
 LEAST_STRAIN = 0.01  # of its largest: with less strain energy than that, no ratio to it is taken
 
 
-@dataclass(frozen=True)
-class Pair:
+class Pair(NamedTuple):
     """A number of a variant without and with inertia, in the same unit; None where a run has none."""
 
     quasistatic: float | None
@@ -29,27 +29,7 @@ class Pair:
         return None if self.quasistatic is None or self.explicit is None else self.explicit - self.quasistatic
 
 
-@dataclass(frozen=True)
-class Comparison:
-    """One variant in both mechanics: Pa, m, and the energies' ratio."""
-
-    experiment: str
-    number: int
-    variant: str
-    is_main: bool
-    start_Pa: Pair
-    arrest_Pa: Pair
-    arrest_m: Pair
-    restart_Pa: Pair
-    end_m: Pair
-    end_Pa: Pair
-    path_m: float | None
-    kinetic_ratio: Pair
-    G_over_J: float | None
-    unlike: tuple[str, ...]
-
-
-def comparisons(runs: Sequence[Run]) -> list[Comparison]:
+def comparisons(runs: Sequence[Run]) -> list[Shown]:
     """Every variant that can be drawn in both mechanics, in the order of the runs."""
     of = {(run.experiment, run.variant, run.mechanics): run for run in runs if run.drawable}
     names = dict.fromkeys((run.experiment, run.variant) for run in runs)
@@ -57,33 +37,19 @@ def comparisons(runs: Sequence[Run]) -> list[Comparison]:
     return [_comparison(static, moving, runs) for moving, static in pairs if moving is not None and static is not None]
 
 
-def _comparison(static: Run, moving: Run, runs: Sequence[Run]) -> Comparison:
-    """One variant without (static) and with inertia."""
+def _comparison(static: Run, moving: Run, runs: Sequence[Run]) -> Shown:
+    """One variant without (static) and with inertia: pairs of Pa, m, and the energies' ratio."""
     own = [run for run in runs if run.experiment == static.experiment]
     without, with_ = outcome_of(static, own), outcome_of(moving, own)
-    first, other = at_interface(without), at_interface(with_)
-    return Comparison(
-        experiment=static.experiment,
-        number=static.number,
-        variant=static.variant,
-        is_main=static.is_main,
-        start_Pa=Pair(without.start_Pa, with_.start_Pa),
-        arrest_Pa=Pair(*(one.from_Pa if one else None for one in (first, other))),
-        arrest_m=Pair(*(one.height_m if one else None for one in (first, other))),
-        restart_Pa=Pair(*(one.until_Pa if one else None for one in (first, other))),
-        end_m=Pair(without.final_height_m, with_.final_height_m),
-        end_Pa=Pair(without.final_inlet_Pa, with_.final_inlet_Pa),
-        path_m=path_distance(static, moving),
-        kinetic_ratio=Pair(kinetic_ratio(static), kinetic_ratio(moving)),
-        G_over_J=G_over_J(static),
-        unlike=_unlike(first, other, without, with_, static.cell_m),
+    stays = [arrest if (arrest := one.longest) is not None and arrest.tells else None for one in (without, with_)]
+    from_Pa, height_m, until_Pa = (Pair(*(getattr(arrest, key, None) for arrest in stays)) for key in ("from_Pa", "height_m", "until_Pa"))
+    return Shown(
+        experiment=static.experiment, number=static.number, variant=static.variant, is_main=static.is_main,
+        start_Pa=Pair(without.start_Pa, with_.start_Pa), arrest_Pa=from_Pa, arrest_m=height_m, restart_Pa=until_Pa,
+        end_m=Pair(without.final_height_m, with_.final_height_m), path_m=path_distance(static, moving),
+        kinetic_ratio=Pair(kinetic_ratio(static), kinetic_ratio(moving)), G_over_J=G_over_J(static),
+        unlike=_unlike(*stays, without, with_, static.cell_m),
     )
-
-
-def at_interface(outcome: Outcome) -> Arrest | None:
-    """The longest arrest at an interface or to the end; none where the run only pauses."""
-    arrest = longest(outcome)
-    return arrest if arrest is not None and (arrest.interface is not None or arrest.until_Pa is None) else None
 
 
 def _unlike(first: Arrest | None, other: Arrest | None, without: Outcome, with_: Outcome, cell_m: float) -> tuple[str, ...]:
@@ -131,7 +97,7 @@ def G_over_J(run: Run) -> float | None:
     return float(ratios[np.argmax(np.abs(ratios - 1.0))]) if known.any() else None
 
 
-def inertia_words(rows: Sequence[Comparison]) -> str:
+def inertia_words(rows: Sequence[Shown]) -> str:
     """One sentence on whether inertia mattered, by the study's own variants and all."""
     known = [row for row in rows if row.kinetic_ratio.explicit is not None]
     if not known:

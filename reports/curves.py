@@ -3,143 +3,37 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from reports.layout import Layout, layout_of
-from reports.outcome import Arrest, finding, flag_of, longest, outcome_of, outcomes_of
-from reports.runs import NotAvailable, Run, fracture_at, lead_of, mechanics_in, output_times
-from reports.words import listed, mechanics_name, metres, mpa, number, plain
+from reports.outcome import Arrest, finding, outcome_of, outcomes_of
+from reports.runs import NotAvailable, Run, fields_at, lead_of, mechanics_in, output_times
+from reports.shown import Shown
+from reports.words import listed, mechanics_name, metres, metres_signed, number, plain
 
 OPENING_INSTANTS = 7  # profiles a panel of Fig 7: as many as stay distinguishable in one colour scale
+MARKED: tuple[str, ...] = ("start", "reach_interface", "arrest", "restart", "stop")
+PANEL_ASPECT = 1.15  # height over width of a panel of Fig 8
+LOWEST_ASPECT = 0.75  # of a panel for a path that turns sideways: room for its legend and inset
 
 
-@dataclass(frozen=True)
-class Mark:
-    """An event on a height curve; MPa and m."""
-
-    kind: str
-    inlet_MPa: float
-    height_m: float
-    flag: str  # "J at interface" where the criterion is not to be trusted, else empty
-
-
-@dataclass(frozen=True)
-class HeightCurve:
-    """Fracture height in m against inlet pressure in MPa; beside: of the mechanics that is shown for comparison."""
-
-    variant: str
-    mechanics: str
-    beside: bool
-    label: str
-    inlet_MPa: np.ndarray
-    height_m: np.ndarray
-    marks: tuple[Mark, ...]
-    failed: bool
-
-
-@dataclass(frozen=True)
-class HeightFigure:
-    """One experiment: layout and heights; zoom is the range of heights (m) and pressures about the interfaces."""
-
-    title: str
-    layout: Layout
-    curves: tuple[HeightCurve, ...]
-    zoom_m: tuple[float, float]
-    pressure_MPa: tuple[float, float]
-    zoom_MPa: tuple[float, float]
-    flagged: bool
-
-
-@dataclass(frozen=True)
-class Profile:
-    """Opening in mm along the fracture's height in m at one time in s and inlet pressure in MPa."""
-
-    height_m: np.ndarray
-    opening_mm: np.ndarray
-    time_s: float
-    inlet_MPa: float
-    shade: float  # 0 first to 1 last
-
-
-@dataclass(frozen=True)
-class ProfilePanel:
-    """The opening profiles of one variant in one mechanics."""
-
-    variant: str
-    mechanics: str
-    heading: str
-    profiles: tuple[Profile, ...]
-    interfaces_m: tuple[float, ...]
-
-
-@dataclass(frozen=True)
-class ProfileFigure:
-    """Opening profiles of several variants on the same axes; mm and m."""
-
-    title: str
-    panels: tuple[ProfilePanel, ...]
-    opening_mm: float
-    height_m: float
-
-
-@dataclass(frozen=True)
-class Path:
-    """A fracture's final path in m with its largest turn in degrees; beside: of the mechanics shown for comparison."""
-
-    variant: str
-    beside: bool
-    label: str
-    x_m: np.ndarray
-    y_m: np.ndarray
-    kink_deg: float
-    kink_at_m: tuple[float, float]
-
-
-@dataclass(frozen=True)
-class PathPanel:
-    """The paths of one experiment with its layout; the window is (x0, x1, y0, y1) in m."""
-
-    name: str
-    heading: str
-    layout: Layout
-    paths: tuple[Path, ...]
-    window_m: tuple[float, float, float, float]
-    magnified: float  # horizontal over vertical scale
-    aspect: float  # height over width of the panel
-    lean: int  # +1 where the paths end to the right of their start, -1 to the left: the other corners are free
-    aside: str  # where the interface is when it is outside the window
-
-
-@dataclass(frozen=True)
-class PathFigure:
-    """Paths of several experiments side by side."""
-
-    title: str
-    panels: tuple[PathPanel, ...]
-
-
-def height_figure(runs: list[Run]) -> HeightFigure:
-    """Height against inlet pressure for the study's variants of one experiment."""
+def height_figure(runs: list[Run]) -> Shown:
+    """Height (m) against inlet pressure (MPa) for the study's variants of one experiment; zoom is the range of both about the interfaces."""
     drawn = [run for run in runs if run.is_main and run.drawable]
     if not drawn:
         raise NotAvailable("no run of this experiment has a history")
     layout, lead = layout_of(drawn[0]), lead_of(drawn)
-    curves = tuple(_height_curve(run, runs, run.mechanics != lead) for run in drawn)
-    starts = [curve.inlet_MPa[_first_growth(curve.height_m, layout.cell_m)] for curve in curves]
+    curves = [_height_curve(run, runs, run.mechanics != lead) for run in drawn]
     last = max(float(curve.inlet_MPa[-1]) for curve in curves)
-    first = min(min(float(start) for start in starts), last)
+    first = min(*(float(curve.inlet_MPa[_first_growth(curve.height_m, layout.cell_m)]) for curve in curves), last)
     foot = min(float(curve.height_m[0]) for curve in curves)
     top = max(layout.heights_m, default=foot) + 8.0 * layout.cell_m
-    return HeightFigure(
-        title=lead_words(drawn) + finding([outcome_of(run, runs) for run in drawn if run.mechanics == lead]),
-        layout=layout,
-        curves=curves,
-        zoom_m=(foot - layout.cell_m, top),
-        pressure_MPa=_span(first, last),
-        zoom_MPa=_span(first, max(float(curve.inlet_MPa[curve.height_m <= top].max()) for curve in curves)),
+    near = max(float(curve.inlet_MPa[curve.height_m <= top].max()) for curve in curves)
+    return Shown(
+        title=lead_words(drawn) + finding([outcome_of(run, runs) for run in drawn if run.mechanics == lead]), layout=layout, curves=curves,
+        zoom_m=(foot - layout.cell_m, top), pressure_MPa=_span(first, last), zoom_MPa=_span(first, near),
         flagged=any(mark.flag for curve in curves for mark in curve.marks),
     )
 
@@ -160,140 +54,96 @@ def _first_growth(height_m: np.ndarray, cell_m: float) -> int:
     return max(0, int(grown[0]) - 1) if grown.size else height_m.size - 1
 
 
-def _height_curve(run: Run, runs: Sequence[Run], beside: bool) -> HeightCurve:
-    """One run's curve with its marked events."""
+def _height_curve(run: Run, runs: Sequence[Run], beside: bool) -> Shown:
+    """One run's curve with its marked events; beside: of the mechanics that is shown for comparison."""
     arrests = outcome_of(run, runs).arrests
     keep = np.isfinite(run.history["inlet_Pa"]) & np.isfinite(run.history["height_m"])
-    marks = tuple(_mark(arrests, event) for event in run.events if event.get("kind") in MARKED)
-    label = plain(run.variant) + ("" if run.status == "completed" else f" ({run.status})")
-    return HeightCurve(
-        variant=run.variant,
-        mechanics=mechanics_name(run.mechanics),
-        beside=beside,
-        label=label,
-        inlet_MPa=run.history["inlet_Pa"][keep] / 1e6,
-        height_m=run.history["height_m"][keep],
-        marks=marks,
+    return Shown(
+        variant=run.variant, mechanics=mechanics_name(run.mechanics), beside=beside,
+        label=plain(run.variant) + ("" if run.status == "completed" else f" ({run.status})"), inlet_MPa=run.history["inlet_Pa"][keep] / 1e6,
+        height_m=run.history["height_m"][keep], marks=[_mark(arrests, event) for event in run.events if event.get("kind") in MARKED],
         failed=run.status == "failed",
     )
 
 
-MARKED: tuple[str, ...] = ("start", "reach_interface", "arrest", "restart", "stop")
-
-
-def _mark(arrests: tuple[Arrest, ...], event: dict[str, Any]) -> Mark:
+def _mark(arrests: tuple[Arrest, ...], event: dict[str, Any]) -> Shown:
     """An event as a mark; an arrest by J at an interface, unless energy confirms it, carries its flag."""
     y_m, kind, inlet = float(event["tip_y_m"]), str(event["kind"]), float(event["inlet_Pa"])
-    same = [arrest for arrest in arrests if (arrest.height_m, arrest.from_Pa) == (y_m, inlet)]
-    return Mark(kind, inlet / 1e6, y_m, flag_of(same[0]) if same and kind == "arrest" else "")
+    flags = [arrest.flag for arrest in arrests if (arrest.height_m, arrest.from_Pa) == (y_m, inlet) and kind == "arrest"]
+    return Shown(kind=kind, inlet_MPa=inlet / 1e6, height_m=y_m, flag=flags[0] if flags else "")
 
 
-def profile_figure(runs: list[Run], variants: tuple[str, ...] = ("perfect", "weak")) -> ProfileFigure:
-    """Opening profiles at several common times, variant against variant, in each mechanics."""
+def profile_figure(runs: list[Run], variants: tuple[str, ...] = ("perfect", "weak")) -> Shown:
+    """Opening profiles (mm against m) at several common times, variant against variant on the same axes, in each mechanics."""
     chosen = {(run.mechanics, run.variant): run for run in runs if run.variant in variants and run.drawable}
     if not chosen:
         raise NotAvailable(f"no run of {listed(list(variants))} has a history")
     times = {name: output_times(run) for name, run in chosen.items()}
-    rows = {name: _first_growth(run.history["height_m"], run.cell_m) for name, run in chosen.items()}
-    first = min(float(chosen[name].history["time_s"][row]) for name, row in rows.items())
-    last = max(float(value[-1]) for value in times.values())
-    wanted = np.linspace(first, last, OPENING_INSTANTS)
+    first = min(float(run.history["time_s"][_first_growth(run.history["height_m"], run.cell_m)]) for run in chosen.values())
+    wanted = np.linspace(first, max(float(value[-1]) for value in times.values()), OPENING_INSTANTS)
     present = mechanics_in(chosen.values())
     order = [(mechanics, name) for mechanics in reversed(present) for name in variants if (mechanics, name) in chosen]
-    panels = tuple(_profile_panel(chosen[key], times[key], wanted, len(present) > 1) for key in order)
+    panels = [_profile_panel(chosen[key], times[key], wanted, len(present) > 1) for key in order]
     profiles = [profile for panel in panels for profile in panel.profiles]
-    return ProfileFigure(
-        title=lead_words(list(chosen.values()))
-        + finding(outcomes_of([chosen[key] for key in order if key[0] == present[-1]])),
-        panels=panels,
+    return Shown(
+        title=lead_words(list(chosen.values())) + finding(outcomes_of([chosen[key] for key in order if key[0] == present[-1]])), panels=panels,
         opening_mm=max((float(profile.opening_mm.max()) for profile in profiles), default=1.0),
         height_m=max((float(profile.height_m.max()) for profile in profiles), default=1.0),
     )
 
 
-def _profile_panel(run: Run, times_s: np.ndarray, wanted_s: np.ndarray, named: bool) -> ProfilePanel:
-    """The profiles of one run at the output times nearest to those wanted, each once."""
+def _profile_panel(run: Run, times_s: np.ndarray, wanted_s: np.ndarray, named: bool) -> Shown:
+    """The profiles of one run at the output times nearest to those wanted, each once; shade: 0 first to 1 last."""
     reached = wanted_s[wanted_s <= times_s[-1] * (1.0 + 1e-9)]
-    indices = sorted({int(np.argmin(np.abs(times_s - time))) for time in reached} | {times_s.size - 1})
-    profiles = tuple(_profile(run, index, float(times_s[index]), wanted_s) for index in indices)
+    profiles = []
+    for index in sorted({int(np.argmin(np.abs(times_s - time))) for time in reached} | {times_s.size - 1}):
+        fields, time_s = fields_at(run, "fracture", index), float(times_s[index])
+        inlet = fields.get("inlet_Pa", np.interp(time_s, run.history["time_s"], run.history["inlet_Pa"]))
+        shade = np.clip((time_s - wanted_s[0]) / (float(wanted_s[-1] - wanted_s[0]) or 1.0), 0.0, 1.0)
+        profiles.append(Shown(height_m=fields["y_m"], opening_mm=1e3 * fields["opening_m"], time_s=time_s, inlet_MPa=float(inlet) / 1e6, shade=float(shade)))
     end = profiles[-1]
     heading = (
         f"{plain(run.variant)}{f', {mechanics_name(run.mechanics)}' if named else ''}: at the end {metres(float(end.height_m.max()))} high,"
         f" {number(float(end.opening_mm.max()), 2)}\u00a0mm wide"
     )
-    return ProfilePanel(run.variant, run.mechanics, heading, profiles, layout_of(run).heights_m)
+    return Shown(variant=run.variant, mechanics=run.mechanics, heading=heading, profiles=profiles, interfaces_m=layout_of(run).heights_m)
 
 
-def _profile(run: Run, index: int, time_s: float, wanted_s: np.ndarray) -> Profile:
-    """The opening profile at one output time."""
-    fields = fracture_at(run, index)
-    span = float(wanted_s[-1] - wanted_s[0]) or 1.0
-    inlet = fields.get("inlet_Pa", np.interp(time_s, run.history["time_s"], run.history["inlet_Pa"]))
-    return Profile(
-        height_m=fields["y_m"],
-        opening_mm=1e3 * fields["opening_m"],
-        time_s=time_s,
-        inlet_MPa=float(inlet) / 1e6,
-        shade=float(np.clip((time_s - wanted_s[0]) / span, 0.0, 1.0)),
-    )
-
-
-def path_figure(groups: list[list[Run]]) -> PathFigure:
+def path_figure(groups: list[list[Run]]) -> Shown:
     """Final fracture paths of several experiments, zoomed so that their deviations are visible."""
-    panels = tuple(_path_panel(runs) for runs in groups if any(run.is_main and run.drawable for run in runs))
+    panels = [_path_panel(runs) for runs in groups if any(run.is_main and run.drawable for run in runs)]
     if not panels:
         raise NotAvailable("no run of these experiments has a history")
     drawn = [run for runs in groups for run in runs if run.is_main and run.drawable]
-    return PathFigure(lead_words(drawn) + "; ".join(panel.heading for panel in panels), panels)
+    return Shown(title=lead_words(drawn) + "; ".join(panel.heading for panel in panels), panels=panels)
 
 
-def _path_panel(runs: list[Run]) -> PathPanel:
-    """The paths of one experiment's main variants."""
+def _path_panel(runs: list[Run]) -> Shown:
+    """The paths of one experiment's main variants in a window (x0, x1, y0, y1), m.
+
+    magnified: horizontal over vertical scale; aspect: height over width of the panel; lean: +1 where the paths end to the right of their start, -1 to
+    the left (the other corners are free); aside: where the interface is when it is outside the window.
+    """
     drawn = [run for run in runs if run.is_main and run.drawable]
     layout, lead = layout_of(drawn[0]), lead_of(drawn)
-    side = _soft_side(layout)
-    drawn.sort(key=lambda run: run.mechanics != lead)
-    paths = tuple(_path(run, side, run.mechanics != lead) for run in drawn)
+    softer_left = layout.along == "x" and len(layout.layers) > 1 and not layout.layers[-1].stiffness < layout.layers[0].stiffness
+    side = -1.0 if softer_left else 1.0  # the softer rock lies at smaller or larger x of the interface
+    paths = [_path(run, side, run.mechanics != lead) for run in sorted(drawn, key=lambda run: run.mechanics != lead)]
     window = _window(paths)
-    magnified = ((window[3] - window[2]) / (window[1] - window[0])) / PANEL_ASPECT
-    name = f"Experiment {drawn[0].number}"
-    return PathPanel(
-        name=name,
-        heading=f"{name}: {_drift(paths, side)}",
-        layout=layout,
-        paths=paths,
-        window_m=window,
-        magnified=max(1.0, magnified),
-        aspect=(window[3] - window[2]) / (window[1] - window[0]) / max(1.0, magnified),
-        lean=1 if sum(float(path.x_m[-1] - path.x_m[0]) for path in paths) > 0 else -1,
-        aside=_aside(layout, window),
-    )
+    steep = (window[3] - window[2]) / (window[1] - window[0])
+    magnified, name = max(1.0, steep / PANEL_ASPECT), f"Experiment {drawn[0].number}"
+    return Shown(name=name, heading=f"{name}: {_drift(paths, side)}", layout=layout, paths=paths, window_m=window, magnified=magnified,
+                 aspect=steep / magnified, lean=1 if sum(float(path.x_m[-1] - path.x_m[0]) for path in paths) > 0 else -1, aside=_aside(layout, window))
 
 
-PANEL_ASPECT = 1.15  # height over width of a panel of Fig 8
-LOWEST_ASPECT = 0.75  # of a panel for a path that turns sideways: room for its legend and inset
-
-
-def _soft_side(layout: Layout) -> float:
-    """+1 where the softer rock lies at larger x of the interface next to the fracture, -1 where at smaller."""
-    if layout.along != "x" or len(layout.layers) < 2:
-        return 1.0
-    return 1.0 if layout.layers[-1].stiffness < layout.layers[0].stiffness else -1.0
-
-
-def _path(run: Run, side: float, beside: bool) -> Path:
-    """The last path of a run, its largest turn and where that is."""
-    fields = fracture_at(run, output_times(run).size - 1)
+def _path(run: Run, side: float, beside: bool) -> Shown:
+    """The last path of a run, its largest turn and where that is; beside: of the mechanics shown for comparison."""
+    fields = fields_at(run, "fracture", output_times(run).size - 1)
     x_m, y_m = fields["x_m"], fields["y_m"]
     kink, at = largest_turn(x_m, y_m)
     name = plain(run.variant) + (f", {mechanics_name(run.mechanics)}" if beside else "")
     label = f"{name}: {metres_signed(side * float(x_m[-1] - x_m[0]))}, {number(kink, 2)}°"
-    return Path(run.variant, beside, label, x_m, y_m, kink, at)
-
-
-def metres_signed(length_m: float) -> str:
-    """A length in m to two decimals with its sign."""
-    return f"{length_m:+.2f}\u00a0m".replace("-", "−")
+    return Shown(variant=run.variant, beside=beside, label=label, x_m=x_m, y_m=y_m, kink_deg=kink, kink_at_m=at)
 
 
 def largest_turn(x_m: np.ndarray, y_m: np.ndarray) -> tuple[float, tuple[float, float]]:
@@ -311,10 +161,9 @@ def largest_turn(x_m: np.ndarray, y_m: np.ndarray) -> tuple[float, tuple[float, 
     return float(turn[worst]), (float(corners_x[worst]), float(corners_y[worst]))
 
 
-def _window(paths: tuple[Path, ...]) -> tuple[float, float, float, float]:
+def _window(paths: Sequence[Shown]) -> tuple[float, float, float, float]:
     """A window about all paths with a margin, never narrower than a twentieth of its height nor than 0.5 m."""
-    x_m = np.concatenate([path.x_m for path in paths])
-    y_m = np.concatenate([path.y_m for path in paths])
+    x_m, y_m = (np.concatenate([getattr(path, axis) for path in paths]) for axis in ("x_m", "y_m"))
     low = float(y_m.min())
     height = 1.04 * max(float(y_m.max()) - low, 1.0)
     width = max(1.3 * float(np.ptp(x_m)), height / 20.0, 0.5)
@@ -329,33 +178,16 @@ def _aside(layout: Layout, window: tuple[float, float, float, float]) -> str:
     """Where the interfaces lie that the window does not show."""
     if layout.along != "x" or not layout.fracture_x_m:
         return ""
-    away = [place.at_m - layout.fracture_x_m[0] for place in layout.interfaces
-            if not window[0] <= place.at_m <= window[1]]
-    return "; ".join(
-        f"interface {metres(abs(offset))} to the {'right' if offset > 0 else 'left'} of the start" for offset in away
-    )
+    away = [place.at_m - layout.fracture_x_m[0] for place in layout.interfaces if not window[0] <= place.at_m <= window[1]]
+    return "; ".join(f"interface {metres(abs(offset))} to the {'right' if offset > 0 else 'left'} of the start" for offset in away)
 
 
-def _drift(paths: tuple[Path, ...], side: float) -> str:
+def _drift(paths: Sequence[Shown], side: float) -> str:
     """Which way each path ends, and how far, like paths told together."""
     toward = {path.variant: side * float(path.x_m[-1] - path.x_m[0]) for path in paths if not path.beside}
-    soft = [name for name, shift in toward.items() if shift > 0]
-    stiff = [name for name, shift in toward.items() if shift < 0]
     parts = []
-    for names, where in ((soft, "towards the soft rock"), (stiff, "towards the stiff rock")):
-        if names:
-            each = listed([f"{number(abs(toward[name]), 2)}\u00a0m ({plain(name)})" for name in names])
-            parts.append(f"{where} by {each}")
+    for sign, where in ((1.0, "towards the soft rock"), (-1.0, "towards the stiff rock")):
+        each = [f"{number(abs(shift), 2)}\u00a0m ({plain(name)})" for name, shift in toward.items() if sign * shift > 0]
+        parts += [f"{where} by {listed(each)}"] if each else []
     still = [plain(name) for name, shift in toward.items() if shift == 0]
-    if still:
-        parts.append(f"straight ({listed(still)})")
-    return "the fracture goes " + ", ".join(parts)
-
-
-def held(run: Run, runs: Sequence[Run]) -> str:
-    """The longest arrest of a run among its experiment's in words; empty where there is none."""
-    arrest = longest(outcome_of(run, runs))
-    if arrest is None:
-        return ""
-    until = "the end" if arrest.until_Pa is None else mpa(arrest.until_Pa)
-    return f"{metres(arrest.height_m)} from {mpa(arrest.from_Pa)} to {until}"
+    return "the fracture goes " + ", ".join(parts + ([f"straight ({listed(still)})"] if still else []))

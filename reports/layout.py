@@ -6,39 +6,23 @@ from dataclasses import dataclass
 from typing import Any
 
 from reports.runs import NotAvailable, Run
+from reports.shown import Shown
 from reports.words import number
 
 
 @dataclass(frozen=True)
-class Layer:
-    """A layer between two positions on the stacking axis, m, with the label of its rock."""
-
-    rock: str
-    from_m: float
-    to_m: float
-    label: str
-    line: str  # the same on one line
-    stiffness: float  # Young's modulus over the stiffest rock's
-
-
-@dataclass(frozen=True)
-class Interface:
-    """An interface's place on the stacking axis, m, its name and its law."""
-
-    at_m: float
-    name: str
-    law: str
-
-
-@dataclass(frozen=True)
 class Layout:
-    """What a scene looks like before anything happens; m and Pa, compression positive."""
+    """What a scene looks like before anything happens; m and Pa, compression positive.
+
+    A layer has its rock's name, its label (and that on one line), its places on the stacking axis and Young's modulus over the stiffest rock's; an
+    interface its place, name and law.
+    """
 
     width_m: float
     height_m: float
     along: str
-    layers: tuple[Layer, ...]
-    interfaces: tuple[Interface, ...]
+    layers: tuple[Shown, ...]
+    interfaces: tuple[Shown, ...]
     fracture_x_m: tuple[float, ...]
     fracture_y_m: tuple[float, ...]
     vertical_Pa: float
@@ -66,30 +50,23 @@ def _layout(scene: dict[str, Any], cell_m: float) -> Layout:
     along = str(strata.get("along", "y"))
     span = float(domain["height_m"] if along == "y" else domain["width_m"])
     layers = _layers(scene, span)
-    names = list(strata.get("interfaces", []))
+    names = [str(name) for name in strata.get("interfaces", [])]
+    laws = [str(scene.get("interface", {}).get(name, {}).get("law", name)) for name in names]
     path = scene.get("fracture", {}).get("path_m", [])
     return Layout(
-        width_m=float(domain["width_m"]),
-        height_m=float(domain["height_m"]),
-        along=along,
-        layers=layers,
-        interfaces=tuple(
-            Interface(below.to_m, str(name), _law(scene, str(name))) for below, name in zip(layers[:-1], names)
-        ),
-        fracture_x_m=tuple(float(point[0]) for point in path),
-        fracture_y_m=tuple(float(point[1]) for point in path),
-        vertical_Pa=float(in_situ.get("vertical_Pa", 0.0)),
-        horizontal_Pa=float(in_situ.get("horizontal_Pa", 0.0)),
-        edges={name: str(domain.get(name, "")) for name in ("bottom", "sides", "top")},
-        cell_m=cell_m,
+        width_m=float(domain["width_m"]), height_m=float(domain["height_m"]), along=along, layers=layers,
+        interfaces=tuple(Shown(at_m=below.to_m, name=name, law=law) for below, name, law in zip(layers[:-1], names, laws)),
+        fracture_x_m=tuple(float(point[0]) for point in path), fracture_y_m=tuple(float(point[1]) for point in path),
+        vertical_Pa=float(in_situ.get("vertical_Pa", 0.0)), horizontal_Pa=float(in_situ.get("horizontal_Pa", 0.0)),
+        edges={name: str(domain.get(name, "")) for name in ("bottom", "sides", "top")}, cell_m=cell_m,
     )
 
 
-def _layers(scene: dict[str, Any], span_m: float) -> tuple[Layer, ...]:
+def _layers(scene: dict[str, Any], span_m: float) -> tuple[Shown, ...]:
     """The layers with their places; the last one fills what is left of the span."""
     rocks = scene["rock"]
     stiffest = max(float(rock["youngs_modulus_Pa"]) for rock in rocks.values())
-    layers: list[Layer] = []
+    layers: list[Shown] = []
     at = 0.0
     for entry in scene["strata"]["layers"]:
         rock = rocks[entry["rock"]]
@@ -97,14 +74,9 @@ def _layers(scene: dict[str, Any], span_m: float) -> tuple[Layer, ...]:
         modulus, toughness = float(rock["youngs_modulus_Pa"]), float(rock.get("toughness_Pa_sqrt_m", 0.0))
         label = f"{entry['rock']}\nE {number(modulus / 1e9, 2)} GPa\n$K_{{Ic}}$ {number(toughness / 1e6)} MPa√m"
         line = f"{entry['rock']}: {number(modulus / 1e9, 2)} GPa, {number(toughness / 1e6)} MPa√m"
-        layers.append(Layer(str(entry["rock"]), at, to, label, line, modulus / stiffest))
+        layers.append(Shown(rock=str(entry["rock"]), from_m=at, to_m=to, label=label, line=line, stiffness=modulus / stiffest))
         at = to
     return tuple(layers)
-
-
-def _law(scene: dict[str, Any], name: str) -> str:
-    """The law of an interface by its name."""
-    return str(scene.get("interface", {}).get(name, {}).get("law", name))
 
 
 INTERFACE = "interface "  # begins the keys of what acts at a place, such as "interface 1 coefficient"

@@ -8,12 +8,9 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from reports.alone import Alone, make  # noqa: E402  (after the path to the project is known)
-from reports.precision_page import NAME, write_precision  # noqa: E402
+from reports.figures import write_alone  # noqa: E402  (after the path to the project is known)
+from reports.precision import write_precision  # noqa: E402
 from verification.precision.store import DATA  # noqa: E402
 
-PAGE = Alone("Make precision.html and its figures from what ci/chart measured.", "--precision", DATA, write_precision, NAME,
-             lambda made: made.figure["title"] if made.figure else "")  # fmt: skip
-
 if __name__ == "__main__":
-    sys.exit(make(PAGE))
+    sys.exit(write_alone("Make precision.html and its figures from what ci/chart measured.", "--precision", DATA, write_precision))

@@ -8,12 +8,9 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from reports.alone import Alone, make  # noqa: E402  (after the path to the project is known)
-from reports.stability_page import NAME, write_stability  # noqa: E402
+from reports.figures import write_alone  # noqa: E402  (after the path to the project is known)
+from reports.stability import write_stability  # noqa: E402
 from verification.stability.store import RECORDS  # noqa: E402
 
-PAGE = Alone("Make stability.html and its figures from what ci/atlas recorded.", "--records", RECORDS, write_stability, NAME,
-             lambda made: made.words)  # fmt: skip
-
 if __name__ == "__main__":
-    sys.exit(make(PAGE))
+    sys.exit(write_alone("Make stability.html and its figures from what ci/atlas recorded.", "--records", RECORDS, write_stability))

@@ -7,10 +7,10 @@ import argparse
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT))
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from reports.verification import write_verification  # noqa: E402  (after the path to the project is known)
+from reports.figures import OUT  # noqa: E402  (after the path to the project is known)
+from reports.verification import write_verification  # noqa: E402
 from verification.harness.paths import RUNS  # noqa: E402
 
 
@@ -18,7 +18,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Write the page; 1 where there is nothing to show, or a part met a defect and --strict is given."""
     parser = argparse.ArgumentParser(description="Make verification.html from what ci/verify, ci/refine and ci/budget left.")
     parser.add_argument("--runs", type=Path, default=RUNS, help="folder of runs")
-    parser.add_argument("--out", type=Path, default=ROOT / "reports" / "out", help="folder for the page")
+    parser.add_argument("--out", type=Path, default=OUT, help="folder for the page")
     parser.add_argument("--ladder", type=Path, help="the ladder's judgement (default: RUNS/ladder/ladder.json)")
     parser.add_argument("--strict", action="store_true", help="exit 1 if a part of the page met a defect")
     options = parser.parse_args(arguments)

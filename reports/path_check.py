@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from reports.charts.path_check_chart import draw_paths
-from reports.sections import Section, Table, put_figure
+from reports.charts.parts import draw_path_check
+from reports.figures import Figure, Section, Table
+from reports.shown import Shown
 from reports.words import mechanics_name
 from verification.harness.crack_paths import INTERFACE_M, exact_path, farthest, grown, leaving_m
 from verification.harness.load import Array, LoadError, Run, load
@@ -52,36 +53,6 @@ class SolverPath:
         return f"{mechanics_name(self.mechanics)}, {self.block}{self.flow}, {sizes}"
 
 
-@dataclass(frozen=True)
-class PathPanel:
-    """One experiment; lengths in m, x from the first crack."""
-
-    heading: str
-    converged: Array
-    converged_words: str
-    shows_same: bool  # draw each run's own forward path of boundary elements
-    runs: tuple[SolverPath, ...]
-    interface_m: float
-
-
-@dataclass(frozen=True)
-class PathFigure:
-    """Paths of both experiments."""
-
-    title: str
-    panels: tuple[PathPanel, ...]
-
-
-@dataclass(frozen=True)
-class PathCheck:
-    """The figure's data, the table's rows, which of them are farther off than is asked for, and what could not be read."""
-
-    figure: PathFigure
-    rows: list[list[str]]
-    marked: list[int]
-    missing: list[str]
-
-
 def _folders(runs: Path, experiment: int) -> Iterator[tuple[Path, str, str]]:
     """Folders of runs to compare, each with its block and what is special about its flow."""
     for ending, block in CASES.items():
@@ -104,27 +75,27 @@ def compare(experiment: int, run: Run, block: str, flow: str, reference: Array) 
                       farthest(inside, reference), farthest(inside, same))  # fmt: skip
 
 
-def path_check(runs: Path) -> PathCheck | None:
-    """All paths below `runs` beside the boundary elements'; None where there are none. Raises NoReference without the program."""
-    panels: list[PathPanel] = []
+def path_check(runs: Path) -> Shown | None:
+    """All paths below `runs` beside the boundary elements': the figure, its paths, what could not be read; None where there are none.
+
+    Lengths of a panel are in m, x from the first crack; `shows_same`: draw each run's own forward path of boundary elements. Raises NoReference
+    without the program.
+    """
+    panels: list[Shown] = []
     missing: list[str] = []
-    for experiment in SHIPPED:
+    for experiment, (increment, turning) in CONVERGED.items():
         found: list[SolverPath] = []
-        increment, turning = CONVERGED[experiment]
         for folder, block, flow in _folders(runs, experiment):
             try:
                 found.append(compare(experiment, load(folder), block, flow, exact_path(experiment, increment, turning, GROWTH_M)))
             except LoadError as error:
                 missing.append(f"{folder.relative_to(runs)}: {error}")
         if found:
-            words = f"boundary elements, {turning}, increments {increment:g} m"
             converged = exact_path(experiment, increment, turning, GROWTH_M)
-            panels.append(PathPanel(TITLES[experiment], converged, words, experiment == 6, tuple(found), INTERFACE_M))
-    if not panels:
-        return None
+            panels.append(Shown(heading=TITLES[experiment], converged=converged, shows_same=experiment == 6, runs=found, interface_m=INTERFACE_M,
+                                converged_words=f"boundary elements, {turning}, increments {increment:g} m"))
     every = [path for panel in panels for path in panel.runs]
-    return PathCheck(PathFigure(_finding(every), tuple(panels)), [_row(path) for path in every],
-                     [k for k, path in enumerate(every) if not path.within], missing)  # fmt: skip
+    return Shown(figure=Shown(title=_finding(every), panels=panels), paths=every, missing=missing) if panels else None
 
 
 def _finding(paths: list[SolverPath]) -> str:
@@ -147,7 +118,7 @@ def _row(path: SolverPath) -> list[str]:
             f"{path.off_same_m:.3f}"]  # fmt: skip
 
 
-def section(runs: Path, out: Path) -> Section | None:
+def section(runs: Path) -> Section | None:
     """The part of the page of verification about paths; None where no path was run."""
     try:
         check = path_check(runs)
@@ -160,16 +131,18 @@ def section(runs: Path, out: Path) -> Section | None:
         f" the infinite plane (strata-reference crack_path, bonded interface at x = {INTERFACE_M:g} m, the pressure that starts the growth"
         f" everywhere), wide: converged ({_settled()}), thin and dashed in a run's colour: with the run's own increment. Marks: runs."
     )
+    near = sum(path.within for path in check.paths)
+    intro = (
+        f"{near} of {len(check.paths)} paths stay within a cell of the path that dislocations in the infinite plane predict by the same"
+        " criterion (maximum hoop stress, J = J_c, the pressure of the start everywhere), converged or with the same increment."
+    )
     table = Table(
         title=f"Largest distance of the paths over the first {GROWTH_M:g} m of growth, or to {KEPT_OFF_M:g} m from the interface",
         header=["experiment", "block", "mechanics", "cell (m)", "increment (m)", "last tip x, y (m)", "distance (m)", "in cells",
-                "from forward path of that increment (m)"],  # fmt: skip
-        rows=check.rows,
-        marked=check.marked,
-        note=_note(check),
+                "from forward path of that increment (m)"],
+        rows=[_row(path) for path in check.paths], marked=[k for k, path in enumerate(check.paths) if not path.within], note=_note(check.missing),
     )
-    figure = put_figure(draw_paths(check.figure), out, "path_check", check.figure.title, caption)
-    return Section(title=TITLE, intro=_intro(check), figures=[figure], tables=[table])
+    return Section(title=TITLE, intro=intro, figures=[Figure("path_check", check.figure, draw_path_check, caption)], tables=[table])
 
 
 def _settled() -> str:
@@ -183,16 +156,7 @@ def _settled() -> str:
     return "; ".join(told)
 
 
-def _intro(check: PathCheck) -> str:
-    """What was compared, in words."""
-    near = len(check.rows) - len(check.marked)
-    return (
-        f"{near} of {len(check.rows)} paths stay within a cell of the path that dislocations in the infinite plane predict by the same"
-        " criterion (maximum hoop stress, J = J_c, the pressure of the start everywhere), converged or with the same increment."
-    )
-
-
-def _note(check: PathCheck) -> str:
+def _note(missing: list[str]) -> str:
     """Why Experiment 6 is as it is, and what could not be read."""
     words = (
         "Experiment 6 is unstable: under a stress along the fracture that is T above that across it a path leaves its line over"
@@ -200,4 +164,4 @@ def _note(check: PathCheck) -> str:
         " solver; converged paths need increments well below that length. The solver turns by the whole angle of maximum hoop stress"
         " only where an increment has three cells, by a share of it below; such runs turn later."
     )
-    return words + (" Not read: " + "; ".join(check.missing) + "." if check.missing else "")
+    return words + (f" Not read: {'; '.join(missing)}." if missing else "")

@@ -1,93 +1,42 @@
-"""The work-precision chart: error against wall time for every method, and what follows from it for who uses the solver."""
+"""The work-precision chart: error against wall time for every method, what follows for who uses the solver, and the page behind it."""
 
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
-from reports.words import listed, number, share
+from reports.charts.precision import draw_front, draw_full
+from reports.figures import Figure, defects_of, front_of, make, write_page
+from reports.shown import Shown
+from reports.words import NONE, listed, minus, number, share, thousands, wall_time
 from verification.precision import store
-from verification.precision.judge import TOLERANCES, Advice, Dot, Lack, Panel, advice, bounds, cheapest, in_group, nearest, panel_of, pareto
+from verification.precision.judge import (
+    TOLERANCES, Advice, Dot, Lack, Panel, advice, bounds, cheapest, choice_for, in_group, nearest, panel_of, pareto, run_at,
+)
 from verification.precision.problem import STRATA, Method
 from verification.precision.problems import PROBLEMS
 
-HOW_TO_MAKE = "ci/chart measures it, one run at a time on an idle machine"
+NAME = "precision.html"
 LEAST_SHOWN = 1e-5  # errors below are drawn there
+CAPTION = (
+    "A panel a quantity, every method a curve from coarse to fine: relative error against the wall time of the whole process, both"
+    " logarithmic. Errors are drawn as they are judged: where a finer size of the same method is farther off, or the sign has changed, the"
+    " smaller error is luck and hangs below. Yellow: what no other run of the solver beats in both. Circles: the cheapest within 1 % and"
+    " 0.1 %. Blue ground: the reference is not known better. Pink: methods that were refused, failed, took too long or have no value."
+)
+FULL_CAPTION = "Every method and setting, its number beside its finest size; filled: graded grid, hollow: uniform. Circles: the cheapest within 1 % and 0.1 %."
 
 
-@dataclass(frozen=True)
-class Look:
-    """How a method is drawn, in words that the chart knows: family (a colour), shape (a mark), graded (filled), dashes."""
-
-    family: str
-    shape: str
-    filled: bool
-    dashes: str
-
-
-@dataclass(frozen=True)
-class CurveShown:
-    """A method: wall times (s), errors as judged, and as measured where they are much smaller by luck (else None)."""
-
-    label: str
-    look: Look
-    main: bool
-    times_s: tuple[float, ...]
-    errors: tuple[float, ...]
-    lucky: tuple[float | None, ...]
-
-
-@dataclass(frozen=True)
-class LackShown:
-    """A mark in the strip of failures, at the time (s) that was spent."""
-
-    look: Look
-    status: str
-    time_s: float
-
-
-@dataclass(frozen=True)
-class PanelShown:
-    """A wanted number: its curves, Pareto front (times in s, errors), failures, the reference's uncertainty, and the advice in words."""
-
-    heading: str
-    advice: tuple[str, ...]
-    curves: tuple[CurveShown, ...]
-    front: tuple[tuple[float, ...], tuple[float, ...]]
-    chosen: tuple[tuple[float, float], ...]
-    lacks: tuple[LackShown, ...]
-    lacks_words: str
-    uncertainty: float
-    times_s: tuple[float, float]
-    errors: tuple[float, float]
-
-
-@dataclass(frozen=True)
-class PrecisionFigure:
-    """Panels under a finding."""
-
-    title: str
-    panels: tuple[PanelShown, ...]
-
-
-@dataclass(frozen=True)
-class Measurements:
-    """All that was measured: panels, the machine in words, and notes on what is odd about the data."""
-
-    panels: tuple[Panel, ...]
-    recipe: tuple[tuple[str, str], ...]
-    notes: tuple[str, ...]
-
-
-def measurements(folder: Path = store.DATA) -> Measurements | None:
-    """What the data say of every problem that was measured; None without any. Raises ValueError for data that cannot be read."""
+def measurements(folder: Path = store.DATA) -> Shown | None:
+    """All that was measured: panels, the machine in words, notes on what is odd; None without data, ValueError where they cannot be read."""
     sheets = [(problem, sheet) for problem in PROBLEMS if (sheet := store.read(problem.name, folder)) is not None and sheet.points]
     if not sheets:
         return None
     panels = tuple(panel_of(problem, wanted, sheet) for problem, sheet in sheets for wanted in problem.wanted)
-    return Measurements(panels, recipe([sheet for _, sheet in sheets]), notes([sheet for _, sheet in sheets]))
+    measured = [sheet for _, sheet in sheets]
+    return Shown(panels=panels, recipe=recipe(measured), notes=notes(measured))
 
 
 def recipe(sheets: Sequence[store.Sheet]) -> tuple[tuple[str, str], ...]:
@@ -133,146 +82,119 @@ def notes(sheets: Sequence[store.Sheet]) -> tuple[str, ...]:
 # --- words
 
 
-def seconds(time_s: float) -> str:
-    """A wall time."""
-    if time_s >= 100.0:
-        return f"{number(time_s / 60.0, 2)}\u00a0min"
-    return f"{number(time_s, 2)}\u00a0s"
-
-
-def percent(error: float) -> str:
-    """An error as a percentage."""
-    return share(error)
-
-
 def choice_words(dot: Dot) -> str:
     """A dot as advice: what to use, and what it takes."""
-    return f"{dot.name}: {seconds(dot.time_s)}"
+    return f"{dot.name}: {wall_time(dot.time_s)}"
 
 
 def lack_words(best: Dot | None) -> str:
     """What to say where no method is within a tolerance."""
-    if best is None:
-        return "nothing was measured"
-    return f"none reaches it; best {percent(best.judged)}: {choice_words(best)}"
+    return "nothing was measured" if best is None else f"none reaches it; best {share(best.judged)}: {choice_words(best)}"
+
+
+def own_dots(panel: Panel) -> list[Dot]:
+    """What the solver itself has to show in a panel."""
+    return [dot for dot in panel.dots if in_group(dot, "any method")]
 
 
 def advice_lines(panel: Panel) -> tuple[str, ...]:
     """The cheapest ways of the solver to 1 % and 0.1 % in a panel."""
-    own = [dot for dot in panel.dots if in_group(dot, "any method")]
-    lines = []
-    for error in TOLERANCES[1:]:
-        dot = cheapest(own, error)
-        best = nearest(own)
-        lack = f"none (best: {percent(best.judged)} in {seconds(best.time_s)})" if best else "nothing was measured"
-        lines.append(f"{percent(error)}: {choice_words(dot) if dot else lack}")
-    return tuple(lines)
+    best = nearest(own_dots(panel))
+    lack = f"none (best: {share(best.judged)} in {wall_time(best.time_s)})" if best else "nothing was measured"
+    chosen = [(error, cheapest(own_dots(panel), error)) for error in TOLERANCES[1:]]
+    return tuple(f"{share(error)}: {choice_words(dot) if dot else lack}" for error, dot in chosen)
 
 
 def lacks_words(lacks: Sequence[Lack]) -> str:
     """How many have nothing to show, by how they ended."""
-    counts = {status: sum(lack.status == status for lack in lacks) for status in dict.fromkeys(lack.status for lack in lacks)}
-    return ", ".join(f"{count} {status}" for status, count in counts.items())
+    return ", ".join(f"{count} {status}" for status, count in Counter(lack.status for lack in lacks).items())
 
 
 # --- figures
 
 
-def look_of(method: Method) -> Look:
-    """How a method is drawn."""
+def look_of(method: Method) -> Shown:
+    """How a method is drawn, in words that the chart knows: family (a colour), shape (a mark), graded (filled), dashes."""
     setting = method.setting
     if method.program != STRATA or setting is None:
-        return Look("elements", "elements", True, "-")
-    still = setting.mechanics == "quasistatic"
-    family = "quasistatic" if still else "total" if setting.kinematics == "total" else "updated"
-    usual = (setting.points, setting.courant, setting.kernels, setting.further) == (4, 0.5, "", ())
-    plain = usual and setting.transfer in ("", "flip")
-    return Look(family, setting.shape, max(setting.graded, setting.beyond_m) > 0.0, "-" if plain else {9: ":", 16: "--"}.get(setting.points, "-."))
+        return Shown(family="elements", shape="elements", filled=True, dashes="-")
+    family = "quasistatic" if setting.mechanics == "quasistatic" else "total" if setting.kinematics == "total" else "updated"
+    usual = (setting.points, setting.courant, setting.kernels, setting.further) == (4, 0.5, "", ()) and setting.transfer in ("", "flip")
+    dashes = "-" if usual else {9: ":", 16: "--"}.get(setting.points, "-.")
+    return Shown(family=family, shape=setting.shape, filled=max(setting.graded, setting.beyond_m) > 0.0, dashes=dashes)
 
 
-def panel_shown(panel: Panel, spread: tuple[float, float] | None = None) -> PanelShown:
-    """A panel as it is drawn; `spread`: the range of times (s) of all panels."""
+def panel_shown(panel: Panel, spread: tuple[float, float] | None = None) -> Shown:
+    """A wanted number as it is drawn: curves, Pareto front, failures, the reference's uncertainty; `spread`: of times (s) of all panels.
+
+    A curve's errors are as judged; `lucky`: as measured where they are much smaller by luck, else None.
+    """
     curves = []
     for method in panel.problem.methods:
         own = [dot for dot in panel.dots if dot.method is method]
         if own:
-            lucky = tuple(max(abs(dot.error), LEAST_SHOWN) if dot.lucky else None for dot in own)
-            curves.append(CurveShown(method.label, look_of(method), method.main, tuple(dot.time_s for dot in own),
-                                     tuple(max(dot.judged, LEAST_SHOWN) for dot in own), lucky))  # fmt: skip
-    solver = [dot for dot in panel.dots if in_group(dot, "any method")]
+            lucky = [max(abs(dot.error), LEAST_SHOWN) if dot.lucky else None for dot in own]
+            curves.append(Shown(label=method.label, look=look_of(method), main=method.main, times_s=[dot.time_s for dot in own],
+                                errors=[max(dot.judged, LEAST_SHOWN) for dot in own], lucky=lucky))
+    solver = own_dots(panel)
     front = pareto(solver)
     chosen = [dot for error in TOLERANCES[1:] if (dot := cheapest(solver, error)) is not None]
     every = [error for curve in curves for error in (*curve.errors, *(one for one in curve.lucky if one is not None))]
-    return PanelShown(
-        panel.wanted.title, advice_lines(panel), tuple(curves),
-        (tuple(dot.time_s for dot in front), tuple(max(dot.judged, LEAST_SHOWN) for dot in front)),
-        tuple((dot.time_s, max(dot.judged, LEAST_SHOWN)) for dot in chosen),
-        tuple(LackShown(look_of(lack.method), lack.status, lack.time_s) for lack in panel.lacks), lacks_words(panel.lacks),
-        panel.uncertainty, spread or bounds(dot.time_s for dot in panel.dots), bounds(every),
-    )  # fmt: skip
+    return Shown(
+        heading=panel.wanted.title, advice=advice_lines(panel), curves=curves,
+        front=([dot.time_s for dot in front], [max(dot.judged, LEAST_SHOWN) for dot in front]),
+        chosen=[(dot.time_s, max(dot.judged, LEAST_SHOWN)) for dot in chosen],
+        lacks=[Shown(look=look_of(lack.method), status=lack.status, time_s=lack.time_s) for lack in panel.lacks],
+        lacks_words=lacks_words(panel.lacks), uncertainty=panel.uncertainty, times_s=spread or bounds(dot.time_s for dot in panel.dots),
+        errors=bounds(every),
+    )
 
 
-def front_figure(panels: Sequence[Panel]) -> PrecisionFigure:
+def front_figure(panels: Sequence[Panel]) -> Shown:
     """All panels side by side, times on a common scale."""
     spread = bounds(dot.time_s for panel in panels for dot in panel.dots)
-    return PrecisionFigure(finding(panels), tuple(panel_shown(panel, spread) for panel in panels))
-
-
-def full_figure(panel: Panel) -> PrecisionFigure:
-    """One wanted number with every method."""
-    return PrecisionFigure(f"{panel.wanted.title}: {'; '.join(advice_lines(panel))}", (panel_shown(panel),))
+    return Shown(title=finding(panels), panels=[panel_shown(panel, spread) for panel in panels])
 
 
 def finding(panels: Sequence[Panel]) -> str:
     """What the chart shows, in a sentence."""
-    own = [[dot for dot in panel.dots if in_group(dot, "any method")] for panel in panels]
-    found = [dot for dots in own if (dot := cheapest(dots, 0.01)) is not None]
+    found = [dot for panel in panels if (dot := cheapest(own_dots(panel), 0.01)) is not None]
     if not found:
         return "No quantity is had within 1 %"
     still = sum(dot.method.setting is not None and dot.method.setting.mechanics == "quasistatic" for dot in found)
-    slowest = max(dot.time_s for dot in found)
-    which = "all" if still == len(found) else f"{still}"
+    times = [dot.time_s for dot in found]
     return (
-        f"Within 1 %: {len(found)} of {len(panels)} quantities, the cheapest way to each in {seconds(min(dot.time_s for dot in found))} to"
-        f" {seconds(slowest)}; {which} of these ways are without inertia"
+        f"Within 1 %: {len(found)} of {len(panels)} quantities, the cheapest way to each in {wall_time(min(times))} to {wall_time(max(times))};"
+        f" {'all' if still == len(found) else still} of these ways are without inertia"
     )
 
 
 # --- tables
 
 
-def advice_rows(rows: Sequence[Advice]) -> list[dict[str, object]]:
-    """The table of advice for the template."""
-    return [
-        {
-            "title": row.panel.wanted.title, "group": row.group, "first": row.group == "any method",
-            "cells": [
-                {"words": choice_words(dot), "error": percent(dot.judged), "ok": True} if dot else
-                {"words": lack_words(row.best), "error": "", "ok": False}
-                for dot in row.choices
-            ],
-            "says": row.panel.wanted.says,
-        }
-        for row in rows
-    ]  # fmt: skip
+def table_of(panels: Sequence[Panel]) -> list[dict[str, object]]:
+    """The table that users need, for the template."""
+
+    def cell(row: Advice, dot: Dot | None) -> dict[str, object]:
+        """The cheapest way to a tolerance, or that there is none."""
+        if dot is None:
+            return {"words": lack_words(row.best), "error": "", "ok": False}
+        return {"words": choice_words(dot), "error": share(dot.judged), "ok": True}
+
+    return [{"title": row.panel.wanted.title, "group": row.group, "first": row.group == "any method",
+             "cells": [cell(row, dot) for dot in row.choices]} for row in advice(panels)]
 
 
 def point_rows(panel: Panel) -> list[list[str]]:
     """Every measured point of a panel, by method and size."""
     rows = []
     for dot in panel.dots:
-        point = dot.point
+        point, times = dot.point, dot.point.wall_s
         flags = [word for word, on in (("disturbed", point.disturbed), ("one run", point.once), ("luck", dot.lucky)) if on]
-        rows.append([dot.method.label, dot.level, f"{point.particles:,}".replace(",", "\u202f") if point.particles else "–",
-                     f"{100.0 * dot.error:+.3g}\u00a0%".replace("-", "−"), percent(dot.judged), number(dot.time_s, 3),
-                     _range(point.wall_s), number(min(point.cpu_s), 3) if point.cpu_s else "–", f"{len(point.wall_s)}",
-                     ", ".join(flags)])  # fmt: skip
+        rows.append([dot.method.label, dot.level, thousands(point.particles or None), minus(f"{100.0 * dot.error:+.3g}\u00a0%"), share(dot.judged),
+                     number(dot.time_s, 3), f"{number(min(times), 3)} to {number(max(times), 3)}" if len(times) > 1 else NONE,
+                     number(min(point.cpu_s), 3) if point.cpu_s else NONE, f"{len(times)}", ", ".join(flags)])
     return rows
-
-
-def _range(times_s: Sequence[float]) -> str:
-    """The spread of repeated times, s."""
-    return f"{number(min(times_s), 3)} to {number(max(times_s), 3)}" if len(times_s) > 1 else "–"
 
 
 def lack_rows(panel: Panel) -> list[list[str]]:
@@ -283,14 +205,65 @@ def lack_rows(panel: Panel) -> list[list[str]]:
     return [[label, listed(levels), status, reason] for (label, status, reason), levels in groups.items()]
 
 
-def table_of(panels: Sequence[Panel]) -> list[dict[str, object]]:
-    """The table that users need."""
-    return advice_rows(advice(panels))
-
-
 def reference_words(panel: Panel) -> str:
     """What the reference of a panel is, and how well it is known."""
     said = f"Errors are {panel.wanted.says}."
     if panel.uncertainty > 0.0 and not math.isnan(panel.uncertainty):
-        said += f" The reference is known to {percent(panel.uncertainty)}."
+        said += f" The reference is known to {share(panel.uncertainty)}."
     return said
+
+
+def recommendations(panels: Sequence[Panel]) -> list[str]:
+    """What the chart says each experiment should be run with, and why, a sentence or two a problem."""
+    told = []
+    for problem in dict.fromkeys(panel.problem.name for panel in panels if panel.problem.experiments):
+        own = [panel for panel in panels if panel.problem.name == problem]
+        numbers = [str(number) for number in own[0].problem.experiments]
+        choice = choice_for(own, TOLERANCES[1])
+        if choice is None:
+            continue
+        heading = f"Experiments {listed(numbers)}: {choice.name}, {wall_time(choice.time_s)} a run"
+        nearest = "none is within 1 % in all; this comes nearest,"
+        reason = "the cheapest within 1 %, or the reference's uncertainty," if choice.within else nearest
+        told.append(f"{heading}; {reason} with errors of {_errors(choice.dots, own)}. {_shipped(own)}")
+    return told
+
+
+def _errors(dots: Sequence[Dot], panels: Sequence[Panel]) -> str:
+    """The errors of a run in all panels."""
+    return listed([f"{share(dot.judged)} ({panel.wanted.title.split(',')[0]})" for dot, panel in zip(dots, panels)])
+
+
+def _shipped(panels: Sequence[Panel]) -> str:
+    """What the scenes ask for, and what that does."""
+    method, level = panels[0].problem.shipped
+    label = next((one.label for one in panels[0].problem.methods if one.name == method), method)
+    dots = run_at(panels, method, level)
+    if dots is None:
+        return f"The scenes' own setting ({label}, {level}) has not been measured, or has no value."
+    took = wall_time(dots[0].time_s)
+    return f"The scenes' own setting ({label}, {level}) takes {took}, with errors of {_errors(dots, panels)}; it has inertia."
+
+
+def write_precision(out: Path, folder: Path = store.DATA) -> Shown:
+    """Write the chart and the page of all settings below a page's folder; whatever is wrong with the data is told, not raised."""
+    return front_of(lambda: _write(out, folder), "The work-precision chart could not be made")
+
+
+def _write(out: Path, folder: Path) -> Shown:
+    """The page with every method and every point, and the chart with what the front page says of it."""
+    found = measurements(folder)
+    if found is None:
+        return Shown(lack="The work-precision chart has not been measured: ci/chart measures it, one run at a time on an idle machine.", defect="")
+    front = make(Figure("precision", front_figure(found.panels), draw_front, CAPTION), out)
+    parts = []
+    for panel in found.panels:
+        lines = advice_lines(panel)
+        data = Shown(title=f"{panel.wanted.title}: {'; '.join(lines)}", panels=[panel_shown(panel)])
+        parts.append(Shown(name=panel.wanted.name, title=panel.wanted.title, says=f"{panel.problem.says}.", reference=reference_words(panel),
+                           advice=lines, figure=make(Figure(f"precision_{panel.wanted.name}", data, draw_full, FULL_CAPTION), out),
+                           points=point_rows(panel), lacks=lack_rows(panel)))
+    write_page(out, NAME, {"parts": parts, "recipe": found.recipe, "notes": found.notes})
+    return Shown(figure=front, rows=table_of(found.panels), tolerances=[share(error) for error in TOLERANCES],
+                 recommendations=recommendations(found.panels), recipe=found.recipe, notes=found.notes, link=NAME, words=front.title, lack="",
+                 defect="\n".join(defects_of([front, *(part.figure for part in parts)])))

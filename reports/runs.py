@@ -7,7 +7,7 @@ import json
 import math
 import re
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from reports.words import number
 from verification.harness.scenes import MECHANICS, STUDY_VARIANTS, mechanics_of, scenes_of, variants_of
 
 Arrays = dict[str, np.ndarray]
@@ -76,6 +77,11 @@ class Run:
         return sorted(self.summary.get("events") or [], key=lambda event: float(event.get("time_s", 0.0)))
 
     @property
+    def marks(self) -> list[str]:
+        """Why the run's own monitors mark it as suspect, each with its value; empty for a sound run and for one that has none."""
+        return [_mark_words(mark) for mark in self.summary.get("suspect") or [] if isinstance(mark, dict)]
+
+    @property
     def cell_m(self) -> float:
         """Cell size, m."""
         return float(self.scene.get("numerics", {}).get("cell_m", 1.0))
@@ -90,55 +96,45 @@ class Run:
         return np.array(points)
 
 
+def _mark_words(mark: dict[str, Any]) -> str:
+    """One mark of a summary in words: its sentence and, where it has one, its value against the threshold."""
+    why, value, threshold = str(mark.get("why") or mark.get("monitor")), mark.get("value"), mark.get("threshold")
+    if not isinstance(value, (int, float)) or not isinstance(threshold, (int, float)):
+        return why
+    return f"{why} ({number(float(value))} against {number(float(threshold))})"
+
+
 def load_run(folder: Path) -> Run:
-    """Read one run's folder: scene.toml, summary.json and history.csv."""
+    """Read one run's folder: scene.toml, summary.json, history.csv and how its process ended, as whoever started it kept it."""
     above = folder.parent.parent.name
     run = Run(folder.parent.name, folder.name, folder, above if above in MECHANICS else MECHANICS[0])
-    readers = (("scene.toml", _read_scene), ("summary.json", _read_summary), ("history.csv", _read_history),
-               ("outcome.json", _read_outcome))
-    for name, read in readers:
-        path = folder / name
-        if not path.exists():
-            run.problems += [f"no {name}"] if name != "outcome.json" else []
+    for name, key, read in _READERS:
+        if not (folder / name).exists():
+            run.problems += [f"no {name}"] if key != "outcome" else []
             continue
         try:
-            read(path, run)
+            setattr(run, key, read((folder / name).read_text(encoding="utf-8")))
         except (OSError, ValueError, csv.Error) as error:
             run.problems.append(f"{name} cannot be read: {error}")
     run.mechanics = str(run.summary.get("mechanics") or run.scene.get("numerics", {}).get("mechanics") or run.mechanics)
     return run
 
 
-def _read_scene(path: Path, run: Run) -> None:
-    """Put the resolved scene into the run."""
-    run.scene = tomllib.loads(path.read_text(encoding="utf-8"))
-
-
-def _read_summary(path: Path, run: Run) -> None:
-    """Put the summary into the run."""
-    content = json.loads(path.read_text(encoding="utf-8"))
+def _table(text: str) -> dict[str, Any]:
+    """A JSON object."""
+    content = json.loads(text)
     if not isinstance(content, dict):
         raise ValueError("not a table")
-    run.summary = content
+    return content
 
 
-def _read_outcome(path: Path, run: Run) -> None:
-    """Put into the run how its process ended, as whoever started it kept it."""
-    content = json.loads(path.read_text(encoding="utf-8"))
-    if not isinstance(content, dict):
-        raise ValueError("not a table")
-    run.outcome = content
-
-
-def _read_history(path: Path, run: Run) -> None:
-    """Put the history's numeric columns into the run; a row cut short by an interruption is dropped."""
-    with path.open(encoding="utf-8", newline="") as stream:
-        rows = [row for row in csv.reader(stream) if row]
+def _columns(text: str) -> Arrays:
+    """The numeric columns of a history; a row cut short by an interruption is dropped, a cell that is no number NaN."""
+    rows = [row for row in csv.reader(text.splitlines()) if row]
     if not rows:
         raise ValueError("empty")
     whole = [row for row in rows[1:] if len(row) == len(rows[0])]
-    for column, name in enumerate(rows[0]):
-        run.history[name.strip()] = np.array([_float(row[column]) for row in whole])
+    return {name.strip(): np.array([_float(row[column]) for row in whole]) for column, name in enumerate(rows[0])}
 
 
 def _float(text: str) -> float:
@@ -147,6 +143,12 @@ def _float(text: str) -> float:
         return float(text)
     except ValueError:
         return float("nan")
+
+
+_READERS: tuple[tuple[str, str, Callable[[str], Any]], ...] = (
+    ("scene.toml", "scene", tomllib.loads), ("summary.json", "summary", _table), ("history.csv", "history", _columns),
+    ("outcome.json", "outcome", _table),
+)
 
 
 def load_runs(root: Path) -> list[Run]:
@@ -209,14 +211,13 @@ def output_times(run: Run) -> np.ndarray:
         return np.array([float(group.attrs["time_s"]) for _, group in sorted(store["fracture"].items())])
 
 
-def fracture_at(run: Run, index: int) -> Arrays:
-    """The fracture's points and what they carry at one output time; SI units."""
-    return _group(run, "fracture", index)
-
-
-def particles_at(run: Run, index: int) -> Arrays:
-    """The particles at one output time with the fields that do not change; SI units."""
-    return _group(run, "particles", index)
+def fields_at(run: Run, parent: str, index: int) -> Arrays:
+    """The points of the "fracture" or the "particles" at one output time with what they carry and what does not change; SI units."""
+    with _open(run) as store:
+        group = store.get(f"{parent}/{index:05d}")
+        if group is None:
+            raise NotAvailable(f"{run.experiment}/{run.variant}: result.h5 has no {parent}/{index:05d}")
+        return {**_arrays(store[parent]), **_arrays(group)}
 
 
 def interfaces_at(run: Run, index: int, names: tuple[str, ...] = ()) -> list[Arrays]:
@@ -238,15 +239,6 @@ def _open(run: Run) -> h5py.File:
         return h5py.File(run.folder / "result.h5", "r")
     except OSError as error:
         raise NotAvailable(f"{run.experiment}/{run.variant}: result.h5 cannot be read ({error})") from error
-
-
-def _group(run: Run, parent: str, index: int) -> Arrays:
-    """One output time's group with its parent's static datasets and its scalar attributes."""
-    with _open(run) as store:
-        group = store.get(f"{parent}/{index:05d}")
-        if group is None:
-            raise NotAvailable(f"{run.experiment}/{run.variant}: result.h5 has no {parent}/{index:05d}")
-        return {**_arrays(store[parent]), **_arrays(group)}
 
 
 def _arrays(group: h5py.Group) -> Arrays:

@@ -1,4 +1,4 @@
-"""What the stability atlas found, as the page shows it: families and their records turned into rows, words and figures' data."""
+"""The page of the stability atlas: families and their records turned into rows, words and figures, and what the front page says."""
 
 from __future__ import annotations
 
@@ -7,16 +7,26 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
+from reports.charts.stability import draw_edges, draw_part
+from reports.figures import Figure, defects_of, front_of, make, write_page
+from reports.shown import Shown
+from reports.words import NONE, general, minus, span
 from verification.stability import store
 from verification.stability.catalogue import families
 from verification.stability.family import FAILED, GARBAGE, MARKED, OUTCOMES, REFUSED, STABLE, Family
 from verification.stability.judge import problems
 from verification.stability.store import EdgeFound, PointFound, Record
 
-HOW_TO_MAKE = "ci/atlas --accept"
+NAME = "stability.html"
 MANY = 6  # families of a section that are drawn one by one
 OUTCOME_WORDS = {STABLE: "stable", MARKED: "marked", REFUSED: "refused (exit 2)", FAILED: "ended with its reason (exit 3)", GARBAGE: "GARBAGE"}
+CAPTION = (
+    "A dot a run: the checked error over the walked parameter, coloured by how the run ended; runs without a value stand at the top."
+    " Dashed: the edge that theory predicts; broad: the edge measured by bisection, or between the last sound and the first unsound run."
+)
+EDGES_CAPTION = "A row a walk: the edge predicted and the edge measured by bisection over runs of the same block."
 
 
 @dataclass(frozen=True)
@@ -33,9 +43,20 @@ class Walk:
         return self.record.points if self.record is not None else ()
 
     @property
-    def edge(self) -> EdgeFound | None:
-        """Its edge as found."""
-        return self.record.edge if self.record is not None else None
+    def edge(self) -> EdgeFound:
+        """Its edge as found, without numbers where there is none."""
+        return (self.record.edge if self.record is not None else None) or EdgeFound(None, None)
+
+    @property
+    def parameter(self) -> str:
+        """The walked parameter with its unit."""
+        unit = self.family.parameter.unit
+        return f"{self.family.parameter.name} ({unit})" if unit else self.family.parameter.name
+
+    @property
+    def heading(self) -> str:
+        """Its title without that of its section."""
+        return self.family.title.split(": ", 1)[-1]
 
 
 @dataclass(frozen=True)
@@ -55,84 +76,40 @@ class Part:
         """All that is wrong with its families."""
         return tuple(f"{walk.family.title}: {words}" for walk in self.walks for words in walk.wrong)
 
+    @property
+    def points(self) -> list[PointFound]:
+        """All points of its families."""
+        return [point for walk in self.walks for point in walk.points]
 
-@dataclass(frozen=True)
-class DotShown:
-    """A point in a figure: the walked value, the checked error (None of a run without one), and its outcome."""
-
-    x: float
-    y: float | None
-    outcome: str
-
-
-@dataclass(frozen=True)
-class WalkShown:
-    """A panel: its dots, edge predicted and measured, names and scales of its axes."""
-
-    heading: str
-    dots: tuple[DotShown, ...]
-    predicted: float | None
-    measured: float | None
-    x_name: str
-    y_name: str
-    x_log: bool
-    y_log: bool
-
-
-@dataclass(frozen=True)
-class EdgesShown:
-    """Edges of many families side by side: heading of each, predicted and measured."""
-
-    title: str
-    x_name: str
-    rows: tuple[tuple[str, float, float], ...]
-
-
-@dataclass(frozen=True)
-class PartFigure:
-    """The panels of a section under what they show."""
-
-    title: str
-    panels: tuple[WalkShown, ...]
+    def edges(self, key: str) -> list[float]:
+        """A number of all edges that have it: "predicted", "measured" or "difference"."""
+        return [value for walk in self.walks if (value := getattr(walk.edge, key)) is not None]
 
 
 def parts(folder: Path = store.RECORDS, known: dict[str, Family] | None = None) -> tuple[Part, ...]:
     """All families with their records, by section in the order of the catalogue."""
-    every = families() if known is None else known
-    walks = [Walk(family, store.read(name, folder), tuple(problems(family, store.read(name, folder)))) for name, family in every.items()]
-    titles = dict.fromkeys(walk.family.section or walk.family.title for walk in walks)
-    return tuple(Part(title, tuple(walk for walk in walks if (walk.family.section or walk.family.title) == title)) for title in titles)
-
-
-def number(value: float | None, digits: int = 4) -> str:
-    """A number for a table; a line for none."""
-    return "–" if value is None or not math.isfinite(value) else f"{value:.{digits}g}".replace("-", "−")
+    sections: dict[str, list[Walk]] = {}
+    for name, family in (families() if known is None else known).items():
+        record = store.read(name, folder)
+        sections.setdefault(family.section or family.title, []).append(Walk(family, record, tuple(problems(family, record))))
+    return tuple(Part(title, tuple(walks)) for title, walks in sections.items())
 
 
 def percent(value: float | None) -> str:
     """A signed share in per cent."""
-    return "–" if value is None else f"{100.0 * value:+.1f} %".replace("-", "−")
+    return NONE if value is None else minus(f"{100.0 * value:+.1f} %")
 
 
 def outcomes_of(points: Sequence[PointFound]) -> str:
     """How many points ended how."""
-    counted = Counter(point.outcome for point in points)
-    return ", ".join(f"{counted[name]} {name}" for name in OUTCOMES if counted[name])
+    tally = Counter(point.outcome for point in points)
+    return ", ".join(f"{tally[name]} {name}" for name in OUTCOMES if tally[name])
 
 
 def beyond_words(walks: Sequence[Walk]) -> str:
     """What strata does beyond the edge."""
-    names = dict.fromkeys(name for walk in walks for name in walk.family.beyond)
-    words = " or ".join(OUTCOME_WORDS[name] for name in OUTCOMES if name in names)
-    return "stable by construction" if list(names) == [STABLE] else words
-
-
-def span(values: Sequence[float], digits: int = 3) -> str:
-    """A number, or from the least to the largest."""
-    if not values:
-        return "–"
-    low, high = number(min(values), digits), number(max(values), digits)
-    return low if low == high else f"{low} to {high}"
+    names = {name for walk in walks for name in walk.family.beyond}
+    return "stable by construction" if names == {STABLE} else " or ".join(OUTCOME_WORDS[name] for name in OUTCOMES if name in names)
 
 
 def verdict(wrong: Sequence[str]) -> tuple[str, str]:
@@ -142,83 +119,56 @@ def verdict(wrong: Sequence[str]) -> tuple[str, str]:
 
 def first_row(part: Part) -> dict[str, str]:
     """A section's row of the first table."""
-    edges = [walk.edge for walk in part.walks if walk.edge is not None]
-    predicted = [edge.predicted for edge in edges if edge.predicted is not None]
-    measured = [edge.measured for edge in edges if edge.measured is not None]
-    off = [edge.difference for edge in edges if edge.difference is not None]
-    worst = max(off, key=abs, default=None)
     words, kind = verdict(part.wrong)
-    walked = dict.fromkeys(unit_of(walk.family) for walk in part.walks)
     return {
-        "anchor": part.anchor, "title": part.title, "walks": str(len(part.walks)), "parameter": "; ".join(walked),
-        "predicted": span(predicted), "measured": span(measured), "difference": percent(worst),
-        "beyond": beyond_words(part.walks), "points": outcomes_of([point for walk in part.walks for point in walk.points]),
-        "verdict": words, "kind": kind,
-    }  # fmt: skip
-
-
-def unit_of(family: Family) -> str:
-    """The walked parameter with its unit."""
-    unit = family.parameter.unit
-    return f"{family.parameter.name} ({unit})" if unit else family.parameter.name
+        "anchor": part.anchor, "title": part.title, "walks": str(len(part.walks)),
+        "parameter": "; ".join(dict.fromkeys(walk.parameter for walk in part.walks)), "predicted": span(part.edges("predicted")),
+        "measured": span(part.edges("measured")), "difference": percent(max(part.edges("difference"), key=abs, default=None)),
+        "beyond": beyond_words(part.walks), "points": outcomes_of(part.points), "verdict": words, "kind": kind,
+    }
 
 
 def edge_row(walk: Walk) -> list[str]:
     """A family's row of its section's table."""
-    edge = walk.edge or EdgeFound(None, None)
-    return [walk.family.title, unit_of(walk.family), number(edge.predicted), number(edge.measured), percent(edge.difference),
-            beyond_words([walk]), outcomes_of(walk.points), verdict(walk.wrong)[0]]  # fmt: skip
+    edge = walk.edge
+    return [walk.family.title, walk.parameter, general(edge.predicted), general(edge.measured), percent(edge.difference), beyond_words([walk]),
+            outcomes_of(walk.points), verdict(walk.wrong)[0]]
 
 
-def point_rows(walk: Walk) -> list[list[str]]:
-    """All points of a family in words."""
-    rows = []
-    for point in walk.points:
-        checked = point.checked
-        found = [number(checked.value), number(checked.reference), number(checked.error, 3)] if checked is not None else ["–", "–", "–"]
-        words = "; ".join(filter(None, [checked.words if checked is not None else "", point.reason]))
-        rows.append([point.label, number(point.value), point.outcome, *found, words, f"{point.cpu_s:.2g}"])
-    return rows
+def point_row(point: PointFound) -> list[str]:
+    """A point of a family in words."""
+    checked = point.checked
+    found = [NONE] * 3 if checked is None else [general(checked.value), general(checked.reference), general(checked.error, 3)]
+    words = "; ".join(filter(None, [checked.words if checked is not None else "", point.reason]))
+    return [point.label, general(point.value), point.outcome, *found, words, f"{point.cpu_s:.2g}"]
 
 
-def shown(walk: Walk) -> WalkShown:
-    """A family's panel."""
-    dots = tuple(DotShown(point.value, finite_error(point), point.outcome) for point in walk.points)
-    sizes = [abs(dot.y) for dot in dots if dot.y]
-    edge = walk.edge or EdgeFound(None, None)
+def walk_panel(walk: Walk) -> Shown:
+    """A family's panel: the checked error (None where there is no finite one) over the walked parameter; edges predicted and measured."""
+    errors = [point.checked.error if point.checked is not None else None for point in walk.points]
+    errors = [error if error is not None and math.isfinite(error) else None for error in errors]
+    sizes = [abs(error) for error in errors if error]
     y_log = bool(sizes) and max(sizes) > 20.0 * min(sizes)
-    own = replaced(dots) if y_log else dots
-    heading = walk.family.title.split(": ", 1)[-1]
-    return WalkShown(heading, own, edge.predicted, edge.measured, unit_of(walk.family), walk.family.check_name,
-                     walk.family.parameter.log, y_log)  # fmt: skip
+    if y_log:  # a logarithmic axis shows sizes above 1e-16
+        errors = [None if error is None else max(abs(error), 1e-16) for error in errors]
+    dots = [Shown(x=point.value, y=error, outcome=point.outcome) for point, error in zip(walk.points, errors)]
+    return Shown(heading=walk.heading, dots=dots, predicted=walk.edge.predicted, measured=walk.edge.measured, x_name=walk.parameter,
+                 y_name=walk.family.check_name, x_log=walk.family.parameter.log, y_log=y_log)
 
 
-def replaced(dots: tuple[DotShown, ...]) -> tuple[DotShown, ...]:
-    """Sizes of the errors, of which a logarithmic axis can show those above 1e-16."""
-    return tuple(DotShown(dot.x, None if dot.y is None else max(abs(dot.y), 1e-16), dot.outcome) for dot in dots)
-
-
-def finite_error(point: PointFound) -> float | None:
-    """The checked error, None where there is no finite one."""
-    error = point.checked.error if point.checked is not None else None
-    return error if error is not None and math.isfinite(error) else None
-
-
-def edges_shown(part: Part) -> EdgesShown | None:
+def edges_shown(part: Part) -> Shown | None:
     """The edges of a section with more families than are drawn one by one; None where there are few."""
-    rows = [(walk.family.title.split(": ", 1)[-1], walk.edge.predicted, walk.edge.measured) for walk in part.walks
-            if walk.edge is not None and walk.edge.predicted is not None and walk.edge.measured is not None]  # fmt: skip
+    rows = [(walk.heading, walk.edge.predicted, walk.edge.measured) for walk in part.walks
+            if walk.edge.predicted is not None and walk.edge.measured is not None]
     if len(part.walks) <= MANY or len(rows) < 2:
         return None
     worst = max(abs(measured / predicted - 1.0) for _, predicted, measured in rows)
-    title = f"{len(rows)} edges measured within {100.0 * worst:.1f} % of what theory says"
-    return EdgesShown(title, unit_of(part.walks[0].family), tuple(rows))
+    return Shown(title=f"{len(rows)} edges measured within {100.0 * worst:.1f} % of what theory says", x_name=part.walks[0].parameter, rows=rows)
 
 
 def finding(part: Part) -> str:
     """What a section's walks show, in a sentence."""
-    off = [walk.edge.difference for walk in part.walks if walk.edge is not None and walk.edge.difference is not None]
-    points = [point for walk in part.walks for point in walk.points]
+    off, points = part.edges("difference"), part.points
     lead = f"edge within {100.0 * max(map(abs, off)):.1f} % of theory, " if off else ""
     garbage = sum(point.outcome == GARBAGE for point in points)
     rest = f"{garbage} POINTS ARE GARBAGE" if garbage else f"no garbage in {len(points)} points ({outcomes_of(points)})"
@@ -227,10 +177,49 @@ def finding(part: Part) -> str:
 
 def headline(every: Sequence[Part]) -> str:
     """What the whole atlas says, in a sentence."""
-    walks = [walk for part in every for walk in part.walks]
-    points = [point for walk in walks for point in walk.points]
-    off = [walk.edge.difference for walk in walks if walk.edge is not None and walk.edge.difference is not None]
+    walks, points = [walk for part in every for walk in part.walks], [point for part in every for point in part.points]
+    off = [size for part in every for size in part.edges("difference")]
     wrong = sum(bool(walk.wrong) for walk in walks)
     said = f"{len(every)} known failures in {len(walks)} walks and {len(points)} points ({outcomes_of(points)})"
     theory = f"; {len(off)} edges that theory gives, measured within {100.0 * max(map(abs, off)):.1f} %" if off else ""
     return said + theory + (f"; {wrong} walks are NOT as they are to be" if wrong else "; all as they are to be")
+
+
+def figures_of(part: Part) -> list[Figure]:
+    """The figures of a section: many edges side by side, and the first walks one by one."""
+    edges = edges_shown(part)
+    made = [] if edges is None else [Figure(f"stability_{part.anchor}_edges", edges, draw_edges, EDGES_CAPTION)]
+    walks = [walk for walk in part.walks if walk.record is not None]
+    panels = [walk_panel(walk) for walk in walks[:: max(1, -(-len(walks) // MANY))]]
+    return made + ([Figure(f"stability_{part.anchor}", Shown(title=finding(part), panels=panels), draw_part, CAPTION)] if panels else [])
+
+
+def content_of(part: Part, pictures: list[Shown]) -> dict[str, Any]:
+    """What the template needs of a section."""
+    first = part.walks[0].family
+    return {
+        "anchor": part.anchor, "title": part.title, "about": first.about or first.says, "beyond": beyond_words(part.walks),
+        "sources": list(dict.fromkeys(walk.family.edge.source for walk in part.walks if walk.family.edge is not None)),
+        "remarks": list(dict.fromkeys(walk.family.remark for walk in part.walks if walk.family.remark)),
+        "says": list(dict.fromkeys(walk.family.says for walk in part.walks)) if first.about else [],
+        "wrong": list(part.wrong), "figures": pictures, "rows": [edge_row(walk) for walk in part.walks],
+        "walks": [{"title": walk.family.title, "check": walk.family.check_name, "points": list(map(point_row, walk.points))} for walk in part.walks],
+    }
+
+
+def write_stability(out: Path, folder: Path = store.RECORDS) -> Shown:
+    """Write the page below a page's folder; whatever is wrong with the records is told, not raised."""
+    return front_of(lambda: _write(out, folder), "The stability atlas could not be shown")
+
+
+def _write(out: Path, folder: Path) -> Shown:
+    """The page with every family and every point."""
+    every = parts(folder)
+    records = [walk.record for part in every for walk in part.walks if walk.record is not None]
+    if not records:
+        return Shown(lack="The stability atlas has not been walked: ci/atlas --accept.", defect="")
+    pictures = [[make(figure, out) for figure in figures_of(part)] for part in every]
+    versions = dict.fromkeys(record.version for record in records if record.version)
+    write_page(out, NAME, {"headline": headline(every), "first": [first_row(part) for part in every], "versions": ", ".join(versions),
+                           "parts": [content_of(part, own) for part, own in zip(every, pictures)]})
+    return Shown(words=headline(every), link=NAME, lack="", defect="\n".join(defects_of([made for own in pictures for made in own])))

@@ -7,24 +7,18 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
+# How keys end, with the factor to the printed unit and that unit; longer endings before those they end in.
 _SCALES: tuple[tuple[str, float, str], ...] = (
-    ("Pa_sqrt_m", 1e-6, "MPa√m"),
-    ("Pa_per_m", 1e-6, "MPa/m"),
-    ("Pa_m", 1e-6, "MPa/m"),
-    ("MPa", 1.0, "MPa"),
-    ("1_s", 1.0, "1/s"),
-    ("kg_m3", 1.0, "kg/m³"),
-    ("N_m", 1.0, "N/m"),
-    ("J_m", 1.0, "J/m"),
-    ("m2", 1.0, "m²"),
-    ("Pa", 1e-6, "MPa"),
-    ("mm", 1.0, "mm"),
-    ("deg", 1.0, "°"),
-    ("MB", 1.0, "MB"),
-    ("m", 1.0, "m"),
-    ("s", 1.0, "s"),
-    ("J", 1.0, "J/m"),
+    ("Pa_sqrt_m", 1e-6, "MPa√m"), ("Pa_per_m", 1e-6, "MPa/m"), ("Pa_m", 1e-6, "MPa/m"), ("MPa", 1.0, "MPa"), ("1_s", 1.0, "1/s"),
+    ("kg_m3", 1.0, "kg/m³"), ("N_m", 1.0, "N/m"), ("J_m", 1.0, "J/m"), ("m2", 1.0, "m²"), ("Pa", 1e-6, "MPa"), ("mm", 1.0, "mm"),
+    ("deg", 1.0, "°"), ("MB", 1.0, "MB"), ("m", 1.0, "m"), ("s", 1.0, "s"), ("J", 1.0, "J/m"),
 )
+NONE = "–"  # where there is no number
+
+
+def minus(text: str) -> str:
+    """Hyphens as minus signs."""
+    return text.replace("-", "−")
 
 
 def number(value: float, digits: int = 3) -> str:
@@ -34,27 +28,90 @@ def number(value: float, digits: int = 3) -> str:
     if abs(value) < 1e-13:  # round-off of any quantity shown here
         return "0"
     if abs(value) < 1e4 and abs(value - float(f"{value:.{digits}g}")) < 1e-9 * abs(value):
-        return f"{value:.{digits}g}".replace("-", "−") if abs(value) >= 1e-3 else scientific(value, digits)
+        return minus(f"{value:.{digits}g}") if abs(value) >= 1e-3 else scientific(value, digits)
     size = math.floor(math.log10(abs(value)))
     if size < -3 or size > 6:
         return scientific(value, digits)
-    return f"{value:,.{max(0, digits - 1 - size)}f}".replace("-", "−").replace(",", "\u202f")
+    return minus(f"{value:,.{max(0, digits - 1 - size)}f}").replace(",", "\u202f")
 
 
 def scientific(value: float, digits: int) -> str:
-    """A number as mantissa and power of ten."""
+    """A number as mantissa and power of ten, in superscript digits."""
     mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
-    return f"{mantissa}×10{_raised(int(exponent))}".replace("-", "−")
+    return minus(f"{mantissa}×10{str(int(exponent)).translate(str.maketrans('-0123456789', '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'))}")
 
 
-def _raised(exponent: int) -> str:
-    """An integer written in superscript digits."""
-    return str(exponent).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+def general(value: float | None, digits: int = 4) -> str:
+    """A number with at most so many significant digits, by an exponent where it is very large or small; a dash for none."""
+    return NONE if value is None or not math.isfinite(value) else minus(f"{value:.{digits}g}")
 
 
-def mpa(pressure_Pa: float, decimals: int = 2) -> str:
-    """A pressure in Pa written in MPa, to two decimals unless asked otherwise."""
-    return f"{pressure_Pa / 1e6:.{decimals}f}\u00a0MPa"
+def span(values: Sequence[float], digits: int = 3) -> str:
+    """A number, or from the least to the largest."""
+    return " to ".join(dict.fromkeys(general(value, digits) for value in (min(values), max(values)))) if values else NONE
+
+
+def thousands(count: float | None) -> str:
+    """A count with thin spaces between thousands; a dash for none."""
+    return f"{int(count):,}".replace(",", "\u202f") if isinstance(count, (int, float)) else NONE
+
+
+def mpa(pressure_Pa: float, decimals: int = 2, sign: str = "") -> str:
+    """A pressure in Pa written in MPa, to two decimals unless asked otherwise; with its sign where that is "+"."""
+    return minus(f"{pressure_Pa / 1e6:{sign}.{decimals}f}\u00a0MPa") if sign else f"{pressure_Pa / 1e6:.{decimals}f}\u00a0MPa"
+
+
+def signed_mpa(difference_Pa: float) -> str:
+    """A difference of pressure in Pa written in MPa with its sign."""
+    return mpa(difference_Pa, 3, "+")
+
+
+def metres_signed(length_m: float) -> str:
+    """A length in m to two decimals with its sign."""
+    return minus(f"{length_m:+.2f}\u00a0m")
+
+
+def millimetres(length_m: float) -> str:
+    """A small length in mm; what is under a hundredth is told as such."""
+    return f"{number(1e3 * length_m, 2)}\u00a0mm" if length_m >= 1e-5 else "under 0.01\u00a0mm"
+
+
+def wall_time(time_s: float) -> str:
+    """A wall time in s, or min from 100 s on."""
+    return f"{number(time_s / 60.0, 2)}\u00a0min" if time_s >= 100.0 else f"{number(time_s, 2)}\u00a0s"
+
+
+def order_words(order: float, decimals: int = 1) -> str:
+    """An order of convergence with one decimal unless asked otherwise."""
+    return minus(f"{round(order, decimals) + 0.0:.{decimals}f}")
+
+
+def relative(error: float, signed: bool = False) -> str:
+    """A relative error: in per cent, or below 1e-6 as a power of ten."""
+    if math.isnan(error):
+        return NONE
+    words = "0" if error == 0.0 else share(error) if abs(error) >= 1e-6 else scientific(error, 2)
+    return f"+{words}" if signed and error > 0.0 else words
+
+
+# Of a followed number of a study: pressures are written in MPa and their differences in kPa, all others in their own unit.
+
+
+def base_words(value: float | None, unit: str) -> str:
+    """A number of a run itself."""
+    if value is None:
+        return NONE
+    return f"{value / 1e6:.4f}\u00a0MPa" if unit == "Pa" else f"{value:.4g}\u00a0{unit}"
+
+
+def amount(value: float, unit: str, sign: str = "+") -> str:
+    """A difference of it."""
+    return minus(f"{value / 1e3:{sign}.2f}" if unit == "Pa" else f"{value:{sign}.3f}")
+
+
+def small_unit(unit: str) -> str:
+    """The unit that differences of it are written in."""
+    return "kPa" if unit == "Pa" else unit
 
 
 def metres(length_m: float) -> str:
@@ -65,6 +122,16 @@ def metres(length_m: float) -> str:
 def share(fraction: float) -> str:
     """A fraction as a percentage."""
     return f"{number(100.0 * fraction, 2)}\u00a0%"
+
+
+def counted(count: int, word: str) -> str:
+    """A count with its word."""
+    return f"{count} {word if count == 1 else word[:-1] + 'ies' if word.endswith('y') else word + 's'}"
+
+
+def sentence(words: str) -> str:
+    """Words with a capital and a full stop."""
+    return f"{words[:1].upper()}{words[1:].rstrip('.')}." if words else ""
 
 
 def listed(items: Sequence[str]) -> str:

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from reports.ablation import ablation_figure, section_of, verdict_words
 from verification.ablation import store
 from verification.ablation.effects import not_needed
 
 
-def test_the_page_has_a_table_a_scene(tmp_path: Path) -> None:
+def test_the_page_has_a_table_a_scene() -> None:
     """The chart has a column for each whole table; reasons stand beside what is not needed."""
     kept = store.read_all()
-    section = section_of(kept, {}, tmp_path)
+    section = section_of(kept, {})
     assert section is not None and len(section["tables"]) == len(kept)
     figure = ablation_figure(kept)
     assert len(figure.columns) == sum(one.extent != "interfaces" for one in kept)
-    assert section_of([], {}, tmp_path) is None
+    assert section_of([], {}) is None
 
 
 def test_what_is_kept_without_need_has_its_reason_beside_it() -> None:

@@ -2,12 +2,12 @@
 from __future__ import annotations
 
 import subprocess
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
-from reports.alone import Alone, make
+from reports.figures import write_alone
+from reports.shown import Shown
 
 REPORTS = Path(__file__).resolve().parents[1]
 PAGES = [("make_stability.py", "--records", "stability.html"), ("make_precision.py", "--precision", "precision.html")]
@@ -27,25 +27,22 @@ def test_without_data_the_reason_is_told(tmp_path: Path, script: str, option: st
     assert not (tmp_path / "out" / name).exists()
 
 
-@dataclass
-class Told:
-    """What writing a made-up page tells."""
-
-    lack: str = ""
-    defect: str = ""
-
-
 def test_the_page_is_written_where_it_is_asked_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Status 0, the page's path and its words; a defect is shown whole, with status 1."""
 
-    def write(out: Path, data: Path) -> Told:
+    def write(out: Path, data: Path) -> Shown:
         """The folder of data says what is wrong."""
         (out / "page.html").write_text(str(data))
-        return Told("no page", "a defect of five lines") if data.name == "torn" else Told()
+        if data.name == "torn":
+            return Shown(lack="no page", defect="a defect of five lines")
+        return Shown(words="seven words", link="page.html", lack="", defect="")
 
-    page = Alone("A page.", "--from", tmp_path / "kept", write, "page.html", lambda made: f"{made.lack}seven words")
-    assert make(page, ["--out", str(tmp_path)]) == 0
+    def make(*arguments: str) -> int:
+        """The page from a folder of data that is kept by default."""
+        return write_alone("A page.", "--from", tmp_path / "kept", write, ["--out", str(tmp_path), *arguments])
+
+    assert make() == 0
     assert (tmp_path / "page.html").read_text() == str(tmp_path / "kept")
     assert capsys.readouterr().out == f"{tmp_path / 'page.html'}: seven words\n"
-    assert make(page, ["--out", str(tmp_path), "--from", "torn"]) == 1
+    assert make("--from", "torn") == 1
     assert capsys.readouterr() == ("", "a defect of five lines\n")

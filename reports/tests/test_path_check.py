@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reports.charts.path_check_chart import draw_paths
 from reports import path_check
-from reports.path_check import PathCheck, PathFigure, PathPanel, SolverPath, _finding, _note, _row, _settled, section
+from reports.charts.parts import draw_path_check
+from reports.path_check import SolverPath, _finding, _note, _row, _settled, section
+from reports.shown import Shown
 
 
 def a_path(experiment: int, off_m: float, off_same_m: float, cell_m: float = 0.5, block: str = "400 m, graded") -> SolverPath:
@@ -38,8 +39,8 @@ def test_chart_shows_every_run_and_the_interface_where_paths_come_near() -> None
     """Lines of each panel by their labels."""
     tips = np.array([[0.0, 5.0], [0.5, 7.0], [4.0, 9.0]])
     runs = {k: (a_path(k, 0.1, 0.1), a_path(k, 0.2, 0.1, 1.0)) for k in (5, 6)}
-    panels = tuple(PathPanel(f"panel {k}", tips, "converged", k == 6, runs[k], 5.0) for k in (5, 6))
-    figure = draw_paths(PathFigure("a title", panels))
+    panels = [Shown(heading=f"panel {k}", converged=tips, converged_words="converged", shows_same=k == 6, runs=runs[k], interface_m=5.0) for k in (5, 6)]
+    figure = draw_path_check(Shown(title="a title", panels=panels))
     for axes, dashed in zip(figure.axes, (0, 3)):
         labels = [str(line.get_label()) for line in axes.get_lines()]
         assert sum("cells" in label for label in labels) == 2
@@ -59,9 +60,9 @@ def test_how_far_converged_paths_are_is_counted(monkeypatch: pytest.MonkeyPatch)
         "Experiment 5 moved by 0.25 m when increments were halved to 0.5 m; Experiment 6 moved by 0.062 m when increments were halved to"
         " 0.125 m, and is as far from its limit (first order)"
     )
-    assert "= 0.26 m (Cotterell" in _note(PathCheck(PathFigure("", ()), [], [], [])), "1.45^2/8 m"
+    assert "= 0.26 m (Cotterell" in _note([]), "1.45^2/8 m"
 
 
 def test_nothing_is_said_where_nothing_was_run(tmp_path: Path) -> None:
     """No runs, no part of the page."""
-    assert section(tmp_path, tmp_path / "out") is None
+    assert section(tmp_path) is None

@@ -8,18 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from reports.catalogue import catalogue
 from reports.choices import choice_figure
+from reports.claims import claim_rows, sensitivity
 from reports.comparison import comparisons, inertia_words
 from reports.crack import raster, side_of
 from reports.curves import height_figure, largest_turn, path_figure, profile_figure
-from reports.figures import catalogue, make, suspect_words
+from reports.figures import make, suspect_words
 from reports.layout import layout_of
 from reports.ledger import base_of, closure_of, differences, suspicions
 from reports.outcome import finding, outcome_of, outcomes_of
 from reports.runs import NotAvailable, load_run, load_runs
-from reports.sensitivity import sensitivity
 from reports.tests.synthetic import STEMS, Plan, claims, write_both, write_run
-from reports.verdicts import claim_rows
 from reports.words import number, quantity
 from verification.harness.choices import Choice, Point
 from verification.harness.claim_data import NOT_REPRODUCED, Case, CaseResult, ClaimResult
@@ -333,7 +333,7 @@ def test_the_table_of_claims_against_choices() -> None:
     """Columns are the choices that claims were evaluated under; a claim that some choice overturns is named."""
     point = Point("edges", "edges", "held", (Choice("loaded", "edges: loaded", "loaded", {}), Choice("x", "edges: x", "x", {})))
     table = sensitivity(claims(), [point, POINT])
-    assert table.points == (("edges", "edges", 1),) and [column.name for column in table.columns] == ["loaded"]
+    assert table.points == [("edges", "edges", 1)] and [column.name for column in table.columns] == ["loaded"]
     kinds = {(line.id, line.mechanics): [cell.kind for cell in line.cells] for line in table.lines}
     assert kinds["2c", "explicit"] == ["no", "yes"] and kinds["5a", "explicit"] == ["no", "open"]
     assert "not under others: 2c" in table.finding and "under none: 5a" in table.finding and "that was run: 1b" in table.finding

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from reports import budget, refinement
+from reports.figures import make
 from reports.make_verification import main as make_verification
 from verification.harness.richardson import estimate
 
@@ -77,18 +78,18 @@ def write_budget(root: Path) -> Path:
 
 def test_nothing_run_is_no_part(tmp_path: Path) -> None:
     """Without files there is no part."""
-    assert refinement.section(tmp_path, tmp_path) is None and budget.section(tmp_path, tmp_path) is None
+    assert refinement.section(tmp_path) is None and budget.section(tmp_path) is None
 
 
 def test_refinement_counts_what_converges_and_names_what_does_not(tmp_path: Path) -> None:
     """Intro, title, table and marks follow from the rows."""
-    found = refinement.section(write_refined(tmp_path / "runs"), tmp_path / "out")
+    found = refinement.section(write_refined(tmp_path / "runs"))
     assert found is not None
     assert "Of 5 numbers 3 have a limit (median order 1), 1 stands still; the others: 1 oscillating." in found["intro"]
-    (picture,), (table,) = found["figures"], found["tables"]
-    assert (tmp_path / "out" / "figures" / f"{picture['name']}.png").stat().st_size > 5000
-    assert "of 5 numbers 3 have a limit and 1 stands still; no complete run of soft at 0.25\xa0m".replace("\xa0", " ") in picture["title"]
-    assert "moves the restart pressure (soft) most, by 200 kPa" in picture["title"]
+    (picture,), (table,) = [make(figure, tmp_path / "out") for figure in found["figures"]], found["tables"]
+    assert (tmp_path / "out" / "figures" / f"{picture.name}.png").stat().st_size > 5000
+    assert "of 5 numbers 3 have a limit and 1 stands still; no complete run of soft at 0.25\xa0m".replace("\xa0", " ") in picture.title
+    assert "moves the restart pressure (soft) most, by 200 kPa" in picture.title
     assert table["header"][2:6] == ["2 m", "1 m", "0.5 m", "0.25 m"] and table["marked"] == [3]
     start = table["rows"][0]
     assert start[2:6] == ["2.4400", "2.4200", "2.4100", "2.4050"] and start[6] == "1.00, 1.00" and start[7] == "2.4000 ± 0.0062 MPa"
@@ -108,13 +109,13 @@ def test_a_clean_line_ends_at_its_limit(tmp_path: Path) -> None:
 
 def test_the_budget_names_what_dominates_and_shows_failures(tmp_path: Path) -> None:
     """Factors beside the others dominate nothing; refused runs are marked rows with their reason; the base that failed is told."""
-    found = budget.section(write_budget(tmp_path / "runs"), tmp_path / "out")
+    found = budget.section(write_budget(tmp_path / "runs"))
     assert found is not None
-    (picture,), (table, broken) = found["figures"], found["tables"]
-    assert picture["title"].startswith("Experiment 1: mesh moves the start of growth most, loading rate moves the pressure at 40 m most")
-    assert "path" not in picture["title"]
-    assert "largest numerical effect is that of the mesh, 20 kPa (start of growth, soft)" in picture["title"]
-    assert (tmp_path / "out" / "figures" / f"{picture['name']}.svg").is_file()
+    (picture,), (table, broken) = [make(figure, tmp_path / "out") for figure in found["figures"]], found["tables"]
+    assert picture.title.startswith("Experiment 1: mesh moves the start of growth most, loading rate moves the pressure at 40 m most")
+    assert "path" not in picture.title
+    assert "largest numerical effect is that of the mesh, 20 kPa (start of growth, soft)" in picture.title
+    assert (tmp_path / "out" / "figures" / f"{picture.name}.svg").is_file()
     assert "2 of their runs failed or were refused" in found["intro"]
     assert table["rows"][1][:4] == ["mesh", "cells of 0.5 m", "−20.00 (−0.83\xa0%)", "+1.00 (+0.04\xa0%)"]
     assert table["marked"] == [3, 4] and "J ring, 3 cells: unknown key." in table["note"]

@@ -9,9 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from reports import stability_page
-from reports.stability import finding, headline, parts
-from reports.stability_page import NAME, write_stability
+from reports import stability
+from reports.stability import NAME, finding, headline, parts, write_stability
 from verification.stability import store
 from verification.stability.family import GARBAGE
 
@@ -39,7 +38,7 @@ def test_garbage_and_a_wrong_edge_are_told(tmp_path: Path, monkeypatch: pytest.M
     store.write(replace(flow, points=(replace(flow.points[0], outcome=GARBAGE), *flow.points[1:])), records)
     every = parts(records)
     assert "2 walks are NOT as they are to be" in headline(every)
-    monkeypatch.setattr(stability_page, "pictures", lambda part, out: [])  # are drawn in the test above
+    monkeypatch.setattr(stability, "figures_of", lambda part: [])  # are drawn in the test above
     assert not write_stability(tmp_path, records).defect
     text = (tmp_path / NAME).read_text(encoding="utf-8")
     assert text.count('class="failures"') == 2 and "+5.0 % off what theory says" in text and "1 POINTS ARE GARBAGE" in "".join(map(finding, every))

@@ -12,14 +12,15 @@ from typing import Any
 import pytest
 
 from reports import verification
-from reports.charts.ladder_chart import spread_apart
+from reports.charts.ladder import spread_apart
 from reports.charts.style import new_figure
+from reports.figures import Figure
 from reports.ladder import convergence_figure, cost_figure, load_ladder
 from reports.make_page import main as make_page
 from reports.make_verification import main
-from reports.sections import put_figure
+from reports.shown import Shown
 from reports.tests.test_page import links_of
-from reports.verification import relative
+from reports.words import relative
 
 SIZES = (2.0, 1.0, 0.5)
 
@@ -227,18 +228,18 @@ def a_part(name: str, monkeypatch: pytest.MonkeyPatch, section: Any) -> None:
 def test_parts_of_other_modules_are_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A part's intro, figures and tables stand on the page; one with nothing to show is left out, one that breaks is told."""
 
-    def found(runs: Path, out: Path) -> dict[str, Any]:
+    def found(runs: Path) -> dict[str, Any]:
         """A part with a figure and a table."""
         rows = [["path <5>", "0.3"], ["path 6", "2.1"]]
         table = {"title": "Largest", "header": ["what", "m"], "rows": rows, "marked": [1], "note": "In cells."}
-        picture = put_figure(new_figure(3.0, 2.0), out, "paths", "Paths agree", "Both.")
+        picture = Figure("paths", Shown(title="Paths agree"), lambda data: new_figure(3.0, 2.0), "Both.")
         return {"title": "Paths", "intro": "They agree within a cell.", "figures": [picture], "tables": [table]}
 
-    def breaks(runs: Path, out: Path) -> None:
+    def breaks(runs: Path) -> None:
         """A part with a defect."""
         raise ValueError("no such run")
 
-    for name, section in (("one", found), ("two", lambda runs, out: None), ("three", breaks)):
+    for name, section in (("one", found), ("two", lambda runs: None), ("three", breaks)):
         a_part(name, monkeypatch, section)
     monkeypatch.setattr(verification, "PARTS", ("one", "two", "three", "not_there"))
     assert main(["--runs", str(tmp_path), "--out", str(tmp_path / "out"), "--strict"]) == 1

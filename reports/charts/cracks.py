@@ -5,11 +5,10 @@ from __future__ import annotations
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Wedge
 
-from reports.charts.style import COLOURS, FLUID, INK, PALE, interface_lines, new_figure, put_legend, put_title
-from reports.crack import CopiesFigure, CopiesPanel, Node, PressureFigure
+from reports.charts.style import COLOURS, FLUID, INK, PALE, entry, interface_lines, new_figure, panel_rows, put_legend
+from reports.shown import Shown
 
 # By side of the fracture (0: ahead of its tip), then below and above the first interface.
 _SIDES: dict[int, tuple[str, str, str]] = {
@@ -17,27 +16,31 @@ _SIDES: dict[int, tuple[str, str, str]] = {
     1: ("#c2571a", "#f0a878", "#f9d9c2"),
     0: ("#7a7a7a", "#c4c4c4", "#e2e2e2"),
 }
+# A copy's sector by its signs about (fracture, first interface); None: whichever is not split.
+_SECTORS: dict[tuple[int, int | None], tuple[float, float]] = {
+    (-1, None): (90, 270), (1, None): (-90, 90), (0, None): (0, 360), (-1, -1): (180, 270), (-1, 1): (90, 180), (1, -1): (270, 360),
+    (1, 1): (0, 90), (0, -1): (180, 360), (0, 1): (0, 180),
+}
 
 
-def draw_copies(data: CopiesFigure) -> Figure:
+def draw_copies(data: Shown) -> Figure:
     """Fig 1: panels of nodes with their copies, particles by side, crack points and opened faces."""
-    figure = new_figure(6.2 * len(data.panels) + 0.6, 7.3)
-    put_title(figure, data.title, 62 * len(data.panels))
-    for axes, panel in zip(figure.subplots(1, len(data.panels), squeeze=False)[0], data.panels):
+    count = len(data.panels)
+    figure = new_figure(6.2 * count + 0.6, 7.3, data.title, 62 * count)
+    for axes, panel, _ in panel_rows(figure, [data.panels]):
         _draw_panel(axes, panel)
     handles = [
-        Line2D([], [], color=FLUID, marker="o", markersize=5, markerfacecolor="white", label="crack points, polyline"),
-        Line2D([], [], color=INK, linewidth=1.4, label=f"faces, opening ×{data.magnified:g}"),
-        Line2D([], [], color=COLOURS["weak"], linewidth=1.6, label="interface"),
-        Line2D([], [], color=_SIDES[-1][0], marker=".", linestyle="none", label="particles on the left"),
-        Line2D([], [], color=_SIDES[1][0], marker=".", linestyle="none", label="on the right (lighter: above)"),
-        Line2D([], [], color=PALE, marker="o", linestyle="none", label="node; a sector a copy"),
+        entry("crack points, polyline", color=FLUID, marker="o", markersize=5, markerfacecolor="white"),
+        entry(f"faces, opening ×{data.magnified:g}", color=INK, linewidth=1.4), entry("interface", color=COLOURS["weak"], linewidth=1.6),
+        entry("particles on the left", color=_SIDES[-1][0], marker=".", linestyle="none"),
+        entry("on the right (lighter: above)", color=_SIDES[1][0], marker=".", linestyle="none"),
+        entry("node; a sector a copy", color=PALE, marker="o", linestyle="none"),
     ]
-    put_legend(figure, handles, 6 if len(data.panels) > 1 else 3)
+    put_legend(figure, handles, 6 if count > 1 else 3)
     return figure
 
 
-def _draw_panel(axes: Axes, panel: CopiesPanel) -> None:
+def _draw_panel(axes: Axes, panel: Shown) -> None:
     """One crack's surroundings, m."""
     x0, x1, y0, y1 = panel.window_m
     axes.add_collection(LineCollection([((x, y0), (x, y1)) for x in panel.grid_x_m], colors="#dddddd", linewidths=0.7))
@@ -48,27 +51,17 @@ def _draw_panel(axes: Axes, panel: CopiesPanel) -> None:
         axes.plot([x0, x1], [height, height], color=COLOURS["weak"], linewidth=1.6, zorder=3)
     for x_m, y_m in panel.faces:
         axes.plot(x_m, y_m, color=INK, linewidth=1.4, zorder=4)
-    axes.plot(panel.points_x_m, panel.points_y_m, "-o", color=FLUID, linewidth=1.2, markersize=5.5,
-              markerfacecolor="white", zorder=6)
+    axes.plot(panel.points_x_m, panel.points_y_m, "-o", color=FLUID, linewidth=1.2, markersize=5.5, markerfacecolor="white", zorder=6)
     for node in panel.nodes:
         _draw_node(axes, node, 0.016 * (x1 - x0))
-    axes.set_xlim(x0, x1)
-    axes.set_ylim(y0, y1)
+    axes.set(xlim=(x0, x1), ylim=(y0, y1))
     axes.set_aspect("equal")
     axes.set_title(panel.heading)
     axes.set_xlabel("x (m)")
     axes.set_ylabel("height above the symmetry line (m)")
 
 
-# A copy's sector by its signs about (fracture, first interface); None: whichever is not split.
-_SECTORS: dict[tuple[int, int | None], tuple[float, float]] = {
-    (-1, None): (90, 270), (1, None): (-90, 90), (0, None): (0, 360),
-    (-1, -1): (180, 270), (-1, 1): (90, 180), (1, -1): (270, 360), (1, 1): (0, 90),
-    (0, -1): (180, 360), (0, 1): (0, 180),
-}
-
-
-def _draw_node(axes: Axes, node: Node, radius_m: float) -> None:
+def _draw_node(axes: Axes, node: Shown, radius_m: float) -> None:
     """A node: a small dot where it has one copy, a disc with a sector for each where it has more."""
     if len(node.copies) < 2:
         axes.plot([node.x_m], [node.y_m], "o", markersize=2.6, color=PALE, zorder=3)
@@ -77,36 +70,27 @@ def _draw_node(axes: Axes, node: Node, radius_m: float) -> None:
     split_by_interface = any(copy[1:] != node.copies[0][1:] for copy in node.copies)
     for copy in node.copies:
         second = copy[1] if split_by_interface and len(copy) > 1 else None
-        start, end = _SECTORS[(copy[0] if split_by_crack else 0, second)]
-        level = 1 if len(copy) > 1 and copy[1] > 0 else 0
-        axes.add_patch(Wedge((node.x_m, node.y_m), 1.6 * radius_m, start, end, facecolor=_SIDES[copy[0]][level],
+        colour = _SIDES[copy[0]][1 if len(copy) > 1 and copy[1] > 0 else 0]
+        axes.add_patch(Wedge((node.x_m, node.y_m), 1.6 * radius_m, *_SECTORS[(copy[0] if split_by_crack else 0, second)], facecolor=colour,
                              edgecolor="white", linewidth=0.8, zorder=5))
 
 
-def draw_pressure(data: PressureFigure) -> Figure:
+def draw_pressure(data: Shown) -> Figure:
     """Fig 2: horizontal stress about the crack; pressure, opening and permeability along it."""
-    figure = new_figure(13.0, 6.2)
-    put_title(figure, data.title, 120)
+    figure = new_figure(13.0, 6.2, data.title, 120)
     left, right = figure.subfigures(1, 2, width_ratios=(1.15, 1.0))
     field = left.subplots()
-    image = field.pcolormesh(
-        data.edges_x_m, data.edges_y_m, data.s_xx_MPa, cmap="RdBu_r", rasterized=True,
-        vmin=data.centre_MPa - data.range_MPa, vmax=data.centre_MPa + data.range_MPa,
-    )
+    image = field.pcolormesh(data.edges_x_m, data.edges_y_m, data.s_xx_MPa, cmap="RdBu_r", rasterized=True,
+                             vmin=data.centre_MPa - data.range_MPa, vmax=data.centre_MPa + data.range_MPa)
     field.plot(data.crack_x_m, data.crack_y_m, color=INK, linewidth=1.6)
     interface_lines(field, data.interfaces_m)
     field.set_aspect("equal")
-    field.set_xlim(*data.view_m[:2])
-    field.set_ylim(*data.view_m[2:])
-    field.set_xlabel("x (m)")
-    field.set_ylabel("height above the symmetry line (m)")
+    field.set(xlim=data.view_m[:2], ylim=data.view_m[2:], xlabel="x (m)", ylabel="height above the symmetry line (m)")
     field.set_title(f"Horizontal stress, {data.source}, t = {data.time_s:.3f} s")
-    bar = left.colorbar(image, ax=field, shrink=0.85, extend="both")
-    bar.set_label("total horizontal stress (MPa, tension positive; white: in situ)")
+    left.colorbar(image, ax=field, shrink=0.85, extend="both").set_label("total horizontal stress (MPa, tension positive; white: in situ)")
     rows = right.subplots(3, 1, sharex=True)
     lines = (
-        (data.pressure, FLUID, f"pressure over inlet's\n{data.inlet_MPa:.2f} MPa (–)"),
-        (data.opening_mm, COLOURS["soft"], "opening (mm)"),
+        (data.pressure, FLUID, f"pressure over inlet's\n{data.inlet_MPa:.2f} MPa (–)"), (data.opening_mm, COLOURS["soft"], "opening (mm)"),
         (data.permeability_m2, COLOURS["weak"], "permeability\nw²/12 (m²)"),
     )
     for axes, (values, colour, label) in zip(rows, lines):

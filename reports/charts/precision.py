@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -10,10 +10,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from reports.charts.style import FLAG, INK, PALE, new_figure, panel_grid, put_legend, put_title
-
-if TYPE_CHECKING:  # the other way round at run time: the part of the page draws itself
-    from reports.precision import CurveShown, Look, PanelShown, PrecisionFigure
+from reports.charts.style import DASHED, FLAG, INK, PALE, entry, new_figure, panel_grid, put_legend
+from reports.shown import Shown
 
 _COLOURS = {"quasistatic": "#0067a5", "updated": "#d04a00", "total": "#a3397f", "elements": "#00845f"}
 _NAMES = {
@@ -28,7 +26,7 @@ _DASHES = {"--": "16 points a cell", ":": "9 points a cell", "-.": "another tran
 _STRIP = 0.075  # height of the strip of failures, in shares of the axes
 
 
-def draw_front(data: PrecisionFigure) -> Figure:
+def draw_front(data: Shown) -> Figure:
     """All panels, three in a row; methods of the background pale."""
     figure, every, columns = panel_grid(data.title, len(data.panels), 3.75)
     for k, (axes, panel) in enumerate(zip(every, data.panels, strict=True)):
@@ -42,10 +40,9 @@ def draw_front(data: PrecisionFigure) -> Figure:
     return figure
 
 
-def draw_full(data: PrecisionFigure) -> Figure:
+def draw_full(data: Shown) -> Figure:
     """One panel with every method named beside it."""
-    figure = new_figure(11.4, 6.4)
-    put_title(figure, data.title, 118)
+    figure = new_figure(11.4, 6.4, data.title, 118)
     (panel,) = data.panels
     axes = figure.subplots()
     _draw_panel(axes, panel, pale=False)
@@ -59,7 +56,7 @@ def draw_full(data: PrecisionFigure) -> Figure:
     return figure
 
 
-def _draw_panel(axes: Axes, panel: PanelShown, pale: bool) -> None:
+def _draw_panel(axes: Axes, panel: Shown, pale: bool) -> None:
     """Axes, band, lines, curves, front, failures."""
     axes.set(xscale="log", yscale="log")
     axes.grid(True, which="major")
@@ -70,7 +67,7 @@ def _draw_panel(axes: Axes, panel: PanelShown, pale: bool) -> None:
         return
     _limits(axes, panel)
     for error in (0.05, 0.01, 0.001):
-        axes.axhline(error, color=INK if error == 0.01 else PALE, linewidth=1.0, linestyle=(0, (4, 2)), zorder=1)
+        axes.axhline(error, color=INK if error == 0.01 else PALE, linewidth=1.0, linestyle=DASHED, zorder=1)
     if panel.uncertainty > axes.get_ylim()[0]:
         axes.axhspan(axes.get_ylim()[0], panel.uncertainty, color="#c9d6e6", alpha=0.55, linewidth=0, zorder=0.5)
         axes.annotate("uncertainty of the reference", (0.985, panel.uncertainty), xycoords=("axes fraction", "data"), xytext=(0, -9),
@@ -86,7 +83,7 @@ def _draw_panel(axes: Axes, panel: PanelShown, pale: bool) -> None:
     _strip(axes, panel)
 
 
-def _limits(axes: Axes, panel: PanelShown) -> None:
+def _limits(axes: Axes, panel: Shown) -> None:
     """Ranges with room for the strip of failures, errors as percentages."""
     low, high = min(panel.errors[0], 6e-4) / 1.6, max(panel.errors[1], 0.06) * 1.5
     axes.set_ylim(low, low * (high / low) ** (1.0 / (1.0 - _STRIP)))
@@ -98,7 +95,7 @@ def _limits(axes: Axes, panel: PanelShown) -> None:
     axes.xaxis.set_minor_formatter(NullFormatter())
 
 
-def _draw_curve(axes: Axes, curve: CurveShown, pale: bool) -> None:
+def _draw_curve(axes: Axes, curve: Shown, pale: bool) -> None:
     """A method's way down; errors that are small by luck hang below their marks."""
     if pale:
         axes.plot(curve.times_s, curve.errors, color=_OTHERS, linewidth=0.7, marker=".", markersize=3, zorder=2)
@@ -112,7 +109,7 @@ def _draw_curve(axes: Axes, curve: CurveShown, pale: bool) -> None:
             axes.plot([time], [lucky], color=colour, marker="_", markersize=5, zorder=3)
 
 
-def _strip(axes: Axes, panel: PanelShown) -> None:
+def _strip(axes: Axes, panel: Shown) -> None:
     """What has nothing to show: a cross at the time spent, in a strip above the curves, with their count by how they ended."""
     if not panel.lacks:
         return
@@ -127,7 +124,7 @@ def _strip(axes: Axes, panel: PanelShown) -> None:
                   color=FLAG, zorder=6)  # fmt: skip
 
 
-def _advice(axes: Axes, panel: PanelShown) -> None:
+def _advice(axes: Axes, panel: Shown) -> None:
     """The heading with what to use for 1 % and 0.1 % below it."""
     axes.set_title(panel.heading, pad=8 + 9.5 * len(panel.advice))
     for k, line in enumerate(panel.advice):
@@ -136,34 +133,25 @@ def _advice(axes: Axes, panel: PanelShown) -> None:
         words.set_in_layout(False)
 
 
-def _handle(curve: CurveShown, number: int) -> Line2D:
+def _handle(curve: Shown, number: int) -> Line2D:
     """A method in a legend, with the number beside its finest size."""
     colour = _COLOURS[curve.look.family]
-    return Line2D([], [], color=colour, linestyle=_LINES[curve.look.dashes], linewidth=1.3, marker=_MARKS[curve.look.shape], markersize=4.8,
-                  markerfacecolor=colour if curve.look.filled else "white", label=f"{number}  {curve.label}")  # fmt: skip
+    return entry(f"{number}  {curve.label}", color=colour, linestyle=_LINES[curve.look.dashes], linewidth=1.3, marker=_MARKS[curve.look.shape],
+                 markersize=4.8, markerfacecolor=colour if curve.look.filled else "white")
 
 
-def _legend(panels: tuple[PanelShown, ...]) -> list[Line2D]:
+def _legend(panels: Sequence[Shown]) -> list[Line2D]:
     """What colours, marks, fillings and lines mean, of those in use."""
-    looks: list[Look] = [curve.look for panel in panels for curve in panel.curves if curve.main]
-    found = [Line2D([], [], color=colour, linewidth=2.2, label=_NAMES[name])
-             for name, colour in _COLOURS.items() if _has(looks, "family", name)]  # fmt: skip
-    found += [Line2D([], [], color=INK, marker=_MARKS[name], linestyle="none", markersize=5, label=words)
-              for name, words in _SHAPES.items() if _has(looks, "shape", name)]  # fmt: skip
-    found.append(Line2D([], [], color=INK, marker="o", linestyle="none", markerfacecolor="white", markersize=5,
-                        label="hollow: uniform grid; filled: graded"))  # fmt: skip
-    found += [Line2D([], [], color=INK, linewidth=1.3, linestyle=_LINES[name], label=words)
-              for name, words in _DASHES.items() if _has(looks, "dashes", name)]  # fmt: skip
-    found.append(Line2D([], [], color=_FRONT, linewidth=6, label="Pareto front of the solver"))
-    found.append(Line2D([], [], color=INK, marker="o", markerfacecolor="none", markersize=10, linestyle="none",
-                        label="cheapest within 1 % and 0.1 %"))  # fmt: skip
-    found.append(Line2D([], [], color=_OTHERS, marker=".", linewidth=0.8, label="other settings (named on the page of all settings)"))
-    found.append(Line2D([], [], color=PALE, marker="_", linestyle=":", label="hangs below: smaller by luck, not counted"))
-    found.append(Line2D([], [], color=FLAG, marker="x", linestyle="none", markersize=5,
-                        label="refused, failed, too long or without a value"))  # fmt: skip
-    return found
-
-
-def _has(looks: list[Look], key: str, name: str) -> bool:
-    """Whether any look has a property."""
-    return any(getattr(look, key) == name for look in looks)
+    looks = [curve.look for panel in panels for curve in panel.curves if curve.main]
+    families, shapes, dashes = ({getattr(look, key) for look in looks} for key in ("family", "shape", "dashes"))
+    return [
+        *(entry(_NAMES[name], color=colour, linewidth=2.2) for name, colour in _COLOURS.items() if name in families),
+        *(entry(words, color=INK, marker=_MARKS[name], linestyle="none", markersize=5) for name, words in _SHAPES.items() if name in shapes),
+        entry("hollow: uniform grid; filled: graded", color=INK, marker="o", linestyle="none", markerfacecolor="white", markersize=5),
+        *(entry(words, color=INK, linewidth=1.3, linestyle=_LINES[name]) for name, words in _DASHES.items() if name in dashes),
+        entry("Pareto front of the solver", color=_FRONT, linewidth=6),
+        entry("cheapest within 1 % and 0.1 %", color=INK, marker="o", markerfacecolor="none", markersize=10, linestyle="none"),
+        entry("other settings (named on the page of all settings)", color=_OTHERS, marker=".", linewidth=0.8),
+        entry("hangs below: smaller by luck, not counted", color=PALE, marker="_", linestyle=":"),
+        entry("refused, failed, too long or without a value", color=FLAG, marker="x", linestyle="none", markersize=5),
+    ]

@@ -1,0 +1,151 @@
+"""The harness's verdicts as rows of a table, and which of the study's claims survive which choice, as a table of plain cells."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from reports.shown import Shown
+from reports.words import mechanics_name, number, plain, quantity, split_unit
+from verification.harness.choices import Point
+from verification.harness.claim_data import NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, CaseResult, ClaimResult, Reading
+
+KINDS: dict[str, str] = {REPRODUCED: "yes", ONLY_UNDER_A_VARIANT: "partly", NOT_REPRODUCED: "no", NOT_EVALUATED: "open"}
+HOLDS: dict[bool | None, str] = {True: "yes", False: "no", None: "open"}
+SYMBOLS: dict[str, str] = {"yes": "✓", "part": "(✓)", "no": "✗", "open": "?", "none": ""}
+_UNIT_SUFFIX: dict[str, str] = {"Pa": "Pa", "m": "m", "degrees": "deg", "deg": "deg", "s": "s", "J/m": "J"}
+
+
+def claim_rows(claims: Sequence[ClaimResult]) -> list[Shown]:
+    """Every claim as a row, in the order of their ids, with the verdict of each mechanics that anything was evaluated in."""
+    return [_claim_row([one for one in claims if one.id == id_]) for id_ in sorted({one.id for one in claims})]
+
+
+def mechanics_of_rows(rows: Sequence[Shown]) -> list[str]:
+    """The mechanics that verdicts were given in, in words."""
+    return list(dict.fromkeys(one.mechanics for row in rows for one in row.verdicts))
+
+
+def counts(rows: Sequence[Shown]) -> list[tuple[str, list[tuple[str, str, int]]]]:
+    """For each mechanics and verdict: the verdict's name, its colour's kind and how many claims have it."""
+    given = [(one.mechanics, one.verdict) for row in rows for one in row.verdicts]
+    return [(mechanics, [(name, kind, given.count((mechanics, name))) for name, kind in KINDS.items()]) for mechanics in mechanics_of_rows(rows)]
+
+
+def _claim_row(results: Sequence[ClaimResult]) -> Shown:
+    """One claim's row from its results, one a mechanics; each of its readings with what all mechanics that have it found."""
+    first = results[0]
+    verdicts = [Shown(mechanics=mechanics_name(one.mechanics), verdict=one.verdict, kind=KINDS.get(one.verdict, "open"), flags=one.flags)
+                for one in results]
+    readings = []
+    for name in dict.fromkeys(reading.name for one in results for reading in one.readings):
+        own = [(one.mechanics, reading) for one in results for reading in one.readings if reading.name == name]
+        readings.append(Shown(name=name, partial=not own[0][1].complete, cases=_case_rows([(mechanics, one.cases) for mechanics, one in own]),
+                              holds=tuple((mechanics_name(mechanics), HOLDS[one.holds]) for mechanics, one in own)))
+    return Shown(id=first.id, text=first.text, why=first.why, verdicts=verdicts, cases=_case_rows([(one.mechanics, one.cases) for one in results]),
+                 readings=readings)
+
+
+def _case_rows(results: Sequence[tuple[str, Sequence[CaseResult]]]) -> list[Shown]:
+    """The cases of a claim or reading, the same ones in each mechanics: what was asked and what each mechanics found, in words."""
+    rows = []
+    for together in zip(*(cases for _, cases in results)):
+        found = [Shown(mechanics=mechanics_name(mechanics), holds=HOLDS[case.holds], measured=_measured(case), note=case.note)
+                 for (mechanics, _), case in zip(results, together)]
+        asked, suffix = together[0].case, _UNIT_SUFFIX.get(together[0].unit, "")
+        bounds = [f"{sign} {_written(bound, suffix)}" for bound, sign in ((asked.at_least, "≥"), (asked.at_most, "≤")) if bound is not None]
+        rows.append(Shown(what=_what(together[0]), asked=" and ".join(bounds), found=found))
+    return rows
+
+
+def _what(result: CaseResult) -> str:
+    """What a case is about."""
+    case = result.case
+    against = ""
+    if case.against:
+        other = (case.against_scene or "").split("_")[0]
+        against = f" against {plain(case.against)}" + (f" of {plain(other)}" if other else "")
+    parameters = ", ".join(f"{split_unit(key)[0]} {_parameter(key, value)}" for key, value in case.parameters.items())
+    return f"{plain(case.variant)}{against}: {split_unit(case.observable)[0]}" + (f" ({parameters})" if parameters else "")
+
+
+def _parameter(key: str, value: object) -> str:
+    """A parameter in words; a height above an interface says which."""
+    if isinstance(value, dict) and "interface" in value:
+        offset = float(value.get("plus_m", 0.0))
+        beyond = "" if offset == 0.0 else f"{quantity('m', abs(offset))} {'above' if offset > 0 else 'below'} "
+        return f"{beyond}interface {value['interface']}"
+    return quantity(key, value)
+
+
+def _written(value: float, suffix: str) -> str:
+    """A number in the printed unit of its suffix."""
+    return quantity(suffix, float(value)) if suffix else number(float(value))
+
+
+def _measured(result: CaseResult) -> str:
+    """What was measured: a number, a bound where the run ended first, or nothing."""
+    low, high, suffix = result.low, result.high, _UNIT_SUFFIX.get(result.unit, "")
+    if low is not None and high is not None and low != high:
+        return f"{_written(low, suffix)} to {_written(high, suffix)}"
+    if low is not None and high is None:
+        return f"at least {_written(low, suffix)}"
+    if high is not None and low is None:
+        return f"at most {_written(high, suffix)}"
+    return "nothing to measure" if result.value is None else _written(result.value, suffix)
+
+
+# --- claims against open points
+
+
+def sensitivity(claims: Sequence[ClaimResult], points: Sequence[Point]) -> Shown:
+    """Every claim in every mechanics under the default and under each choice that any claim was evaluated under.
+
+    points: id, words, how many columns; columns: a choice's name, the id of its point and whether it is the first of that; a cell's kind is 'yes',
+    'part', 'no', 'open' or 'none', and the same in words; finding: what the table shows in a sentence.
+    """
+    used = {reading.choice for claim in claims for reading in claim.readings if reading.choice}
+    shown = [(point, own) for point in points if (own := [choice for choice in point.choices if choice.id in used])]
+    columns = [Shown(name=choice.name, point=point.id, starts=index == 0) for point, own in shown for index, choice in enumerate(own)]
+    ids = [choice.id for _, own in shown for choice in own]
+    lines: list[Shown] = []
+    for id_ in sorted({claim.id for claim in claims}):
+        same = [claim for claim in claims if claim.id == id_]
+        for index, claim in enumerate(same):
+            cells = [_cell(claim, "", ""), *(_choice_cell(claim, choice) for choice in ids)]
+            lines.append(Shown(id=id_, text=claim.text, mechanics=mechanics_name(claim.mechanics), first=index == 0, lines=len(same), cells=cells))
+    return Shown(points=[(point.id, point.open, len(own)) for point, own in shown], columns=columns, lines=lines, finding=_finding(lines))
+
+
+def _choice_cell(claim: ClaimResult, choice: str) -> Shown:
+    """A claim under a choice."""
+    reading = next((one for one in claim.readings if one.choice == choice), None)
+    if reading is None:
+        return Shown(kind="none", words="not applicable")
+    failing = [f"{case.case.variant.replace('_', ' ')}, {case.case.observable.rsplit('_', 1)[0].replace('_', ' ')}"
+               for case in reading.cases if case.holds is False]
+    variants = ", ".join(dict.fromkeys(case.case.variant.replace("_", " ") for case in reading.cases))
+    partly = "" if reading.complete else f"holds for {variants}, not run for others"
+    return _cell(reading, partly, f": {'; '.join(failing)}")
+
+
+def _cell(result: ClaimResult | Reading, partly: str, failing: str) -> Shown:
+    """What became of a claim under the default or a choice; in these words where it holds only for some cases, or does not hold."""
+    if result.holds is None:
+        lacks = dict.fromkeys(case.note for case in result.cases if not case.evaluated)
+        return Shown(kind="open", words="; ".join(lacks) or "a run ended before it could show this")
+    if not result.holds:
+        return Shown(kind="no", words=f"not reproduced{failing}")
+    return Shown(kind="part", words=partly) if partly else Shown(kind="yes", words="reproduced")
+
+
+def _finding(lines: Sequence[Shown]) -> str:
+    """Which claims no choice overturns, and which depend on one; a choice that was run for some of the cases decides none."""
+    found: dict[frozenset[str], list[str]] = {}
+    for id_ in dict.fromkeys(line.id for line in lines):
+        known = {cell.kind for line in lines if line.id == id_ for cell in line.cells} & {"yes", "no"}
+        found.setdefault(frozenset(known), []).append(id_)
+    firm, turned, never = (", ".join(found.get(frozenset(kinds), [])) or "none" for kinds in (("yes",), ("yes", "no"), ("no",)))
+    return (
+        f"Reproduced under every choice and mechanics that was run: {firm}; reproduced under some and not under others: {turned};"
+        f" under none: {never}."
+    )
