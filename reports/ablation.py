@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from reports.charts.parts import draw_ablation
-from reports.figures import Figure, Section, Table
+from reports.figures import Figure, Section, Table, words_of
 from reports.shown import Shown
 from reports.words import NONE, amount, base_words, experiment_name, listed, number, plain, share, small_unit
 from verification.ablation.effects import CHANGES, NEEDED, NOTHING, SPARED, WANTED, Tried, free, missing, needs, not_needed
@@ -14,16 +14,6 @@ from verification.ablation.ingredients import LEFT_OUT, MODELLED, RESOLVED
 from verification.ablation.reasons import REASONS, Reasons, reason_for, reasons
 from verification.ablation.store import RECORDS, Table as Kept, read_all
 
-METHOD = (
-    "Each scene is run as shipped (explicit, one thread), then again with one of its ingredients left out or made coarser; the last rows of the"
-    " perfect case add what it goes without. An effect is the largest among the followed numbers: pressures by their net part (above the"
-    " closing stress), heights of arrest by themselves, a path by its length. An ingredient without which an arrest or a height is not there at all"
-    " changes what happens. Times are CPU times of the whole process."
-)
-CAPTION = (
-    "Largest effect of leaving an ingredient out (colour and upper number, % of net pressure, height or length of path) and the CPU time then over that"
-    " of the scene's own run (lower number, ×). ≠: an arrest, a height or a growth of the scene is not there without it. Empty: the scene does not have it."
-)
 _GROUPS = {MODELLED: "modelled", RESOLVED: "resolved", LEFT_OUT: "gone without"}
 _INTERFACES = {"interface_1": "an interface that acts", "interface_2": "a second one"}  # rows that scenes share, whatever the law
 
@@ -39,7 +29,7 @@ def section_of(kept: Sequence[Kept], why: Reasons) -> Section | None:
     if not kept:
         return None
     data = ablation_figure(kept)
-    return Section(title="What each experiment needs", intro=f"{data.title}. {METHOD}", figures=[Figure("ablation", data, draw_ablation, CAPTION)],
+    return Section(title="What each experiment needs", intro=f"{data.title}. {words_of('ablation_method')}", figures=[Figure("ablation", data, draw_ablation, "ablation")],
                    tables=[table_of(one, why) for one in kept])
 
 
@@ -84,8 +74,7 @@ def finding(kept: Sequence[Kept]) -> str:
 
 def table_of(one: Kept, why: Reasons) -> Table:
     """The table of a scene: what was left out, the effect on each number, the time, the verdict and why it is kept."""
-    header = ["left out", "instead", *(f"{label} ({small_unit(unit)})" for _, label, unit in one.quantities),
-              "largest", "time", "for 1 %"]
+    header = ["left out", "instead", *(f"{label} ({small_unit(unit)})" for _, label, unit in one.quantities), "largest", "time", "for 1 %"]
     own = [base_words(one.base.get(name), unit) for name, _, unit in one.quantities]
     rows, marked = [["nothing", "", *own, "", f"{number(one.cpu_s, 3)}\u00a0s", ""]], []
     for line in one.lines:

@@ -17,20 +17,6 @@ SHAPES = {"bspline2": "quadratic B-spline", "gimp": "uGIMP", "linear": "linear"}
 MARKS_M_S = {("updated", 1): 60.0, ("updated", 2): 110.0, ("total", 1): 300.0}  # million particle-steps a second, 80 x 80 cells
 Figures = dict[str, dict[str, Any]]
 
-_RATE_CAPTION = (
-    "Explicit steps of a block of 80 × 80 cells of 4 points with a pressurised crack: medians, with least and most as whiskers; above"
-    " each bar the share of the cores' peak that the counted flop make (of the total formulation: those of its form with points)."
-    " Dashes: the marks."
-)
-_SCALING_CAPTION = (
-    "Cost against the number of points, both logarithmic, with the exponent of a power law fitted to all sizes. Dashed, from the"
-    " smallest size: linear growth for a step, the power 1.5 for a run without inertia, neither to be exceeded."
-)
-_EVENT_CAPTION = (
-    "What happens now and then in a run, on one thread, on a block of 80 × 80 cells and of more: medians (dots) with least and most."
-    " Growth with inertia: the step in which the fracture grows less an ordinary one; without: the whole step, with its equilibria."
-)
-
 
 def section(runs: Path) -> Section | None:
     """The part of the page, from the newest record of any machine; None where nothing was recorded."""
@@ -39,11 +25,8 @@ def section(runs: Path) -> Section | None:
         return None
     measured: Figures = {item["name"]: item for item in record["figures"] if item["values"]}
     rates, scaling, events = rate_figure(measured), scaling_figure(measured), event_figure(measured)
-    figures = [
-        *([Figure("benchmark_rates", rates, draw_rates, _RATE_CAPTION)] if rates.panels else []),
-        *([Figure("benchmark_scaling", scaling, draw_scaling, _SCALING_CAPTION)] if scaling.panels else []),
-        *([Figure("benchmark_events", events, draw_events, _EVENT_CAPTION)] if events.events else []),
-    ]
+    drawn = (("rates", rates, draw_rates, rates.panels), ("scaling", scaling, draw_scaling, scaling.panels), ("events", events, draw_events, events.events))
+    figures = [Figure(f"benchmark_{name}", data, draw, f"benchmark_{name}") for name, data, draw, any_ in drawn if any_]
     tables = [table for table in (mark_table(record["marks"]), run_table(record["figures"])) if table["rows"]]
     return Section(title="Speed", intro=_intro(record), figures=figures, tables=tables)
 

@@ -8,21 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from reports.charts.parts import draw_budget
-from reports.figures import Figure, Section, Table
+from reports.figures import Figure, Section, Table, words_of
 from reports.shown import Shown
 from reports.words import NONE, amount, base_words, experiment_name, listed, mechanics_name, minus, plain, small_unit
 
-METHOD = (
-    "Each factor is varied alone from what the scene says. Numerical factors are the method's: cells, flow or time step, J ring, particles a"
-    " cell; the others are choices of the model: increment of growth, size of the block, loading rate. A factor counts with the largest of its"
-    " effects. The root of the sum of squares is what the factors owe together if they act independently; the plain sum is the bound if all push"
-    " one way. A factor whose run failed says nothing and is named below its table; it is not counted as no effect."
-)
-CAPTION = (
-    "What each factor, varied alone, moves: a row a variant, a panel a quantity with its own scale, the factors from largest to smallest."
-    " Bars of a factor are its alternatives, as the table has them, the first one above. Blue: numerical factors; ochre: choices of the"
-    " model; grey: shown beside, in no sum. A cross stands for an alternative whose run says nothing of the quantity."
-)
 _BESIDE = "beside"  # the group of a mesh factor that also changes the increment, which is shown, but in no sum
 
 
@@ -35,12 +24,11 @@ def section(runs: Path) -> Section | None:
     for content in contents:
         data = budget_figure(content["experiment"], [one for one in content["budgets"] if one["status"] == "completed"])
         if data.variants:
-            figures.append(Figure(f"budget_{content['experiment']}", data, draw_budget, CAPTION))
+            figures.append(Figure(f"budget_{content['experiment']}", data, draw_budget, "budget"))
         for budget in content["budgets"]:
             tables.append(budget_table(content["experiment"], budget, content.get("settings", [])))
             lost += sum(one["status"] != "completed" for line in budget["lines"] for one in line["tried"])
-    failed = f" {lost} of their runs failed or {'was' if lost == 1 else 'were'} refused." if lost else " All their runs are complete."
-    return Section(title="Error budgets of the experiments", intro=METHOD + failed, figures=figures, tables=tables)
+    return Section(title="Error budgets of the experiments", intro=words_of("budget_method", lost=lost), figures=figures, tables=tables)
 
 
 def _effect(tried: dict[str, Any], quantity: str) -> float | None:

@@ -48,7 +48,7 @@ def choice_figure(point: Point, runs: Sequence[Run]) -> Shown:
         rows = [[panel for row in rows for panel in row]]
     kinds = {twin.kind for twin in twins}
     return Shown(title=_title(point, twins), rows=rows, default=point.default, choices=[choice.name for choice in point.choices],
-                 variants=[name for name in MAIN_VARIANTS if name in kinds])
+                 variants=[name for name in MAIN_VARIANTS if name in kinds], are_paths=[twin.is_path for twin in twins])
 
 
 def _twins(choice: Choice, index: int, of: dict[tuple[str, str, str], Run]) -> list[Twin]:

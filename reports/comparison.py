@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from reports.figures import words_of
 from reports.outcome import Arrest, Outcome, outcome_of
 from reports.runs import Run
 from reports.shown import Shown
-from reports.words import plain, share
 from verification.harness.observables import distances_to, path_length, resample
 from verification.harness.scenes import MECHANICS
 
@@ -99,15 +99,8 @@ def G_over_J(run: Run) -> float | None:
 
 def inertia_words(rows: Sequence[Shown]) -> str:
     """One sentence on whether inertia mattered, by the study's own variants and all."""
-    known = [row for row in rows if row.kinetic_ratio.explicit is not None]
-    if not known:
-        return "No variant has been run both with and without inertia."
-    ratios = [row.kinetic_ratio.explicit or 0.0 for row in known]
-    worst = known[int(np.argmax(ratios))]
-    unlike = [row for row in rows if row.unlike]
-    return (
-        f"In {len(rows) - len(unlike)} of {len(rows)} variants the fracture does the same with and without inertia"
-        " (arrest at the same place, driven on or not, same height at the end). Kinetic energy stays below"
-        f" {share(float(np.median(ratios)))} of the strain energy in half of them; at most it is {share(max(ratios))},"
-        f" in '{plain(worst.variant)}' of Experiment {worst.number}."
-    )
+    ratios = {row.kinetic_ratio.explicit: row for row in reversed(rows) if row.kinetic_ratio.explicit is not None}
+    if not ratios:
+        return words_of("inertia", rows=[])
+    known = [row.kinetic_ratio.explicit for row in rows if row.kinetic_ratio.explicit is not None]
+    return words_of("inertia", rows=rows, unlike=sum(bool(row.unlike) for row in rows), half=float(np.median(known)), most=max(known), worst=ratios[max(known)])

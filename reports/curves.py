@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from reports.layout import Layout, layout_of
-from reports.outcome import Arrest, finding, outcome_of, outcomes_of
+from reports.outcome import Arrest, finding, held, outcome_of, outcomes_of
 from reports.runs import NotAvailable, Run, fields_at, lead_of, mechanics_in, output_times
 from reports.shown import Shown
 from reports.words import listed, mechanics_name, metres, metres_signed, number, plain
@@ -31,8 +31,11 @@ def height_figure(runs: list[Run]) -> Shown:
     foot = min(float(curve.height_m[0]) for curve in curves)
     top = max(layout.heights_m, default=foot) + 8.0 * layout.cell_m
     near = max(float(curve.inlet_MPa[curve.height_m <= top].max()) for curve in curves)
+    told = [run for run in drawn if run.mechanics == lead]
     return Shown(
-        title=lead_words(drawn) + finding([outcome_of(run, runs) for run in drawn if run.mechanics == lead]), layout=layout, curves=curves,
+        title=lead_words(drawn) + finding([outcome_of(run, runs) for run in told]), layout=layout, curves=curves,
+        stays=[f"{plain(run.variant)} {stay}" for run in told if (stay := held(run, runs))],
+        beside=list(dict.fromkeys(curve.mechanics for curve in curves if curve.beside)),
         zoom_m=(foot - layout.cell_m, top), pressure_MPa=_span(first, last), zoom_MPa=_span(first, near),
         flagged=any(mark.flag for curve in curves for mark in curve.marks),
     )
@@ -115,7 +118,9 @@ def path_figure(groups: list[list[Run]]) -> Shown:
     if not panels:
         raise NotAvailable("no run of these experiments has a history")
     drawn = [run for runs in groups for run in runs if run.is_main and run.drawable]
-    return Shown(title=lead_words(drawn) + "; ".join(panel.heading for panel in panels), panels=panels)
+    kinks = {panel.name: [f"{plain(path.variant)} {path.kink_deg:.2g}°" for path in panel.paths if not path.beside] for panel in panels}
+    return Shown(title=lead_words(drawn) + "; ".join(panel.heading for panel in panels), panels=panels,
+                 turns=[f"{name} {listed(each)}" for name, each in kinks.items()])
 
 
 def _path_panel(runs: list[Run]) -> Shown:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, NotRequired, TypedDict
 
@@ -15,20 +17,20 @@ import jinja2
 from reports.charts.style import save
 from reports.runs import NotAvailable, Run
 from reports.shown import Shown
-from reports.words import mechanics_name, plain
+from reports.words import listed, mechanics_name, metres, mpa, plain, share
 
-OUT = Path(__file__).resolve().parent / "out"
+OUT, TEMPLATES = (Path(__file__).resolve().parent / name for name in ("out", "templates"))
 
 
 @dataclass(frozen=True)
 class Figure:
     """A figure: files out/figures/NAME.svg and .png, what is drawn (with the finding as its title) or prepares that, what draws it,
-    and its caption or what makes that of the data."""
+    and the part of templates/words.md that is its caption."""
 
     name: str
     data: Shown | Callable[[], Shown]
     draw: Callable[[Shown], Any]
-    caption: str | Callable[[Shown], str]
+    caption: str
     label: str = ""
     experiment: int = 0  # 0: of no single experiment
     part: str = ""  # where on the page of the experiments: "method", "experiment", "energy", "choice" or "variants"
@@ -54,6 +56,20 @@ class Section(TypedDict):
     tables: list[Table]
 
 
+@lru_cache(maxsize=None)
+def _texts() -> dict[str, jinja2.Template]:
+    """The parts of templates/words.md by their names."""
+    environment = jinja2.Environment(undefined=jinja2.StrictUndefined)
+    environment.filters |= {"listed": listed, "mechanics": mechanics_name, "metres": metres, "mpa": mpa, "plain": plain, "share": share}
+    _, *parts = re.split(r"^## (\w+)\n", (TEMPLATES / "words.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
+    return {name: environment.from_string(text) for name, text in zip(parts[::2], parts[1::2])}
+
+
+def words_of(name: str, **given: Any) -> str:
+    """A part of templates/words.md on one line, with what is given put in."""
+    return re.sub(r"[ \n]+", " ", _texts()[name].render(given)).strip(" ")
+
+
 def suspect_words(runs: Sequence[Run]) -> str:
     """A sentence that names the runs of a figure that mark themselves as suspect, with why; nothing where none does."""
     words = [f"Experiment {run.number} {plain(run.variant)}, {mechanics_name(run.mechanics)}: {'; '.join(run.marks)}" for run in runs if run.marks]
@@ -66,8 +82,7 @@ def make(figure: Figure, out: Path) -> Shown:
     try:
         data = figure.data() if callable(figure.data) else figure.data
         save(figure.draw(data), out / "figures", figure.name)
-        caption = figure.caption(data) if callable(figure.caption) else figure.caption
-        made.title, made.caption = data.title, caption + suspect_words(figure.runs)
+        made.title, made.caption = data.title, words_of(figure.caption, data=data) + suspect_words(figure.runs)
     except NotAvailable as lack:
         made.reason = str(lack)
     except Exception as error:  # a defect in one figure must not cost the reader all the others
@@ -82,7 +97,7 @@ def defects_of(pictures: Sequence[Shown]) -> list[str]:
 
 def write_page(out: Path, name: str, content: dict[str, Any]) -> Path:
     """Write a page from the template of its name (index.html: page.html)."""
-    loader = jinja2.FileSystemLoader(Path(__file__).parent / "templates")
+    loader = jinja2.FileSystemLoader(TEMPLATES)
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
     out.mkdir(parents=True, exist_ok=True)
     (out / name).write_text(environment.get_template("page.html" if name == "index.html" else name).render(content), encoding="utf-8")

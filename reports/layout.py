@@ -85,8 +85,7 @@ INTERFACE = "interface "  # begins the keys of what acts at a place, such as "in
 def settings_between(run: Run, base: Run) -> list[tuple[str, Any, Any]]:
     """The settings in which a run differs from another, interfaces by what acts there: key, value there, value here."""
     here, there = settings_of(run.scene), settings_of(base.scene)
-    return [(key, there.get(key), here.get(key)) for key in sorted(here.keys() | there.keys())
-            if here.get(key) != there.get(key)]
+    return [(key, there.get(key), here.get(key)) for key in sorted(here.keys() | there.keys()) if here.get(key) != there.get(key)]
 
 
 def settings_of(scene: dict[str, Any]) -> dict[str, Any]:

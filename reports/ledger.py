@@ -55,7 +55,8 @@ def ledger_figure(runs: list[Run], mechanics: str) -> Shown:
         lost = sum(float(energy[-1]) for energy in panel.energies_kJ["dissipated"].values())
         parts += [f"{share(lost / given)} ({plain(panel.variant)})"] if given > 0.0 else []
     words = f"of the net work supplied, {listed(parts)} is dissipated" if parts else "no net work is supplied"
-    return Shown(title=f"{mechanics_name(mechanics).capitalize()}: {words}", mechanics=mechanics, panels=panels)
+    return Shown(title=f"{mechanics_name(mechanics).capitalize()}: {words}", mechanics=mechanics, panels=panels,
+                 up_to_Pa=1e6 * max(float(panel.inlet_MPa[-1]) for panel in panels))
 
 
 def _ledger_panel(run: Run) -> Shown | None:
@@ -131,8 +132,7 @@ def base_of(run: Run, runs: list[Run]) -> Run | None:
     """For a variant that is no interface type of the study, the main variant with the fewest other settings."""
     if run.is_main or not run.scene:
         return None
-    others = [other for other in runs if other.is_main and other.scene
-              and (other.experiment, other.mechanics) == (run.experiment, run.mechanics)]
+    others = [other for other in runs if other.is_main and other.scene and (other.experiment, other.mechanics) == (run.experiment, run.mechanics)]
     return min(others, key=lambda other: (len(settings_between(run, other)), other.variant not in run.variant), default=None)
 
 

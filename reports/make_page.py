@@ -30,8 +30,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Make figures and index.html from run folders.")
     parser.add_argument("--runs", type=Path, default=RUNS, help="folder of runs/<mechanics>/<scene>/<variant>/")
     parser.add_argument("--out", type=Path, default=OUT, help="folder for the page")
-    parser.add_argument("--experiments", type=Path, default=ROOT / "experiments",
-                        help="scenes whose variants without a run are shown as not run")
+    parser.add_argument("--experiments", type=Path, default=ROOT / "experiments", help="scenes whose variants without a run are shown as not run")
     parser.add_argument("--precision", type=Path, default=DATA, help="folder of the work-precision chart's data")
     parser.add_argument("--stability", type=Path, default=RECORDS, help="folder of the stability atlas' records")
     parser.add_argument("--strict", action="store_true", help="exit 1 if a figure could not be drawn for a defect")

@@ -146,15 +146,12 @@ def made_of(runs: list[Run]) -> list[tuple[str, str]]:
     versions = sorted({str(run.summary.get("version", "unknown")) for run in runs if run.summary})
     cells = sorted({run.cell_m for run in runs if run.scene})
     return [
-        ("strata", listed(versions) or "no run has said"),
-        ("mechanics", listed(list(map(mechanics_name, present))) or "no run has said"),
-        ("cells", listed(list(map(metres, cells))) or "no run has said"),
-        ("runs", str(len(runs))),
+        ("strata", listed(versions) or "no run has said"), ("mechanics", listed(list(map(mechanics_name, present))) or "no run has said"),
+        ("cells", listed(list(map(metres, cells))) or "no run has said"), ("runs", str(len(runs))),
         *((f"run time, {mechanics_name(name)}, summed", f"{number(sum(times))} s in {len(times)} runs") for name, times in walls.items()),
         ("longest run", _told(max(known("wall_s"), default=None), lambda seconds: f"{number(seconds)} s")),
         ("largest memory of a run", _told(max(known("peak_memory_MB"), default=None), lambda size: f"{number(size)} MB")),
-        ("machine that made this page", machine()),
-        ("page made with", f"Python {platform.python_version()}, jinja2 {jinja2.__version__}"),
+        ("machine that made this page", machine()), ("page made with", f"Python {platform.python_version()}, jinja2 {jinja2.__version__}"),
     ]
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from reports.charts.parts import draw_path_check
-from reports.figures import Figure, Section, Table
+from reports.figures import Figure, Section, Table, words_of
 from reports.shown import Shown
 from reports.words import mechanics_name
 from verification.harness.crack_paths import INTERFACE_M, exact_path, farthest, grown, leaving_m
@@ -72,7 +72,7 @@ def compare(experiment: int, run: Run, block: str, flow: str, reference: Array) 
     inside = tips[tips[:, 0] < INTERFACE_M - KEPT_OFF_M]
     cell_m = float(run.scene["numerics"]["cell_m"])
     return SolverPath(experiment, block, run.summary.mechanics, flow, cell_m, run.increment_m, tips, same,
-                      farthest(inside, reference), farthest(inside, same))  # fmt: skip
+                      farthest(inside, reference), farthest(inside, same))
 
 
 def path_check(runs: Path) -> Shown | None:
@@ -95,7 +95,9 @@ def path_check(runs: Path) -> Shown | None:
             panels.append(Shown(heading=TITLES[experiment], converged=converged, shows_same=experiment == 6, runs=found, interface_m=INTERFACE_M,
                                 converged_words=f"boundary elements, {turning}, increments {increment:g} m"))
     every = [path for panel in panels for path in panel.runs]
-    return Shown(figure=Shown(title=_finding(every), panels=panels), paths=every, missing=missing) if panels else None
+    if not panels:
+        return None
+    return Shown(figure=Shown(title=_finding(every), panels=panels, interface_m=INTERFACE_M, settled=_settled()), paths=every, missing=missing)
 
 
 def _finding(paths: list[SolverPath]) -> str:
@@ -114,8 +116,7 @@ def _finding(paths: list[SolverPath]) -> str:
 def _row(path: SolverPath) -> list[str]:
     """A run's line of the table."""
     return [f"{path.experiment}", path.block + path.flow, mechanics_name(path.mechanics), f"{path.cell_m:g}", f"{path.increment_m:g}",
-            f"{path.tips[-1, 0]:.2f}, {path.tips[-1, 1]:.2f}", f"{path.off_m:.3f}", f"{path.off_m / path.cell_m:.2f}",
-            f"{path.off_same_m:.3f}"]  # fmt: skip
+            f"{path.tips[-1, 0]:.2f}, {path.tips[-1, 1]:.2f}", f"{path.off_m:.3f}", f"{path.off_m / path.cell_m:.2f}", f"{path.off_same_m:.3f}"]
 
 
 def section(runs: Path) -> Section | None:
@@ -126,23 +127,14 @@ def section(runs: Path) -> Section | None:
         return Section(title=TITLE, intro=f"strata-reference could not be asked: {error}", figures=[], tables=[])
     if check is None:
         return None
-    caption = (
-        "Tips of the fracture, x from its first line, heights above the symmetry line; different scales. Lines: boundary elements in"
-        f" the infinite plane (strata-reference crack_path, bonded interface at x = {INTERFACE_M:g} m, the pressure that starts the growth"
-        f" everywhere), wide: converged ({_settled()}), thin and dashed in a run's colour: with the run's own increment. Marks: runs."
-    )
-    near = sum(path.within for path in check.paths)
-    intro = (
-        f"{near} of {len(check.paths)} paths stay within a cell of the path that dislocations in the infinite plane predict by the same"
-        " criterion (maximum hoop stress, J = J_c, the pressure of the start everywhere), converged or with the same increment."
-    )
     table = Table(
         title=f"Largest distance of the paths over the first {GROWTH_M:g} m of growth, or to {KEPT_OFF_M:g} m from the interface",
         header=["experiment", "block", "mechanics", "cell (m)", "increment (m)", "last tip x, y (m)", "distance (m)", "in cells",
                 "from forward path of that increment (m)"],
-        rows=[_row(path) for path in check.paths], marked=[k for k, path in enumerate(check.paths) if not path.within], note=_note(check.missing),
+        rows=[_row(path) for path in check.paths], marked=[k for k, path in enumerate(check.paths) if not path.within], note=words_of("path_check_note", leaving_m=leaving_m(), missing=check.missing),
     )
-    return Section(title=TITLE, intro=intro, figures=[Figure("path_check", check.figure, draw_path_check, caption)], tables=[table])
+    intro = words_of("path_check_intro", near=sum(path.within for path in check.paths), count=len(check.paths))
+    return Section(title=TITLE, intro=intro, figures=[Figure("path_check", check.figure, draw_path_check, "path_check")], tables=[table])
 
 
 def _settled() -> str:
@@ -154,14 +146,3 @@ def _settled() -> str:
         moved = f"{farthest(coarse, fine):.2g} m when increments were halved to {increment:g} m"
         told.append(f"Experiment {experiment} moved by {moved}{left}")
     return "; ".join(told)
-
-
-def _note(missing: list[str]) -> str:
-    """Why Experiment 6 is as it is, and what could not be read."""
-    words = (
-        "Experiment 6 is unstable: under a stress along the fracture that is T above that across it a path leaves its line over"
-        f" K_Ic²/(8 T²) = {leaving_m():.2g} m (Cotterell & Rice 1980), so that increments decide where it turns, for boundary elements as for the"
-        " solver; converged paths need increments well below that length. The solver turns by the whole angle of maximum hoop stress"
-        " only where an increment has three cells, by a share of it below; such runs turn later."
-    )
-    return words + (f" Not read: {'; '.join(missing)}." if missing else "")

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from reports.charts.precision import draw_front, draw_full
-from reports.figures import Figure, defects_of, front_of, make, write_page
+from reports.figures import Figure, defects_of, front_of, make, words_of, write_page
 from reports.shown import Shown
 from reports.words import NONE, listed, minus, number, share, thousands, wall_time
 from verification.precision import store
@@ -20,13 +20,6 @@ from verification.precision.problems import PROBLEMS
 
 NAME = "precision.html"
 LEAST_SHOWN = 1e-5  # errors below are drawn there
-CAPTION = (
-    "A panel a quantity, every method a curve from coarse to fine: relative error against the wall time of the whole process, both"
-    " logarithmic. Errors are drawn as they are judged: where a finer size of the same method is farther off, or the sign has changed, the"
-    " smaller error is luck and hangs below. Yellow: what no other run of the solver beats in both. Circles: the cheapest within 1 % and"
-    " 0.1 %. Blue ground: the reference is not known better. Pink: methods that were refused, failed, took too long or have no value."
-)
-FULL_CAPTION = "Every method and setting, its number beside its finest size; filled: graded grid, hollow: uniform. Circles: the cheapest within 1 % and 0.1 %."
 
 
 def measurements(folder: Path = store.DATA) -> Shown | None:
@@ -51,12 +44,10 @@ def recipe(sheets: Sequence[store.Sheet]) -> tuple[tuple[str, str], ...]:
 
     return (
         ("processor", f"{each('processor')}, {each('cores')} cores, {each('caches')}, {each('memory_GB')} GB; {each('system')}"),
-        ("compiler", f"{each('compiler')}, {each('flags')}"),
-        ("solver", f"strata {each('version')}, revision {each('revision')}"),
+        ("compiler", f"{each('compiler')}, {each('flags')}"), ("solver", f"strata {each('version')}, revision {each('revision')}"),
         ("measured", f"{dates[0]} to {dates[-1]} UTC, {len(points)} points, {sum(len(point.wall_s) for point in points)} runs that count"),
-        ("recipe", "wall time of the whole process on one thread, start and output included, one run at a time on an idle machine; median of"
-                   " five runs after a warm-up, of three above 2 s, a single run above 10 s (then marked)"),
-    )  # fmt: skip
+        ("recipe", words_of("precision_recipe")),
+    )
 
 
 def notes(sheets: Sequence[store.Sheet]) -> tuple[str, ...]:
@@ -255,13 +246,13 @@ def _write(out: Path, folder: Path) -> Shown:
     found = measurements(folder)
     if found is None:
         return Shown(lack="The work-precision chart has not been measured: ci/chart measures it, one run at a time on an idle machine.", defect="")
-    front = make(Figure("precision", front_figure(found.panels), draw_front, CAPTION), out)
+    front = make(Figure("precision", front_figure(found.panels), draw_front, "precision"), out)
     parts = []
     for panel in found.panels:
         lines = advice_lines(panel)
         data = Shown(title=f"{panel.wanted.title}: {'; '.join(lines)}", panels=[panel_shown(panel)])
         parts.append(Shown(name=panel.wanted.name, title=panel.wanted.title, says=f"{panel.problem.says}.", reference=reference_words(panel),
-                           advice=lines, figure=make(Figure(f"precision_{panel.wanted.name}", data, draw_full, FULL_CAPTION), out),
+                           advice=lines, figure=make(Figure(f"precision_{panel.wanted.name}", data, draw_full, "precision_full"), out),
                            points=point_rows(panel), lacks=lack_rows(panel)))
     write_page(out, NAME, {"parts": parts, "recipe": found.recipe, "notes": found.notes})
     return Shown(figure=front, rows=table_of(found.panels), tolerances=[share(error) for error in TOLERANCES],

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from reports.charts.parts import draw_refinement
-from reports.figures import Figure, Section, Table
+from reports.figures import Figure, Section, Table, words_of
 from reports.shown import Shown
 from reports.words import NONE, experiment_name, listed, mechanics_name, plain
 
@@ -17,12 +17,6 @@ from reports.words import NONE, experiment_name, listed, mechanics_name, plain
 _BEFORE, _AFTER = ("start_Pa", "restart_1_Pa", "restart_2_Pa", "plateau_1_Pa"), ("deflection_m", "final_angle_deg", "path_to_next_m")
 _STILL = ("still", "settled")  # what refinement does not move any more
 _GOOD = ("clean", *_STILL)  # a row that has one of these needs no excuse
-
-METHOD = (
-    "Runs at several cell sizes with the growth increment held fixed. The order is that of the finest three sizes (Celik et al. 2008); a"
-    " limit h → 0 is given where they change monotonically with an order of 0.5 to 3, as f3 + (f3 − f2)/(r^p − 1), and its uncertainty is"
-    " the grid convergence index of Roache (1994) with a factor of 1.25, or of 3 where the three sizes before show another order."
-)
 
 
 def section(runs: Path) -> Section | None:
@@ -37,9 +31,9 @@ def section(runs: Path) -> Section | None:
             counted += [row for _, row in judged(own)]
             data = refinement_figure(content["experiment"], own)
             if data.panels:
-                figures.append(Figure(f"refine_{content['experiment']}_{mechanics}", data, draw_refinement, _caption))
+                figures.append(Figure(f"refine_{content['experiment']}_{mechanics}", data, draw_refinement, "refinement"))
             tables.append(refinement_table(content["experiment"], own, content.get("settings", [])))
-    return Section(title="Mesh refinement of the experiments", intro=f"{METHOD} {_intro(counted)}", figures=figures, tables=tables)
+    return Section(title="Mesh refinement of the experiments", intro=f"{words_of('refinement_method')} {_intro(counted)}", figures=figures, tables=tables)
 
 
 def judged(studies: Sequence[dict[str, Any]]) -> list[tuple[str, dict[str, Any]]]:
@@ -86,7 +80,8 @@ def refinement_figure(experiment: str, studies: list[dict[str, Any]]) -> Shown:
         lines = [line for study, row in rows if (line := _line(study, row)) is not None]
         unit = {"Pa": "MPa", "degrees": "°"}.get(rows[0][1]["unit"], rows[0][1]["unit"])
         panels.append(Shown(heading=rows[0][1]["label"], unit=unit, lines=lines))
-    return Shown(title=_finding(experiment, studies), variants=[study["variant"] for study in studies], panels=panels, sizes_m=_sizes(studies))
+    return Shown(title=_finding(experiment, studies), variants=[study["variant"] for study in studies], panels=panels,
+                 sizes=[f"{size:g}\u00a0m" for size in _sizes(studies)])
 
 
 def _line(study: dict[str, Any], row: dict[str, Any]) -> Shown | None:
@@ -118,16 +113,6 @@ def _finding(experiment: str, studies: list[dict[str, Any]]) -> str:
         return head + lost
     spread, variant, row = max(open_, key=lambda item: item[0])
     return f"{head}{lost}; without a limit the mesh moves the {row['label']} ({plain(variant)}) most, by {spread / 1e3:.3g} kPa"
-
-
-def _caption(data: Shown) -> str:
-    """Caption of an experiment's figure."""
-    sizes = listed([f"{size:g}\u00a0m" for size in data.sizes_m])
-    return (
-        "Each number against its cell size to the power of its own observed order p, as a share of the coarsest size's: a number of clean order lies"
-        " on a straight line to its limit, drawn at 0 with its uncertainty, over the finest three sizes; dashed beyond these, and, against h itself,"
-        f" where there is no such order. Marks from right to left: cells of {sizes}. Each panel has its own scale."
-    )
 
 
 def refinement_table(experiment: str, studies: list[dict[str, Any]], settings: list[str]) -> Table:

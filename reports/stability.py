@@ -22,11 +22,6 @@ from verification.stability.store import EdgeFound, PointFound, Record
 NAME = "stability.html"
 MANY = 6  # families of a section that are drawn one by one
 OUTCOME_WORDS = {STABLE: "stable", MARKED: "marked", REFUSED: "refused (exit 2)", FAILED: "ended with its reason (exit 3)", GARBAGE: "GARBAGE"}
-CAPTION = (
-    "A dot a run: the checked error over the walked parameter, coloured by how the run ended; runs without a value stand at the top."
-    " Dashed: the edge that theory predicts; broad: the edge measured by bisection, or between the last sound and the first unsound run."
-)
-EDGES_CAPTION = "A row a walk: the edge predicted and the edge measured by bisection over runs of the same block."
 
 
 @dataclass(frozen=True)
@@ -188,10 +183,10 @@ def headline(every: Sequence[Part]) -> str:
 def figures_of(part: Part) -> list[Figure]:
     """The figures of a section: many edges side by side, and the first walks one by one."""
     edges = edges_shown(part)
-    made = [] if edges is None else [Figure(f"stability_{part.anchor}_edges", edges, draw_edges, EDGES_CAPTION)]
+    made = [] if edges is None else [Figure(f"stability_{part.anchor}_edges", edges, draw_edges, "stability_edges")]
     walks = [walk for walk in part.walks if walk.record is not None]
     panels = [walk_panel(walk) for walk in walks[:: max(1, -(-len(walks) // MANY))]]
-    return made + ([Figure(f"stability_{part.anchor}", Shown(title=finding(part), panels=panels), draw_part, CAPTION)] if panels else [])
+    return made + ([Figure(f"stability_{part.anchor}", Shown(title=finding(part), panels=panels), draw_part, "stability")] if panels else [])
 
 
 def content_of(part: Part, pictures: list[Shown]) -> dict[str, Any]:

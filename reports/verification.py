@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from reports.charts.ladder import draw_convergence, draw_cost
-from reports.figures import Figure, Section, defects_of, make, write_page
+from reports.figures import Figure, Section, defects_of, make, words_of, write_page
 from reports.ladder import Ladder, Row, case_words, convergence_figure, convergence_words, cost_figure, curves_of, load_ladder
 from reports.shown import Shown
 from reports.words import NONE, counted, number, order_words, plain, relative, sentence, thousands
@@ -23,10 +23,6 @@ from reports.words import NONE, counted, number, order_words, plain, relative, s
 PARTS: tuple[str, ...] = ("ablation", "path_check", "refinement", "budget", "benchmarks")
 NAME = "verification.html"
 LADDER = Path("ladder") / "ladder.json"
-_COST_CAPTION = (
-    "Largest relative error among the quantities of a case (but those that hold to round-off) against the wall time of the run, a line a case from"
-    " its coarsest to its finest level, a panel a family. Dashed: 1\u00a0%. Runs were made side by side, so that times tell sizes rather than speeds."
-)
 
 
 def write_verification(runs: Path, out: Path, ladder_file: Path | None = None, with_index: bool = False) -> Shown | None:
@@ -85,21 +81,11 @@ def ladder_context(ladder: Ladder, out: Path) -> dict[str, Any]:
     """What the template shows of the ladder; its figures are written below `out`."""
     cost = cost_figure(ladder)
     return {
-        "ladder": ladder, "mutation": _mutation_words(ladder.tally), "families": [_family(ladder, name, out) for name in ladder.families],
-        "cost": None if cost is None else make(Figure("ladder_cost", cost, draw_cost, _COST_CAPTION), out),
+        "ladder": ladder, "mutation": words_of("mutation", tally=ladder.tally), "families": [_family(ladder, name, out) for name in ladder.families],
+        "cost": None if cost is None else make(Figure("ladder_cost", cost, draw_cost, "cost"), out),
         "wrong": [{"name": f"{row.family} / {row.case}: {row.quantity} at {row.level}", "why": row.why, "verdict": row.verdict}
                   for row in ladder.rows if not row.passed],
     }
-
-
-def _mutation_words(tally: dict[str, Any]) -> str:
-    """How the gates themselves were tried."""
-    left = int(tally["mutants"]) - int(tally["refused"])
-    ending = "all were refused" if left == 0 else f"{left} passed, which makes their comparisons fail"
-    return (
-        f"Each of the {tally['gates']} gates was tried with results that are plainly wrong (zero, twice the value, its sign flipped, half an order of"
-        f" convergence lost), {tally['mutants']} in all: {ending}."
-    )
 
 
 def _family(ladder: Ladder, name: str, out: Path) -> Shown:
@@ -118,21 +104,8 @@ def _family(ladder: Ladder, name: str, out: Path) -> Shown:
     return Shown(
         name=name, title=plain(name)[:1].upper() + plain(name)[1:], says=sentence(ladder.families[name]),
         finding=convergence_words(curves) if curves else "Everything holds to round-off" if rows else "Nothing was run",
-        figure=None if data is None else make(Figure(f"ladder_{name}", data, draw_convergence, _convergence_caption), out),
+        figure=None if data is None else make(Figure(f"ladder_{name}", data, draw_convergence, "convergence"), out),
         blocks=blocks[False], exact=blocks[True], reasons=reasons, comparisons=len(rows), wrong=sum(not row.passed for row in rows),
-    )
-
-
-def _convergence_caption(data: Shown) -> str:
-    """Caption of a family's chart."""
-    lack, left_out = "", data.left_out
-    if left_out:
-        which = "quantity that holds" if left_out == 1 else "quantities that hold"
-        lack = f" {left_out} {which} to round-off, or could not be measured, {'is' if left_out == 1 else 'are'} left out."
-    return (
-        "Relative error against size, logarithmic, a panel a case; finer to the left. Beside each curve its observed order"
-        " between the finest two levels, the curve dashed and without one where no order is to be expected (the table says why)."
-        f" Short dashes: what the gate allows. Triangles: orders 1 and 2.{lack}"
     )
 
 
@@ -168,7 +141,6 @@ def line(row: Row) -> dict[str, Any]:
         "order": f"({order})" if row.no_order and row.order is not None else order, "gate": "none" if math.isnan(row.gate) else relative(row.gate),
         "order_gate": "" if row.order_gate is None else f"≥ {row.order_gate:g}",
         "wall": NONE if math.isnan(row.wall_s) else f"{row.wall_s:.1f}" if row.wall_s >= 0.1 else f"{row.wall_s:.2g}",
-        "particles": thousands(row.particles), "steps": thousands(row.steps),
-        "memory": NONE if math.isnan(row.memory_MB) else f"{row.memory_MB:.0f}",
+        "particles": thousands(row.particles), "steps": thousands(row.steps), "memory": NONE if math.isnan(row.memory_MB) else f"{row.memory_MB:.0f}",
         "verdict": row.verdict, "passed": row.passed, "why": row.why, "note": row.note,
     }

@@ -12,9 +12,7 @@ from reports.shown import Shown
 
 # By side of the fracture (0: ahead of its tip), then below and above the first interface.
 _SIDES: dict[int, tuple[str, str, str]] = {
-    -1: ("#2f6db3", "#8db8e2", "#c9dff3"),
-    1: ("#c2571a", "#f0a878", "#f9d9c2"),
-    0: ("#7a7a7a", "#c4c4c4", "#e2e2e2"),
+    -1: ("#2f6db3", "#8db8e2", "#c9dff3"), 1: ("#c2571a", "#f0a878", "#f9d9c2"), 0: ("#7a7a7a", "#c4c4c4", "#e2e2e2"),
 }
 # A copy's sector by its signs about (fracture, first interface); None: whichever is not split.
 _SECTORS: dict[tuple[int, int | None], tuple[float, float]] = {

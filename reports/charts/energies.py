@@ -9,8 +9,7 @@ from reports.charts.style import COLOURS, FLAG, FLUID, INK, KIND_NAMES, MARKERS,
 from reports.shown import Shown
 
 _COLOURS: dict[str, tuple[str, ...]] = {
-    "stored": ("#55b890", "#00845f", "#a5dcc5"),
-    "dissipated": ("#d04a00", "#a3397f", "#b98a00", "#7a5230", "#3aa0c8", "#5a5a9a", "#1a1a1a"),
+    "stored": ("#55b890", "#00845f", "#a5dcc5"), "dissipated": ("#d04a00", "#a3397f", "#b98a00", "#7a5230", "#3aa0c8", "#5a5a9a", "#1a1a1a"),
 }
 
 

@@ -17,7 +17,7 @@ _COLOURS = {"quasistatic": "#0067a5", "updated": "#d04a00", "total": "#a3397f", 
 _NAMES = {
     "quasistatic": "quasi-static", "updated": "explicit, updated", "total": "explicit, total",
     "elements": "boundary elements and collocation (strata-reference)",
-}  # fmt: skip
+}
 _MARKS = {"bspline2": "o", "gimp": "^", "linear": "s", "elements": "D"}
 _SHAPES = {"bspline2": "quadratic B-spline", "gimp": "GIMP", "linear": "linear"}
 _LINES: dict[str, object] = {"-": "-", "--": (0, (4, 1.6)), ":": (0, (1, 1.4)), "-.": (0, (4, 1.4, 1, 1.4))}
@@ -51,7 +51,7 @@ def draw_full(data: Shown) -> Figure:
     handles = [_handle(curve, k) for k, curve in enumerate(panel.curves, 1)]
     for k, curve in enumerate(panel.curves, 1):
         axes.annotate(f"{k}", (curve.times_s[-1], curve.errors[-1]), xytext=(5, 4), textcoords="offset points", fontsize=7.2,
-                      color=_COLOURS[curve.look.family], zorder=7)  # fmt: skip
+                      color=_COLOURS[curve.look.family], zorder=7)
     axes.legend(handles=handles, loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=7.6)
     return figure
 
@@ -71,11 +71,11 @@ def _draw_panel(axes: Axes, panel: Shown, pale: bool) -> None:
     if panel.uncertainty > axes.get_ylim()[0]:
         axes.axhspan(axes.get_ylim()[0], panel.uncertainty, color="#c9d6e6", alpha=0.55, linewidth=0, zorder=0.5)
         axes.annotate("uncertainty of the reference", (0.985, panel.uncertainty), xycoords=("axes fraction", "data"), xytext=(0, -9),
-                      textcoords="offset points", ha="right", fontsize=6.8, color="#3b5878")  # fmt: skip
+                      textcoords="offset points", ha="right", fontsize=6.8, color="#3b5878")
     times, errors = panel.front
     if times:
         axes.plot((*times, axes.get_xlim()[1]), (*errors, errors[-1]), drawstyle="steps-post", color=_FRONT, linewidth=6.5, alpha=0.75,
-                  solid_capstyle="butt", zorder=1.5)  # fmt: skip
+                  solid_capstyle="butt", zorder=1.5)
     for curve in panel.curves:
         _draw_curve(axes, curve, pale and not curve.main)
     for time, error in panel.chosen:
@@ -102,7 +102,7 @@ def _draw_curve(axes: Axes, curve: Shown, pale: bool) -> None:
         return
     colour = _COLOURS[curve.look.family]
     axes.plot(curve.times_s, curve.errors, color=colour, linewidth=1.3, linestyle=_LINES[curve.look.dashes], marker=_MARKS[curve.look.shape],
-              markersize=4.8, markerfacecolor=colour if curve.look.filled else "white", markeredgecolor=colour, zorder=4)  # fmt: skip
+              markersize=4.8, markerfacecolor=colour if curve.look.filled else "white", markeredgecolor=colour, zorder=4)
     for time, error, lucky in zip(curve.times_s, curve.errors, curve.lucky):
         if lucky is not None:
             axes.plot([time, time], [error, lucky], color=colour, linewidth=0.7, linestyle=":", zorder=3)
@@ -119,9 +119,8 @@ def _strip(axes: Axes, panel: Shown) -> None:
     for lack in panel.lacks:
         spent = min(max(lack.time_s, left * 1.08), right / 1.08)
         axes.plot([spent], [1.0 - 0.5 * _STRIP], transform=axes.get_xaxis_transform(), marker="x", markersize=4.5, markeredgewidth=1.3,
-                  color=_COLOURS[lack.look.family], zorder=5)  # fmt: skip
-    axes.annotate(panel.lacks_words, (0.985, 0.99 - _STRIP), xycoords="axes fraction", ha="right", va="top", fontsize=7,
-                  color=FLAG, zorder=6)  # fmt: skip
+                  color=_COLOURS[lack.look.family], zorder=5)
+    axes.annotate(panel.lacks_words, (0.985, 0.99 - _STRIP), xycoords="axes fraction", ha="right", va="top", fontsize=7, color=FLAG, zorder=6)
 
 
 def _advice(axes: Axes, panel: Shown) -> None:
@@ -129,7 +128,7 @@ def _advice(axes: Axes, panel: Shown) -> None:
     axes.set_title(panel.heading, pad=8 + 9.5 * len(panel.advice))
     for k, line in enumerate(panel.advice):
         words = axes.annotate(line, (0.0, 1.0), xycoords="axes fraction", xytext=(0, 4 + 9.5 * (len(panel.advice) - 1 - k)), textcoords="offset points",
-                      fontsize=6.9, color=INK, ha="left", va="bottom", annotation_clip=False)  # fmt: skip
+                      fontsize=6.9, color=INK, ha="left", va="bottom", annotation_clip=False)
         words.set_in_layout(False)
 
 

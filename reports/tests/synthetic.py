@@ -10,9 +10,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from verification.harness.claim_data import (
-    NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, Case, CaseResult, ClaimResult, Reading, write_claims,
-)
+from verification.harness.claim_data import (NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, Case, CaseResult, ClaimResult, Reading, write_claims)
 
 RATE_PA_S = 0.35e6
 START_PA = 2.0e6
@@ -126,8 +124,7 @@ def _write_history(folder: Path, plan: Plan, inlet: np.ndarray, height: np.ndarr
         "time_s": (inlet - START_PA) / RATE_PA_S, "inlet_Pa": inlet, "tip_x_m": 40.0 + drift, "tip_y_m": height,
         "height_m": height, "J_N_m": np.full_like(inlet, 200.0), "mouth_opening_m": 1e-4 * height,
         "kinetic_J": plan.kinetic * work * (plan.mechanics == "explicit"), "strain_J": 0.6 * work, "fluid_work_J": work, "damping_J": 0.3 * work,
-        "friction_J": 0.075 * work, "energy_closure": np.full_like(inlet, 0.005),
-        "J_spread": np.full_like(inlet, 0.006),
+        "friction_J": 0.075 * work, "energy_closure": np.full_like(inlet, 0.005), "J_spread": np.full_like(inlet, 0.006),
     }
     if plan.mechanics == "quasistatic":
         columns |= {"G_N_m": np.full_like(inlet, 204.0), "G_by_J_N_m": np.full_like(inlet, 200.0), "fluid_volume_balance": np.full_like(inlet, 1e-11)}
@@ -139,10 +136,7 @@ def _write_history(folder: Path, plan: Plan, inlet: np.ndarray, height: np.ndarr
 
 def _event(kind: str, row: int, inlet: np.ndarray, height: np.ndarray, drift: np.ndarray) -> dict[str, float | str]:
     """An event at a row of the history."""
-    return {
-        "kind": kind, "time_s": (inlet[row] - START_PA) / RATE_PA_S, "inlet_Pa": inlet[row],
-        "tip_x_m": 40.0 + drift[row], "tip_y_m": height[row],
-    }
+    return {"kind": kind, "time_s": (inlet[row] - START_PA) / RATE_PA_S, "inlet_Pa": inlet[row], "tip_x_m": 40.0 + drift[row], "tip_y_m": height[row]}
 
 
 def _write_summary(folder: Path, plan: Plan, inlet: np.ndarray, height: np.ndarray, drift: np.ndarray) -> None:
@@ -209,8 +203,7 @@ def write_all(root: Path) -> Path:
     runs = root / "runs"
     weak = {"stop_at_m": 10.0, "restart_Pa": 3.2e6}
     for number in (1, 2):
-        for plan in (Plan("perfect"), Plan("friction", ("friction",)), Plan("weak", ("weak",), **weak),
-                     Plan("soft", ("soft",), stop_at_m=10.0)):
+        for plan in (Plan("perfect"), Plan("friction", ("friction",)), Plan("weak", ("weak",), **weak), Plan("soft", ("soft",), stop_at_m=10.0)):
             write_both(runs, number, plan)
     write_both(runs, 1, Plan("uniform", start_Pa=2.36e6, extra='[fluid]\nlaw = "uniform"'))
     for plan in (Plan("perfect", ("perfect", "perfect")), Plan("weak_soft", ("weak", "soft"), **weak),

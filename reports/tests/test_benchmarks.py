@@ -16,7 +16,7 @@ def a_figure(name: str, seconds: float, per: str = "particle-step", **more: Any)
     """A figure as ci/bench stores it."""
     values = [seconds * factor for factor in (0.98, 1.0, 1.03)]
     return {"name": name, "per": per, "unit": "s", "values": values, "median": seconds, "spread": 0.05, "share_of_peak": 0.3,
-            "about": {}, "problem": "", **more}  # fmt: skip
+            "about": {}, "problem": "", **more}
 
 
 def some_figures(factor: float = 1.0) -> list[dict[str, Any]]:
@@ -37,7 +37,7 @@ def some_figures(factor: float = 1.0) -> list[dict[str, Any]]:
     for points in (6400.0, 25600.0, 102400.0):
         found.append(a_figure(f"whole/quasistatic/exp1_soft/{points:g}", factor * 1e-5 * points**1.2, "run", about={"particles": points}))
     events = {"growth/explicit/updated": 4e-3, "growth/explicit/total": 2e-3, "growth/quasistatic/cells80": 1.1e-2,
-              "contact/explicit/soft/cells80": 5e-4, "flow/paper/cells80": 8e-7, "write/checkpoint": 6e-3}  # fmt: skip
+              "contact/explicit/soft/cells80": 5e-4, "flow/paper/cells80": 8e-7, "write/checkpoint": 6e-3}
     found += [a_figure(name, factor * seconds, "event") for name, seconds in events.items()]
     found.append(a_figure("stage/measure_tips/threads1", factor * 1e-4, "call"))
     found.append(a_figure("crack/graded/cell0.5m", factor * 0.08, "run", about={"error": -4e-4, "particles": 9e3}))
@@ -49,13 +49,13 @@ def some_figures(factor: float = 1.0) -> list[dict[str, Any]]:
 def write_record(root: Path, date: str = "2026-03-01T10:00:00+00:00", cpu: str = "Some CPU", factor: float = 1.0) -> Path:
     """A record below a project's folder; returns its folder of runs."""
     mark = {"what": "particle-steps of `updated`, 1 thread", "wanted": 60.0, "found": 71.4 / factor, "unit": "million/s",
-            "at_least": True, "note": "", "reached": factor < 1.1}  # fmt: skip
+            "at_least": True, "note": "", "reached": factor < 1.1}
     lost = {**mark, "what": "all experiments, explicit/cell1m", "found": None, "reached": False, "at_least": False, "unit": "s"}
     record = {
         "format": 1, "machine": {"cpu": cpu, "cores": 2, "caches": "L2 1024K"}, "date": date, "part": False, "load": {},
         "build": {"version": "0.3.0", "commit": "abc", "compiler": "GNU 12.2", "flags": "-O3"}, "figures": some_figures(factor),
         "marks": [mark, lost],
-    }  # fmt: skip
+    }
     folder = root / "verification" / "benchmarks" / "records"
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / f"{cpu}.jsonl").open("a", encoding="utf-8") as stream:
@@ -104,7 +104,7 @@ def test_the_page_shows_the_newest_record(tmp_path: Path) -> None:
     assert main(["--runs", str(runs), "--out", str(tmp_path / "out"), "--strict"]) == 0
     page = (tmp_path / "out" / "verification.html").read_text(encoding="utf-8")
     for words in ("1 of 2 marks are reached; not all experiments, explicit/cell1m", "Recorded 2026-07-01", "Some CPU, 2 cores",
-                  "71.4 million/s", "falls short", "3 of 23 runs came to their end", "K_I -0.040", "benchmark_rates.svg"):  # fmt: skip
+                  "71.4 million/s", "falls short", "3 of 23 runs came to their end", "K_I -0.040", "benchmark_rates.svg"):
         assert words in page, words
     assert page.count('<tr class="wrong">') == 2, "a mark and a batch"
     assert '<tr class="wrong"><td>all experiments, explicit/cell1m' in page and '<tr class="wrong"><td>experiments/explicit' in page

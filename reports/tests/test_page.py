@@ -62,6 +62,11 @@ class Links(HTMLParser):
                 self.anchors.add(value)
 
 
+def text_of(out: Path, name: str = "index.html") -> str:
+    """The text of a page."""
+    return (out / name).read_text(encoding="utf-8")
+
+
 def links_of(page: Path) -> Links:
     """The references and anchors of a page."""
     links = Links()
@@ -72,7 +77,7 @@ def links_of(page: Path) -> Links:
 def make(runs: Path, out: Path, experiments: Path | None = None) -> int:
     """Make a page of these runs, and of what is kept in atlas/ beside them, without the chart of errors against time; its exit status."""
     folders = {"runs": runs, "out": out, "experiments": experiments or runs.parent / "no_scenes",
-               "precision": runs.parent / "no_chart", "stability": runs.parent / "atlas"}  # fmt: skip
+               "precision": runs.parent / "no_chart", "stability": runs.parent / "atlas"}
     return main(["--strict", *(word for name, folder in folders.items() for word in (f"--{name}", str(folder)))])
 
 
@@ -86,9 +91,14 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return root / "out"
 
 
-def test_every_figure_is_written_and_shown(made: Path) -> None:
+@pytest.fixture(scope="module")
+def page(made: Path) -> str:
+    """Its text."""
+    return text_of(made)
+
+
+def test_every_figure_is_written_and_shown(made: Path, page: str) -> None:
     """Each figure exists as SVG and PNG and stands on the page."""
-    page = (made / "index.html").read_text(encoding="utf-8")
     for name in FIGURES:
         assert (made / "figures" / f"{name}.svg").stat().st_size > 1000
         assert (made / "figures" / f"{name}.png").stat().st_size > 1000
@@ -113,9 +123,8 @@ def test_a_moved_page_still_holds_together(made: Path, tmp_path: Path) -> None:
     assert all((copy / target).is_file() for target in links_of(copy / "index.html").targets if target[0] != "#")
 
 
-def test_verdicts_come_first_with_their_numbers(made: Path) -> None:
+def test_verdicts_come_first_with_their_numbers(page: str) -> None:
     """The table of claims precedes all figures and has what was measured and asked, for each mechanics."""
-    page = (made / "index.html").read_text(encoding="utf-8")
     assert page.index('id="verdicts"') < page.index("<figure")
     table = page[page.index('class="claims"') : page.index("<figure")]
     for words in ("only under a variant", "not reproduced", "0.64\u00a0MPa", "at least 1.6\u00a0MPa", "J at interface"):
@@ -124,18 +133,16 @@ def test_verdicts_come_first_with_their_numbers(made: Path) -> None:
     assert re.findall(r'class="verdict (\w+)"', row)[:2] == ["partly", "yes"], "explicit and quasi-static side by side"
 
 
-def test_the_two_mechanics_are_compared(made: Path) -> None:
+def test_the_two_mechanics_are_compared(page: str) -> None:
     """Start, arrest and kinetic energy of a variant stand one above the other with their difference."""
-    page = (made / "index.html").read_text(encoding="utf-8")
     table = page[page.index('id="inertia"') : page.index('id="open"')]
     row = table[table.index("<b>1 weak</b>") :].split("</tr>")[0]
     assert "+0.0" in row and "2.3" in row and "10\u00a0m" in row and "3.3\u00a0%" in row
     assert "In " in table and "does the same with and without inertia" in table
 
 
-def test_claims_stand_against_choices(made: Path) -> None:
+def test_claims_stand_against_choices(page: str) -> None:
     """A line a claim and mechanics; a choice that holds only for some of the cases, or is open, says so."""
-    page = (made / "index.html").read_text(encoding="utf-8")
     table = page[page.index('class="sensitivity"') :].split("</table>")[0]
     assert "conserves volume" in table and "inlet pressure everywhere" not in table, "only choices that claims were evaluated under"
     lines = re.findall(r'class="mark (\w+)', table)
@@ -143,9 +150,8 @@ def test_claims_stand_against_choices(made: Path) -> None:
     assert "reproduced under every choice and mechanics that was run: 1b" in page.lower()
 
 
-def test_variants_of_other_choices_are_folded(made: Path) -> None:
+def test_variants_of_other_choices_are_folded(page: str) -> None:
     """The study's own variants are open to see, the others behind a line that says how many there are."""
-    page = (made / "index.html").read_text(encoding="utf-8")
     part = page[page.index(f'id="{STEMS[1]}"') : page.index(f'id="{STEMS[2]}"')]
     assert "Runs of other choices (3)" in part, "uniform in both, flow missing in quasi-static, which alone can run it"
     assert part.index("<b>weak</b>") < part.index('class="others"') < part.index("<b>uniform</b>")
@@ -155,13 +161,12 @@ def test_one_mechanics_alone_is_a_page_without_comparison(tmp_path: Path) -> Non
     """With explicit runs only nothing speaks of the other mechanics."""
     write_run(tmp_path / "runs", 1, Plan("perfect"))
     assert make(tmp_path / "runs", tmp_path / "out") == 0
-    page = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
+    page = text_of(tmp_path / "out")
     assert 'id="inertia"' not in page and "uasi-static" not in page
 
 
-def test_a_failed_run_is_shown_with_its_reason(made: Path) -> None:
+def test_a_failed_run_is_shown_with_its_reason(page: str) -> None:
     """A failed run stands in the list of failures and in its table, and its figure is still drawn."""
-    page = (made / "index.html").read_text(encoding="utf-8")
     assert page.count("a mechanism: the upper block is free") >= 2
     assert 'class="failed"' in page
 
@@ -173,7 +178,7 @@ def test_findings_are_computed_from_the_runs(tmp_path: Path) -> None:
         runs = tmp_path / f"runs{restart:.0f}"
         write_run(runs, 1, Plan("weak", ("weak",), stop_at_m=10.0, restart_Pa=restart))
         make(runs, tmp_path / "out")
-        titles += re.findall(r'alt="Figure 3: ([^"]+)"', (tmp_path / "out" / "index.html").read_text(encoding="utf-8"))
+        titles += re.findall(r'alt="Figure 3: ([^"]+)"', text_of(tmp_path / "out"))
     pressures = [float(re.search(r"until ([\d.]+)\sMPa", title).group(1)) for title in titles]
     assert pressures[0] == pytest.approx(3.0, abs=0.1) and pressures[1] == pytest.approx(3.4, abs=0.1)
 
@@ -182,7 +187,7 @@ def test_no_runs_at_all_still_gives_a_page(tmp_path: Path) -> None:
     """An empty folder of runs is told, not crashed on."""
     (tmp_path / "runs").mkdir()
     assert make(tmp_path / "runs", tmp_path / "out") == 0
-    page = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
+    page = text_of(tmp_path / "out")
     assert "No verdict on any claim" in page and "Figure 3 is not there" in page
 
 
@@ -193,7 +198,7 @@ def test_declared_variants_without_a_run_are_shown(tmp_path: Path) -> None:
     (scenes / f"{STEMS[1]}.toml").write_text("[variants.perfect]\n[variants.undamped]\n", encoding="utf-8")
     write_run(tmp_path / "runs", 1, Plan("perfect"))
     assert make(tmp_path / "runs", tmp_path / "out", scenes) == 0
-    page = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
+    page = text_of(tmp_path / "out")
     assert "not run: undamped (explicit)" in page and 'class="missing"' in page
 
 
@@ -209,7 +214,7 @@ def test_a_damaged_folder_is_not_fatal(tmp_path: Path, name: str, how: str) -> N
     else:
         victim.write_bytes(victim.read_bytes()[: victim.stat().st_size // 3])
     assert make(runs, tmp_path / "out") == 0
-    page = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
+    page = text_of(tmp_path / "out")
     assert 'src="figures/fig3.svg"' in page
 
 
@@ -219,4 +224,4 @@ def test_a_run_that_never_started_is_told_from_its_outcome(tmp_path: Path) -> No
     folder.mkdir(parents=True)
     (folder / "outcome.json").write_text('{"status": "failed", "reason": "bad input: no rock"}', encoding="utf-8")
     assert make(tmp_path / "runs", tmp_path / "out") == 0
-    assert "bad input: no rock" in (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
+    assert "bad input: no rock" in text_of(tmp_path / "out")

@@ -9,7 +9,8 @@ import pytest
 
 from reports import path_check
 from reports.charts.parts import draw_path_check
-from reports.path_check import SolverPath, _finding, _note, _row, _settled, section
+from reports.figures import words_of
+from reports.path_check import SolverPath, _finding, _row, _settled, section
 from reports.shown import Shown
 
 
@@ -60,7 +61,7 @@ def test_how_far_converged_paths_are_is_counted(monkeypatch: pytest.MonkeyPatch)
         "Experiment 5 moved by 0.25 m when increments were halved to 0.5 m; Experiment 6 moved by 0.062 m when increments were halved to"
         " 0.125 m, and is as far from its limit (first order)"
     )
-    assert "= 0.26 m (Cotterell" in _note([]), "1.45^2/8 m"
+    assert "= 0.26 m (Cotterell" in words_of("path_check_note", leaving_m=path_check.leaving_m(), missing=[]), "1.45^2/8 m"
 
 
 def test_nothing_is_said_where_nothing_was_run(tmp_path: Path) -> None:

@@ -7,9 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from reports.precision import (
-    finding, front_figure, lack_rows, measurements, panel_shown, point_rows, recommendations, table_of, write_precision,
-)
+from reports.precision import (finding, front_figure, lack_rows, measurements, panel_shown, point_rows, recommendations, table_of, write_precision)
 from verification.precision import store
 from verification.precision.problem import Problem
 from verification.precision.problems import PROBLEMS
@@ -18,7 +16,7 @@ from verification.precision.store import FAILED, OK, REFUSED, Found, Point, Shee
 MACHINE = {
     "processor": "a processor", "cores": 2, "caches": "L1 1K", "memory_GB": 8.0, "system": "a system", "compiler": "a compiler",
     "flags": "-O3", "version": "0", "revision": "abc",
-}  # fmt: skip
+}
 
 
 def made_up(problem: Problem, error: float = 0.02) -> Sheet:
@@ -31,7 +29,7 @@ def made_up(problem: Problem, error: float = 0.02) -> Sheet:
             found = {one.name: Found(4.0 * (1.0 + off), 4.0, off) for one in problem.wanted}
             points.append(Point(method.name, level.label, level.size, "key", status, "" if status == OK else "it broke",
                                 (1.0 / level.size + k,) * 3, (1.0 / level.size,) * 3, "2026-01-01 00:00:00", particles=1000,
-                                found=found if status == OK else {}))  # fmt: skip
+                                found=found if status == OK else {}))
     return Sheet(problem.name, MACHINE, tuple(points))
 
 

@@ -27,7 +27,7 @@ def a_row(name: str, label: str, unit: str, values: list[float | None], notes: t
 def a_study(variant: str, rows: list[dict[str, Any]], failed: int | None = None) -> dict[str, Any]:
     """A study of refine.json; `failed` is the number of the size whose run failed."""
     levels = [{"cell_m": size, "status": "failed" if k == failed else "completed", "reason": "it became a mechanism." if k == failed else ""}
-              for k, size in enumerate(SIZES)]  # fmt: skip
+              for k, size in enumerate(SIZES)]
     return {"mechanics": "quasistatic", "variant": variant, "increment_m": 1.0, "levels": levels, "notes": ["at 2 m it lies askew"], "rows": rows}
 
 
@@ -38,7 +38,7 @@ def write_refined(root: Path) -> Path:
     oscillates = a_row("restart_1_Pa", "restart pressure", "Pa", [2.6e6, 2.5e6, 2.7e6, 2.63e6], ("2 m: no arrest",))
     missing = a_row("pressure_at_40_Pa", "pressure at 40 m", "Pa", [2.7e6, 2.75e6, 2.77e6, None], ("0.25 m: failed",))
     content = {"experiment": "exp1_single_interface", "settings": [], "versions": ["0"],
-               "studies": [a_study("perfect", [converges]), a_study("soft", [converges, still, oscillates, missing], 3)]}  # fmt: skip
+               "studies": [a_study("perfect", [converges]), a_study("soft", [converges, still, oscillates, missing], 3)]}
     path = root / "refine" / "exp1_single_interface" / "refine.json"
     path.parent.mkdir(parents=True)
     path.write_text(json.dumps(content), encoding="utf-8")
@@ -63,13 +63,13 @@ def write_budget(root: Path) -> Path:
         {"id": "ring", "label": "J ring", "group": "numerical", "why_not": "", "tried": [tried("3 cells", "refused"), tried("5 cells", "refused")]},
         {"id": "rate", "label": "loading rate", "group": "model", "why_not": "", "tried": [tried("half", start_Pa=-1.0e3, high_Pa=-9.0e4), tried("double", start_Pa=2.0e3, high_Pa=None)]},
         {"id": "step", "label": "flow step", "group": "numerical", "why_not": "no flow", "tried": []},
-    ]  # fmt: skip
+    ]
     total = {"rss": 2.0e4, "sum": 2.2e4, "left_out": ["J ring (3 cells, 5 cells)"]}
     quantities = [["start_Pa", "start of growth", "Pa"], ["high_Pa", "pressure at 40 m", "Pa"]]
     one = {"mechanics": "quasistatic", "variant": "soft", "status": "completed", "reason": "", "base": {"start_Pa": 2.4e6, "high_Pa": 2.8e6},
-           "quantities": quantities, "lines": lines, "totals": {name: {"numerical": total, "all": total} for name, _, _ in quantities}}  # fmt: skip
+           "quantities": quantities, "lines": lines, "totals": {name: {"numerical": total, "all": total} for name, _, _ in quantities}}
     broken = {"mechanics": "quasistatic", "variant": "weak", "status": "failed", "reason": "it became a mechanism", "base": {},
-              "quantities": [], "lines": [], "totals": {}}  # fmt: skip
+              "quantities": [], "lines": [], "totals": {}}
     path = root / "budget" / "exp1_single_interface.json"
     path.parent.mkdir(parents=True)
     path.write_text(json.dumps({"experiment": "exp1_single_interface", "settings": [], "version": "0", "budgets": [one, broken]}), encoding="utf-8")

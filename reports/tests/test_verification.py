@@ -36,7 +36,7 @@ def a_row(case: str, quantity: str, level: int, error: float | None, **more: Any
         "cost": {"wall_s": 0.5 * 8**level, "particles": 6400 * 4**level, "steps": 0, "peak_memory_MB": 40.5},
         "gate": {"error": 0.06 / 2**level, "measured": 0.04 / 2**level, "order": 0.7 if level else None,
                  "measured_order": 1.0 if level else None}, "verdict": "pass",
-    }  # fmt: skip
+    }
     return {**row, **more}
 
 
@@ -48,7 +48,7 @@ def write_ladder(root: Path, rows: list[dict[str, Any]], **more: Any) -> Path:
             {"name": case, "says": f"It shows {case}.", "mechanics": mechanics, "scene": "a.toml"}
             for family, case, mechanics in cases if family == name]}
         for name in dict.fromkeys(row["family"] for row in rows)
-    ]  # fmt: skip
+    ]
     tally = {"rows": len(rows), "wrong": 0, "failed": 0, "gates": 7, "mutants": 31, "refused": 31, "words": ""}
     content = {"part": False, "machine": "made up", "tally": tally, "stale": [], "families": families, "rows": rows, **more}
     path = root / "runs" / "ladder" / "ladder.json"
@@ -134,8 +134,7 @@ def test_figures_say_what_the_numbers_say(tmp_path: Path) -> None:
     assert titles[0][0] == "Errors of 1\u00a0% (K_I, at rest) at the finest level; orders 1.0 between the finest two levels"
     assert titles[1][0].startswith("Errors of 2\u00a0%")
     assert title_of(tmp_path, some_rows()[:3] + [row | {"quantity": "J", "no_order": "rings"} for row in some_rows()[:3]]) == (
-        "Errors from 1\u00a0% to 1\u00a0% (K_I, at rest) at the finest level; 1 of 2 are judged by their order, 1.0 between the finest"
-        " two levels"
+        "Errors from 1\u00a0% to 1\u00a0% (K_I, at rest) at the finest level; 1 of 2 are judged by their order, 1.0 between the finest two levels"
     )
     assert titles[0][1] == "Within 1\u00a0% in all that they measure: 1 of 1 quasi-static cases in 32\u00a0s (median)"
     assert titles[1][1] == "Within 1\u00a0% in all that they measure: 0 of 1 quasi-static cases"
@@ -254,7 +253,7 @@ def test_relative_errors_in_words() -> None:
     """Per cent, and powers of ten where these would be all zeros."""
     assert [relative(error) for error in (0.0123, -0.0123, 2.5e-5, 3.2e-9, -1e-15, 0.0)] == [
         "1.2\u00a0%", "−1.2\u00a0%", "0.0025\u00a0%", "3.2×10⁻⁹", "−1.0×10⁻¹⁵", "0",
-    ]  # fmt: skip
+    ]
     assert relative(0.0123, signed=True) == "+1.2\u00a0%" and relative(float("nan")) == "–"
 
 
