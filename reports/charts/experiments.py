@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from matplotlib import colormaps
@@ -175,6 +176,31 @@ def _draw_path_panel(axes: Axes, panel: Shown) -> None:
     axes.legend(title="shift of the tip to the soft side, largest turn (◆)", loc="lower right" if panel.lean > 0 else "lower left",
                 title_fontsize=8.5, frameon=True, facecolor="white", edgecolor="none", framealpha=0.85)
     draw_layout(axes.inset_axes((0.02 if panel.lean > 0 else 0.72, 0.70, 0.27, 0.29)), panel.layout, small=True)
+
+
+SIGNS = {"reproduced": "✓", "only under a variant": "(✓)", "not reproduced": "✗"}
+
+
+def draw_front(panels: Sequence[Shown]) -> Figure:
+    """The README's picture: two rows of three panels of curves, each claim's id with its verdicts below the title, and one legend."""
+    figure = new_figure(11.0, 7.4)
+    for axes, panel, _ in panel_rows(figure, [panels[:3], panels[3:]]):
+        axes.grid(True)
+        axes.set_title(f"{panel.title}\n\n", color=INK)
+        for place in panel.interfaces_m if panel.is_path else ():
+            axes.axvline(place, color=INK, linewidth=0.9, linestyle=DOTTED, zorder=1)
+        interface_lines(axes, () if panel.is_path else panel.interfaces_m)
+        for curve in panel.curves:
+            axes.plot(curve.x, curve.height_m, drawstyle="default" if panel.is_path else "steps-post", **line_of(curve.variant, curve.beside, True))
+        axes.set(xlabel="x (m)" if panel.is_path else "inlet pressure (MPa)", ylabel="height (m)")
+        for place, (words, above) in enumerate((("without inertia", 1.08), ("with inertia", 1.02)), 1):
+            told = "   ".join(f"{verdict[0]} {SIGNS.get(verdict[place], '?')}" for verdict in panel.verdicts)
+            axes.text(0.0, above, f"{words}:  {told}", transform=axes.transAxes, fontsize=8.5)
+    variants = dict.fromkeys(curve.variant for panel in panels for curve in panel.curves)
+    lines = [entry(name.replace("_", " below "), **line_of(name, solid=True)) for name in variants]
+    lines.append(entry("with inertia (thin, dashed)", color=INK, linewidth=1.1, linestyle=(0, (4.5, 2.2))))
+    put_legend(figure, lines + [entry(f"{sign} claim {verdict}", linestyle="") for verdict, sign in SIGNS.items()], 5)
+    return figure
 
 
 def draw_choice(data: Shown) -> Figure:
