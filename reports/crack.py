@@ -57,7 +57,8 @@ def _copies_panel(run: Run, index: int, centre: str, magnified: float) -> Shown:
     low = max(0.0, at_y - (1.35 if centre == "tip" else 1.0) * half)
     window = (at_x - half, at_x + half, low, low + 2.0 * half)
     laws = divided(run, index)
-    inside = _inside(points, window, 2.0 * h)
+    x, y, margin = points["x_m"], points["y_m"], 2.0 * h
+    inside = (x > window[0] - margin) & (x < window[1] + margin) & (y > window[2] - margin) & (y < window[3] + margin)
     x_m, y_m = points["x_m"][inside], points["y_m"][inside]
     # A row of signs for each particle: about the fracture, then about every interface.
     sides = np.stack([side_of(x_m, y_m, *crack)[0], *(np.where(y_m >= at, 1, -1) for at in laws)], axis=1)
@@ -75,20 +76,10 @@ def _copies_panel(run: Run, index: int, centre: str, magnified: float) -> Shown:
 
 def divided(run: Run, index: int) -> dict[float, np.ndarray]:
     """For each interface across the fracture, its height in m and the x in m of its points where it has split."""
-    layout, found = layout_of(run), {}
-    if layout.along != "y":
-        return found
-    for points in interfaces_at(run, index):
-        at = float(points.get("at_m", points["y_m"][0]))
-        found[at] = points["x_m"][points["split"] > 0] if "split" in points else points["x_m"]
+    across = interfaces_at(run, index) if layout_of(run).along == "y" else []
+    found = {float(points.get("at_m", points["y_m"][0])): points["x_m"][points["split"] > 0] if "split" in points else points["x_m"]
+             for points in across}
     return dict(sorted(found.items()))
-
-
-def _inside(points: Arrays, window: tuple[float, float, float, float], margin_m: float) -> np.ndarray:
-    """Which particles lie in a window and a margin about it."""
-    x, y = points["x_m"], points["y_m"]
-    in_x = (x > window[0] - margin_m) & (x < window[1] + margin_m)
-    return in_x & (y > window[2] - margin_m) & (y < window[3] + margin_m)
 
 
 def _lines(span: tuple[float, float], h: float) -> tuple[float, ...]:
@@ -100,12 +91,8 @@ def _lines(span: tuple[float, float], h: float) -> tuple[float, ...]:
 def _grouped(x_m: np.ndarray, y_m: np.ndarray, sides: np.ndarray) -> dict[tuple[int, int], tuple[np.ndarray, ...]]:
     """Particles by their side of the fracture and the number of interfaces below them."""
     above = (sides[:, 1:] > 0).sum(axis=1)
-    groups = {}
-    for crack in (-1, 1):
-        for level in range(int(above.max(initial=0)) + 1):
-            mask = (sides[:, 0] == crack) & (above == level)
-            groups[(crack, level)] = (x_m[mask], y_m[mask])
-    return groups
+    masks = {(crack, level): (sides[:, 0] == crack) & (above == level) for crack in (-1, 1) for level in range(int(above.max(initial=0)) + 1)}
+    return {group: (x_m[mask], y_m[mask]) for group, mask in masks.items()}
 
 
 def _node(

@@ -9,7 +9,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from reports.charts.experiments import draw_front
+from reports.charts.experiments import draw_front_picture
 from reports.charts.style import save
 from reports.layout import layout_of
 from reports.runs import load_run
@@ -46,7 +46,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, default=EXPERIMENTS, help="folder of heights.svg")
     options = parser.parse_args(arguments)
     claims = read_claims(options.runs / "claims.json")
-    save(draw_front([panel_of(options.runs, claims, *shown) for shown in SHOWN]), options.out, "heights")
+    save(draw_front_picture([panel_of(options.runs, claims, *shown) for shown in SHOWN]), options.out, "heights")
     print(options.out / "heights.svg")
     return 0
 

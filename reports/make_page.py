@@ -15,7 +15,7 @@ from reports.catalogue import catalogue  # noqa: E402  (after the path to the pr
 from reports.figures import OUT, defects_of, make  # noqa: E402
 from reports.page import write_index  # noqa: E402
 from reports.precision import write_precision  # noqa: E402
-from reports.runs import add_missing, declared_runs, load_runs  # noqa: E402
+from reports.runs import add_missing, load_runs  # noqa: E402
 from reports.stability import write_stability  # noqa: E402
 from reports.verification import write_verification  # noqa: E402
 from verification.harness.choices import read_points  # noqa: E402
@@ -36,7 +36,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--strict", action="store_true", help="exit 1 if a figure could not be drawn for a defect")
     options = parser.parse_args(arguments)
     points = read_points(options.experiments)
-    runs = add_missing(load_runs(options.runs), declared_runs(options.experiments), options.runs)
+    runs = add_missing(load_runs(options.runs), options.experiments, options.runs)
     with ProcessPoolExecutor(max_workers=2) as beside:  # the other pages are drawn at the same time
         atlas_page = beside.submit(write_stability, options.out, options.stability)
         verification = beside.submit(write_verification, options.runs, options.out, with_index=True)

@@ -78,11 +78,6 @@ def choice_words(dot: Dot) -> str:
     return f"{dot.name}: {wall_time(dot.time_s)}"
 
 
-def lack_words(best: Dot | None) -> str:
-    """What to say where no method is within a tolerance."""
-    return "nothing was measured" if best is None else f"none reaches it; best {share(best.judged)}: {choice_words(best)}"
-
-
 def own_dots(panel: Panel) -> list[Dot]:
     """What the solver itself has to show in a panel."""
     return [dot for dot in panel.dots if in_group(dot, "any method")]
@@ -169,7 +164,9 @@ def table_of(panels: Sequence[Panel]) -> list[dict[str, object]]:
     def cell(row: Advice, dot: Dot | None) -> dict[str, object]:
         """The cheapest way to a tolerance, or that there is none."""
         if dot is None:
-            return {"words": lack_words(row.best), "error": "", "ok": False}
+            best = row.best
+            words = f"none reaches it; best {share(best.judged)}: {choice_words(best)}" if best else "nothing was measured"
+            return {"words": words, "error": "", "ok": False}
         return {"words": choice_words(dot), "error": share(dot.judged), "ok": True}
 
     return [{"title": row.panel.wanted.title, "group": row.group, "first": row.group == "any method",

@@ -125,9 +125,10 @@ def refinement_table(experiment: str, studies: list[dict[str, Any]], settings: l
             if row["estimate"]["kind"] not in (*_GOOD, "beside"):
                 marked.append(len(rows))
             values = [row["values"][at[size]] if size in at else None for size in sizes]
+            orders = [f"{item['order']:.2f}" if item["order"] is not None else {"still": "same"}.get(item["kind"], item["kind"])
+                      for item in row["estimate"]["triples"]]  # of three sizes, or what they do instead
             rows.append([plain(study["variant"]), f"{row['label']} ({'MPa' if row['unit'] == 'Pa' else row['unit']})",
-                         *(_value(value, row["unit"]) for value in values), ", ".join(map(_order_words, row["estimate"]["triples"])) or NONE,
-                         _limit_words(row), "; ".join(row["notes"])])
+                         *(_value(value, row["unit"]) for value in values), ", ".join(orders) or NONE, _limit_words(row), "; ".join(row["notes"])])
     increments = listed(sorted({f"{study['increment_m']:g} m" for study in studies}))
     title = f"{experiment_name(experiment)}, {mechanics_name(studies[0]['mechanics'])}, increment {increments}"
     header = ["variant", "number", *(f"{size:g} m" for size in sizes), "orders, coarse to fine", "limit, or why there is none", "notes"]
@@ -135,11 +136,6 @@ def refinement_table(experiment: str, studies: list[dict[str, Any]], settings: l
     note = [*([f"All with {listed(settings)}."] if settings else []), *(f"{note[0].upper()}{note[1:]}." for note in told),
             *(f"{which} {level['status']}: {level['reason'].rstrip('.')}." for which, level in _lost(studies))]
     return Table(title=title, header=header, rows=rows, marked=marked, note=" ".join(note))
-
-
-def _order_words(item: dict[str, Any]) -> str:
-    """The order of three sizes, or what they do instead."""
-    return f"{item['order']:.2f}" if item["order"] is not None else {"still": "same"}.get(item["kind"], item["kind"])
 
 
 def _value(value: float | None, unit: str) -> str:

@@ -178,26 +178,17 @@ def lead_of(runs: Iterable[Run]) -> str:
     return (mechanics_in(run for run in runs if run.drawable) or MECHANICS)[-1]
 
 
-def declared_runs(experiments: Path) -> list[tuple[str, str, str]]:
-    """What the scenes of a folder ask for, as (experiment, variant, mechanics), to show what was not run."""
-    declared: list[tuple[str, str, str]] = []
-    for path in scenes_of(experiments):
-        try:
-            declared += [(path.stem, name, one) for name in variants_of(path) for one in mechanics_of(path, name)]
-        except (OSError, tomllib.TOMLDecodeError):
-            continue
-    return declared
-
-
-def add_missing(runs: list[Run], declared: list[tuple[str, str, str]], root: Path) -> list[Run]:
-    """The runs and, as 'missing', every declared one without a folder, in those mechanics that anything was run in."""
+def add_missing(runs: list[Run], experiments: Path, root: Path) -> list[Run]:
+    """The runs and, as 'missing', every one that the scenes of a folder ask for without a folder, in those mechanics that anything was run in."""
     have = {(run.experiment, run.variant, run.mechanics) for run in runs}
     wanted = mechanics_in(runs) or MECHANICS
-    absent = [
-        Run(stem, name, root / mechanics / stem / name, mechanics, problems=["not run"])
-        for stem, name, mechanics in declared
-        if mechanics in wanted and (stem, name, mechanics) not in have
-    ]
+    absent = []
+    for path in scenes_of(experiments):
+        try:
+            declared = [(path.stem, name, one) for name in variants_of(path) for one in mechanics_of(path, name) if one in wanted]
+        except (OSError, tomllib.TOMLDecodeError):
+            continue
+        absent += [Run(stem, name, root / one / stem / name, one, problems=["not run"]) for stem, name, one in declared if (stem, name, one) not in have]
     return sorted([*runs, *absent], key=order)
 
 

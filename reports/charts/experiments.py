@@ -181,7 +181,7 @@ def _draw_path_panel(axes: Axes, panel: Shown) -> None:
 SIGNS = {"reproduced": "✓", "only under a variant": "(✓)", "not reproduced": "✗"}
 
 
-def draw_front(panels: Sequence[Shown]) -> Figure:
+def draw_front_picture(panels: Sequence[Shown]) -> Figure:
     """The README's picture: two rows of three panels of curves, each claim's id with its verdicts below the title, and one legend."""
     figure = new_figure(11.0, 7.4)
     for axes, panel, _ in panel_rows(figure, [panels[:3], panels[3:]]):

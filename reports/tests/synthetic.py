@@ -49,42 +49,14 @@ def scene_text(number: int, plan: Plan) -> str:
     layers.append(f'{{rock = "{names[-1]}"}}')
     interfaces = ", ".join(f'"{name}"' for name in plan.interfaces)
     return f"""title = "Experiment {number}: made up"
-[domain]
-width_m = 80
-height_m = 80
-bottom = "symmetry"
-sides = "fixed"
-top = "traction"
-[in_situ]
-vertical_Pa = 3.0e6
-horizontal_Pa = 2.0e6
-initialise = "uniform"
-[rock.stiff]
-youngs_modulus_Pa = 10.0e9
-poisson_ratio = 0.2
-toughness_Pa_sqrt_m = 1.45e6
-[rock.soft]
-youngs_modulus_Pa = 5.0e9
-poisson_ratio = 0.2
-toughness_Pa_sqrt_m = 1.25e6
-[interface.weak]
-law = "weak"
-[interface.friction]
-law = "friction"
-[interface.soft]
-law = "soft"
-[strata]
-along = "{along}"
-layers = [{", ".join(layers)}]
-interfaces = [{interfaces}]
-[fracture]
-path_m = [[40, 0], [40, 5]]
-growth = "J"
-increment_m = 1.0
-[numerics]
-mechanics = "{plan.mechanics}"
-cell_m = 2.0
-shape = "bspline2"
+domain = {{width_m = 80, height_m = 80, bottom = "symmetry", sides = "fixed", top = "traction"}}
+in_situ = {{vertical_Pa = 3.0e6, horizontal_Pa = 2.0e6, initialise = "uniform"}}
+rock.stiff = {{youngs_modulus_Pa = 10.0e9, poisson_ratio = 0.2, toughness_Pa_sqrt_m = 1.45e6}}
+rock.soft = {{youngs_modulus_Pa = 5.0e9, poisson_ratio = 0.2, toughness_Pa_sqrt_m = 1.25e6}}
+interface = {{weak.law = "weak", friction.law = "friction", soft.law = "soft"}}
+strata = {{along = "{along}", layers = [{", ".join(layers)}], interfaces = [{interfaces}]}}
+fracture = {{path_m = [[40, 0], [40, 5]], growth = "J", increment_m = 1.0}}
+numerics = {{mechanics = "{plan.mechanics}", cell_m = 2.0, shape = "bspline2"}}
 {plan.extra}
 """
 

@@ -15,7 +15,7 @@ from reports import verification
 from reports.charts.ladder import spread_apart
 from reports.charts.style import new_figure
 from reports.figures import Figure
-from reports.ladder import convergence_figure, cost_figure, load_ladder
+from reports.ladder import Ladder, convergence_figure, cost_figure, load_ladder
 from reports.make_page import main as make_page
 from reports.make_verification import main
 from reports.shown import Shown
@@ -66,6 +66,13 @@ def some_rows() -> list[dict[str, Any]]:
     rows[-1] |= {"verdict": "FAIL", "problems": ["order 0.20 below 0.7"]}
     rows.append(a_row("moving", "mouth", 2, None, failure="a mechanism", verdict="FAILED", values=0, cost=None, order=None))
     return rows
+
+
+def ladder_of(root: Path, rows: list[dict[str, Any]]) -> Ladder:
+    """The rows as a ladder that was read."""
+    ladder = load_ladder(write_ladder(root, rows) / "ladder" / "ladder.json")
+    assert ladder is not None
+    return ladder
 
 
 def page_of(runs: Path, out: Path, *options: str) -> str:
@@ -128,23 +135,16 @@ def test_figures_say_what_the_numbers_say(tmp_path: Path) -> None:
     titles = []
     for factor in (1.0, 2.0):
         rows = [row | {"error": row["error"] * factor} for row in some_rows()[:3]]
-        ladder = load_ladder(write_ladder(tmp_path, rows) / "ladder" / "ladder.json")
-        assert ladder is not None
+        ladder = ladder_of(tmp_path, rows)
         titles.append((convergence_figure(ladder, "cracks").title, cost_figure(ladder).title))
     assert titles[0][0] == "Errors of 1\u00a0% (K_I, at rest) at the finest level; orders 1.0 between the finest two levels"
     assert titles[1][0].startswith("Errors of 2\u00a0%")
-    assert title_of(tmp_path, some_rows()[:3] + [row | {"quantity": "J", "no_order": "rings"} for row in some_rows()[:3]]) == (
+    two = some_rows()[:3] + [row | {"quantity": "J", "no_order": "rings"} for row in some_rows()[:3]]
+    assert convergence_figure(ladder_of(tmp_path, two), "cracks").title == (
         "Errors from 1\u00a0% to 1\u00a0% (K_I, at rest) at the finest level; 1 of 2 are judged by their order, 1.0 between the finest two levels"
     )
     assert titles[0][1] == "Within 1\u00a0% in all that they measure: 1 of 1 quasi-static cases in 32\u00a0s (median)"
     assert titles[1][1] == "Within 1\u00a0% in all that they measure: 0 of 1 quasi-static cases"
-
-
-def title_of(root: Path, rows: list[dict[str, Any]]) -> str:
-    """The title of the chart of the rows' family."""
-    ladder = load_ladder(write_ladder(root, rows) / "ladder" / "ladder.json")
-    assert ladder is not None
-    return convergence_figure(ladder, "cracks").title
 
 
 def test_the_worst_of_a_case_is_what_it_costs(tmp_path: Path) -> None:
@@ -152,22 +152,20 @@ def test_the_worst_of_a_case_is_what_it_costs(tmp_path: Path) -> None:
     found = {"K": (0.04, 0.001), "w": (0.02, 0.01)}
     rows = [a_row("at_rest", name, k, error) for name, errors in found.items() for k, error in enumerate(errors)]
     rows[0] |= {"verdict": "FAIL", "problems": ["error above"]}
-    ladder = load_ladder(write_ladder(tmp_path, rows) / "ladder" / "ladder.json")
-    assert ladder is not None
+    ladder = ladder_of(tmp_path, rows)
     (curve,) = cost_figure(ladder).panels[0].curves
     assert (curve.sizes, curve.errors, curve.passed, curve.walls_s) == ((2.0, 1.0), (0.04, 0.01), (False, True), (0.5, 4.0))
 
 
 def test_round_off_is_not_drawn_but_counted(tmp_path: Path) -> None:
     """A curve at 1e-15 would leave no room for the others."""
-    ladder = load_ladder(write_ladder(tmp_path, some_rows()) / "ladder" / "ladder.json")
-    assert ladder is not None
+    ladder = ladder_of(tmp_path, some_rows())
     figure = convergence_figure(ladder, "cracks")
     assert [(panel.heading, panel.unit) for panel in figure.panels] == [("at rest, quasi-static", "m"), ("moving, explicit", "m")]
     assert [curve.quantity for panel in figure.panels for curve in panel.curves] == ["K_I", "mouth"] and figure.left_out == 1
     assert "1 quantity that holds to round-off" in page_of(tmp_path / "runs", tmp_path / "out")
-    exact = load_ladder(write_ladder(tmp_path, some_rows()[3:6]) / "ladder" / "ladder.json")
-    assert exact is not None and convergence_figure(exact, "cracks") is None and cost_figure(exact) is None
+    exact = ladder_of(tmp_path, some_rows()[3:6])
+    assert convergence_figure(exact, "cracks") is None and cost_figure(exact) is None
     assert "Everything holds to round-off" in page_of(tmp_path / "runs", tmp_path / "out2")
 
 
