@@ -54,9 +54,7 @@ def _draw_panel(axes: Axes, panel: Shown) -> None:
         _draw_node(axes, node, 0.016 * (x1 - x0))
     axes.set(xlim=(x0, x1), ylim=(y0, y1))
     axes.set_aspect("equal")
-    axes.set_title(panel.heading)
-    axes.set_xlabel("x (m)")
-    axes.set_ylabel("height above the symmetry line (m)")
+    axes.set(title=panel.heading, xlabel="x (m)", ylabel="height above the symmetry line (m)")
 
 
 def _draw_node(axes: Axes, node: Shown, radius_m: float) -> None:

@@ -57,8 +57,7 @@ def draw_variants(data: Shown) -> Figure:
         at += 0.4
     axes.set_yticks(ticks, labels)
     axes.tick_params(axis="y", length=0)
-    axes.set_ylim(at, -0.8)
-    axes.set_xlabel("inlet pressure (MPa)")
+    axes.set(ylim=(at, -0.8), xlabel="inlet pressure (MPa)")
     handles = [entry(name, marker=MARKERS[kind], color=INK, linestyle="none") for kind, name in KIND_NAMES.items()]
     handles += [entry("arrested", color=INK, linewidth=4.5, alpha=0.35), entry("paused, not by an interface", color=INK, linewidth=1.0)]
     handles.append(entry("J at interface", marker="o", markersize=10, markerfacecolor="none", markeredgecolor=FLAG, linestyle="none"))

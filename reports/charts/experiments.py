@@ -31,8 +31,7 @@ def draw_layout(axes: Axes, layout: Any, small: bool = False) -> None:
             axes.annotate(f"interface at {place.at_m:g} m", (layout.width_m, place.at_m), xytext=(-3, 2), textcoords="offset points", ha="right",
                           va="bottom", fontsize=7, color=COLOURS["weak"])
     axes.plot(layout.fracture_x_m, layout.fracture_y_m, color=FLUID, linewidth=2.0 if small else 3.0, solid_capstyle="butt", zorder=5)
-    axes.set_xlim(0, layout.width_m)
-    axes.set_ylim(0, layout.height_m)
+    axes.set(xlim=(0, layout.width_m), ylim=(0, layout.height_m))
     axes.set_aspect("equal")
     if small:
         axes.set_xticks([])
@@ -41,8 +40,7 @@ def draw_layout(axes: Axes, layout: Any, small: bool = False) -> None:
             spine.set_visible(True)
         return
     _draw_edges(axes, layout)
-    axes.set_xlabel("x (m)")
-    axes.set_ylabel(HEIGHT)
+    axes.set(xlabel="x (m)", ylabel=HEIGHT)
 
 
 def _draw_layer(axes: Axes, layout: Any, layer: Shown, small: bool) -> None:
@@ -91,8 +89,7 @@ def draw_heights(data: Shown) -> Figure:
                 _draw_mark(axes, mark, curve)
             if curve.failed:
                 axes.plot(curve.inlet_MPa[-1:], curve.height_m[-1:], marker="X", markersize=9, color=FLAG, zorder=6)
-        axes.set(xlabel="inlet pressure (MPa)", ylabel="fracture height (m)", xlim=pressures_MPa, ylim=heights_m)
-        axes.set_title(title)
+        axes.set(xlabel="inlet pressure (MPa)", ylabel="fracture height (m)", xlim=pressures_MPa, ylim=heights_m, title=title)
     _height_legend(figure, data)
     return figure
 
@@ -137,8 +134,7 @@ def draw_profiles(data: Shown) -> Figure:
         for profile in panel.profiles:
             axes.plot(profile.opening_mm, profile.height_m, color=colours(0.12 + 0.85 * profile.shade), linewidth=1.8,
                       label=f"{profile.time_s:.2f} s, {profile.inlet_MPa:.2f} MPa")
-        axes.set_title(panel.heading)
-        axes.set_xlabel("opening (mm)")
+        axes.set(title=panel.heading, xlabel="opening (mm)")
         axes.legend(title="time, inlet pressure", loc="upper right", title_fontsize=8.5)
         axes.set(xlim=(0, 1.05 * data.opening_mm), ylim=(0, 1.04 * data.height_m))
         if first:
@@ -170,9 +166,7 @@ def _draw_path_panel(axes: Axes, panel: Shown) -> None:
     axes.set(xlim=(x0, x1), ylim=(y0, y1))
     axes.set_box_aspect(panel.aspect)
     scale = "" if panel.magnified < 1.05 else f", horizontally magnified ×{panel.magnified:.2g}"
-    axes.set_title(f"{panel.name}: paths{scale}")
-    axes.set_xlabel("x (m)" + (f"   [{panel.aside}]" if panel.aside else ""))
-    axes.set_ylabel(HEIGHT)
+    axes.set(title=f"{panel.name}: paths{scale}", xlabel="x (m)" + (f"   [{panel.aside}]" if panel.aside else ""), ylabel=HEIGHT)
     axes.legend(title="shift of the tip to the soft side, largest turn (◆)", loc="lower right" if panel.lean > 0 else "lower left",
                 title_fontsize=8.5, frameon=True, facecolor="white", edgecolor="none", framealpha=0.85)
     draw_layout(axes.inset_axes((0.02 if panel.lean > 0 else 0.72, 0.70, 0.27, 0.29)), panel.layout, small=True)
@@ -214,10 +208,8 @@ def draw_choice(data: Shown) -> Figure:
             (axes.axvline if panel.is_path else axes.axhline)(place, color=PALE, linewidth=0.9, linestyle=DOTTED, zorder=1)
         for line in panel.lines:
             _draw_choice_line(axes, line, panel.is_path)
-        axes.set(xlim=panel.x_range, ylim=panel.y_range)
-        axes.set_title(panel.heading)
-        axes.set_xlabel("x (m)" if panel.is_path else "inlet pressure (MPa)")
-        axes.set_ylabel(HEIGHT if panel.is_path else "fracture height (m)")
+        axes.set(xlim=panel.x_range, ylim=panel.y_range, title=panel.heading, xlabel="x (m)" if panel.is_path else "inlet pressure (MPa)")
+        axes.set(ylabel=HEIGHT if panel.is_path else "fracture height (m)")
     handles = [entry(name.replace("_", "–"), color=COLOURS.get(name, PALE), linewidth=2.4) for name in data.variants]
     names = [f"default: {data.default}", *data.choices]
     put_legend(figure, handles + [entry(name, color=INK, **_choice_look(index)) for index, name in enumerate(names)], 4 if columns > 1 else 2)

@@ -53,8 +53,7 @@ def draw_cost(data: Shown) -> Figure:
     looks = {name: _LOOKS[k] for k, name in enumerate(data.mechanics)}
     for k, (axes, panel) in enumerate(zip(every, data.panels, strict=True)):
         axes.grid(True, which="major")
-        axes.set(xscale="log", yscale="log")
-        axes.set_title(panel.heading)
+        axes.set(xscale="log", yscale="log", title=panel.heading)
         _percent_axis(axes)
         axes.axhline(0.01, color=PALE, linewidth=0.9, linestyle=DASHED, zorder=1)
         for curve in panel.curves:
@@ -85,8 +84,7 @@ def _size_axes(axes: Axes, panel: Shown, low: float, high: float) -> None:
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set_xticks(sizes, [f"{size:.3g}" for size in sizes])
     axes.xaxis.set_minor_formatter(NullFormatter())
-    axes.set_title(panel.heading)
-    axes.set_xlabel({"m": "cell size (m)", "s": "step (s)"}.get(panel.unit, "size (m)"))
+    axes.set(title=panel.heading, xlabel={"m": "cell size (m)", "s": "step (s)"}.get(panel.unit, "size (m)"))
     axes.grid(True, which="major")
     _percent_axis(axes)
 

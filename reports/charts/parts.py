@@ -106,8 +106,7 @@ def draw_scaling(data: Shown) -> Figure:
     dashed: dict[str, Any] = {"color": PALE, "linestyle": DASHED, "linewidth": 1.0}
     for axes, panel in zip(every, data.panels, strict=True):
         axes.grid(True)
-        axes.set_title(panel.heading)
-        axes.set(xscale="log", yscale="log", xlabel="points", ylabel="s")
+        axes.set(title=panel.heading, xscale="log", yscale="log", xlabel="points", ylabel="s")
         for colour, curve in zip(_LINES, panel.curves):
             label = f"{curve.label}: {curve.exponent:.2f}"
             axes.plot(curve.points, curve.seconds, color=colour, marker="o", markersize=4.5, linewidth=1.6, zorder=4, label=label)
@@ -129,9 +128,8 @@ def draw_events(data: Shown) -> Figure:
         axes.plot([middle], [place], marker="o", markersize=5, color=_RATES["fast", 2], zorder=4)
         axes.annotate(_time(middle), (high, place), (6, 0), textcoords="offset points", va="center", fontsize=7)
     axes.set_yticks(range(len(data.events)), [name for name, *_ in data.events], fontsize=8)
-    axes.set_ylim(len(data.events) - 0.4, -0.6)
-    axes.set_xlim(0.4 * min(low for _, _, low, _ in data.events), 5.0 * max(high for *_, high in data.events))
-    axes.set_xlabel("s")
+    axes.set(ylim=(len(data.events) - 0.4, -0.6), xlim=(0.4 * min(low for _, _, low, _ in data.events), 5.0 * max(high for *_, high in data.events)))
+    axes.set(xlabel="s")
     return figure
 
 
@@ -174,9 +172,8 @@ def _draw_budget_panel(axes: Axes, panel: Shown) -> None:
         _draw_factor(axes, place, row, reach)
     low, high = min([0.0, *values]), max([0.0, *values])
     axes.set_yticks(range(len(panel.rows)), [row.label for row in panel.rows], fontsize=7.5)
-    axes.set_ylim(len(panel.rows) - 0.5, -0.5)
-    axes.set_xlim(low - (0.4 if low < 0.0 else 0.15) * reach, high + (0.4 if high > 0.0 else 0.15) * reach)
-    axes.set_xlabel(panel.unit)
+    axes.set(ylim=(len(panel.rows) - 0.5, -0.5), xlim=(low - (0.4 if low < 0.0 else 0.15) * reach, high + (0.4 if high > 0.0 else 0.15) * reach))
+    axes.set(xlabel=panel.unit)
     axes.tick_params(axis="x", labelsize=7.5)
 
 
@@ -208,8 +205,7 @@ def draw_refinement(data: Shown) -> Figure:
         axes.grid(True)
         for number, line in enumerate(panel.lines):
             _draw_refined(axes, line, number)
-        axes.set_xlim(-0.09, 1.06)
-        axes.set_title(panel.heading)
+        axes.set(xlim=(-0.09, 1.06), title=panel.heading)
         clean = [f"{line.order:.2f} {line.variant.replace('_', '–')}" for line in panel.lines if line.order is not None]
         axes.set_xlabel("(h / coarsest h)$^p$" + (f",  p = {', '.join(clean)}" if clean else ""), fontsize=8)
         axes.set_ylabel(panel.unit)
@@ -261,9 +257,7 @@ def draw_path_check(data: Shown) -> Figure:
             if panel.shows_same:
                 axes.plot(*run.same.T, color=colour, zorder=3, **dashed)
         _show_compared(axes, panel)
-        axes.set_title(panel.heading)
-        axes.set_xlabel("x from the first line (m)")
-        axes.set_ylabel("height (m)")
+        axes.set(title=panel.heading, xlabel="x from the first line (m)", ylabel="height (m)")
         if panel.shows_same:
             axes.plot([], [], color=INK, label="boundary elements, forward, increments of the run", **dashed)
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), fontsize=7.5, ncols=1)

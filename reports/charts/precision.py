@@ -46,8 +46,7 @@ def draw_full(data: Shown) -> Figure:
     (panel,) = data.panels
     axes = figure.subplots()
     _draw_panel(axes, panel, pale=False)
-    axes.set_xlabel("wall time (s)")
-    axes.set_ylabel("relative error")
+    axes.set(xlabel="wall time (s)", ylabel="relative error")
     handles = [_handle(curve, k) for k, curve in enumerate(panel.curves, 1)]
     for k, curve in enumerate(panel.curves, 1):
         axes.annotate(f"{k}", (curve.times_s[-1], curve.errors[-1]), xytext=(5, 4), textcoords="offset points", fontsize=7.2,
@@ -86,8 +85,7 @@ def _draw_panel(axes: Axes, panel: Shown, pale: bool) -> None:
 def _limits(axes: Axes, panel: Shown) -> None:
     """Ranges with room for the strip of failures, errors as percentages."""
     low, high = min(panel.errors[0], 6e-4) / 1.6, max(panel.errors[1], 0.06) * 1.5
-    axes.set_ylim(low, low * (high / low) ** (1.0 / (1.0 - _STRIP)))
-    axes.set_xlim(panel.times_s[0] / 1.7, panel.times_s[1] * 1.7)
+    axes.set(ylim=(low, low * (high / low) ** (1.0 / (1.0 - _STRIP))), xlim=(panel.times_s[0] / 1.7, panel.times_s[1] * 1.7))
     axes.yaxis.set_major_locator(LogLocator(base=10.0, numticks=20))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100.0 * value:g} %"))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))

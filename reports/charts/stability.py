@@ -67,8 +67,7 @@ def draw_edges(data: Shown) -> Figure:
         axes.plot([predicted, predicted], [place - 0.38, place + 0.38], color=INK, linewidth=1.6, zorder=3)
         axes.plot([measured], [place], marker="o", markersize=4.6, color=colour, markeredgecolor="white", markeredgewidth=0.5, zorder=4)
     axes.set_yticks(range(len(data.rows)), [name for name, _, _ in data.rows], fontsize=7.2)
-    axes.set_ylim(len(data.rows) - 0.4, -0.6)
-    axes.set_xlabel(data.x_name)
+    axes.set(ylim=(len(data.rows) - 0.4, -0.6), xlabel=data.x_name)
     axes.grid(True, axis="x")
     put_legend(figure, [entry("edge predicted", color=INK, marker="|", markersize=9, markeredgewidth=1.6, linestyle="none"),
                         entry("edge measured", color=colour, marker="o", linestyle="none", markersize=5)], 2)

@@ -1,0 +1,203 @@
+"""Pages beside that of the experiments: the stability atlas and the work-precision chart, from data that are there, that are wrong, and that are not."""
+
+from __future__ import annotations
+
+import html
+import shutil
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from reports import precision, stability
+from reports.figures import write_alone
+from reports.shown import Shown
+from verification.precision import store
+from verification.precision.problem import Problem
+from verification.precision.problems import PROBLEMS
+from verification.precision.store import FAILED, OK, REFUSED, Found, Point, Sheet
+from verification.stability import store as atlas_store
+from verification.stability.family import GARBAGE
+
+REPORTS = Path(__file__).resolve().parents[1]
+PAGES = [("make_stability.py", "--records", "stability.html"), ("make_precision.py", "--precision", "precision.html")]
+
+
+def run_of(script: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """A script's run."""
+    return subprocess.run([str(REPORTS / script), *arguments], capture_output=True, text=True, timeout=300, check=False)
+
+
+@pytest.mark.parametrize(("script", "option", "name"), PAGES)
+def test_without_data_the_reason_is_told(tmp_path: Path, script: str, option: str, name: str) -> None:
+    """An empty folder of data: status 1, how to fill it on stderr, no page."""
+    done = run_of(script, option, str(tmp_path), "--out", str(tmp_path / "out"))
+    assert done.returncode == 1 and done.stdout == ""
+    assert "ci/" in done.stderr
+    assert not (tmp_path / "out" / name).exists()
+
+
+def test_the_page_is_written_where_it_is_asked_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Status 0, the page's path and its words; a defect is shown whole, with status 1."""
+
+    def write(out: Path, data: Path) -> Shown:
+        """The folder of data says what is wrong."""
+        (out / "page.html").write_text(str(data))
+        if data.name == "torn":
+            return Shown(lack="no page", defect="a defect of five lines")
+        return Shown(words="seven words", link="page.html", lack="", defect="")
+
+    def make(*arguments: str) -> int:
+        """The page from a folder of data that is kept by default."""
+        return write_alone("A page.", "--from", tmp_path / "kept", write, ["--out", str(tmp_path), *arguments])
+
+    assert make() == 0
+    assert (tmp_path / "page.html").read_text() == str(tmp_path / "kept")
+    assert capsys.readouterr().out == f"{tmp_path / 'page.html'}: seven words\n"
+    assert make("--from", "torn") == 1
+    assert capsys.readouterr() == ("", "a defect of five lines\n")
+
+
+# --- the stability atlas
+
+
+def test_the_page_shows_every_walk_with_its_edge(tmp_path: Path) -> None:
+    """Every family's title, a figure a section, and no word of garbage but the one that explains it."""
+    front = stability.write_stability(tmp_path)
+    text = html.unescape((tmp_path / stability.NAME).read_text(encoding="utf-8"))
+    every = stability.parts()
+    assert not front.lack and front.link == stability.NAME and "all as they are to be" in front.words
+    for part in every:
+        assert f'id="{part.anchor}"' in text and (tmp_path / "figures" / f"stability_{part.anchor}.svg").is_file()
+        assert "no garbage" in stability.finding(part)
+        assert all(walk.family.title in text for walk in part.walks)
+    assert 'class="failures"' not in text
+
+
+def test_garbage_and_a_wrong_edge_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A record with garbage in it, and one whose edge is 5 % off, are said to be wrong in the headline, the table and the section."""
+    records = tmp_path / "records"
+    shutil.copytree(atlas_store.RECORDS, records)
+    step, flow = atlas_store.read("step_bspline2_total_4"), atlas_store.read("flow_explicit")
+    assert step is not None and flow is not None and step.edge is not None and step.edge.predicted is not None
+    atlas_store.write(replace(step, edge=replace(step.edge, measured=1.05 * step.edge.predicted)), records)
+    atlas_store.write(replace(flow, points=(replace(flow.points[0], outcome=GARBAGE), *flow.points[1:])), records)
+    every = stability.parts(records)
+    assert "2 walks are NOT as they are to be" in stability.headline(every)
+    monkeypatch.setattr(stability, "figures_of", lambda part: [])  # are drawn in the test above
+    assert not stability.write_stability(tmp_path, records).defect
+    text = (tmp_path / stability.NAME).read_text(encoding="utf-8")
+    assert text.count('class="failures"') == 2 and "+5.0 % off what theory says" in text and "1 POINTS ARE GARBAGE" in "".join(map(stability.finding, every))
+
+
+def test_without_records_the_atlas_says_how_to_make_them(tmp_path: Path) -> None:
+    """No record, and one that is torn."""
+    assert "ci/atlas" in stability.write_stability(tmp_path, tmp_path / "none").lack
+    (tmp_path / "torn").mkdir()
+    (tmp_path / "torn" / "flow_explicit.json").write_text("{", encoding="utf-8")
+    front = stability.write_stability(tmp_path, tmp_path / "torn")
+    assert "could not be shown" in front.lack and front.defect
+
+
+# --- the work-precision chart
+
+MACHINE = {
+    "processor": "a processor", "cores": 2, "caches": "L1 1K", "memory_GB": 8.0, "system": "a system", "compiler": "a compiler",
+    "flags": "-O3", "version": "0", "revision": "abc",
+}
+
+
+def made_up(problem: Problem, error: float = 0.02) -> Sheet:
+    """Every method of a problem, off by an error that falls with its size; the second one failed, the third was refused."""
+    points = []
+    for k, method in enumerate(problem.methods):
+        status = {1: FAILED, 2: REFUSED}.get(k, OK)
+        for level in method.levels:
+            off = error * (1.0 + k) * level.size
+            found = {one.name: Found(4.0 * (1.0 + off), 4.0, off) for one in problem.wanted}
+            points.append(Point(method.name, level.label, level.size, "key", status, "" if status == OK else "it broke",
+                                (1.0 / level.size + k,) * 3, (1.0 / level.size,) * 3, "2026-01-01 00:00:00", particles=1000,
+                                found=found if status == OK else {}))
+    return Sheet(problem.name, MACHINE, tuple(points))
+
+
+@pytest.fixture()
+def data(tmp_path: Path) -> Path:
+    """Data of all problems."""
+    for problem in PROBLEMS:
+        store.write(made_up(problem), tmp_path / "data")
+    return tmp_path / "data"
+
+
+def test_the_chart_has_every_quantity_every_failure_and_the_table(data: Path, tmp_path: Path) -> None:
+    """Nothing that was measured is missing from the page of all settings."""
+    front = precision.write_precision(tmp_path / "out", data)
+    assert not front.lack and front.figure is not None
+    assert [row["title"] for row in front.rows if row["first"]] == [one.title for problem in PROBLEMS for one in problem.wanted]
+    text = (tmp_path / "out" / "precision.html").read_text(encoding="utf-8")
+    for problem in PROBLEMS:
+        for one in problem.wanted:
+            assert (tmp_path / "out" / "figures" / f"precision_{one.name}.svg").is_file()
+            assert one.title in text
+    assert text.count("it broke") == 2 * sum(len(problem.wanted) for problem in PROBLEMS)
+    assert "a processor" in text and "median of five runs" in text
+
+
+def test_without_data_the_chart_says_how_to_make_them(tmp_path: Path) -> None:
+    """No data is no defect."""
+    front = precision.write_precision(tmp_path / "out", tmp_path / "nothing")
+    assert "ci/chart" in front.lack and not front.defect
+
+
+def test_torn_data_cost_the_chart_alone(data: Path, tmp_path: Path) -> None:
+    """A file that cannot be read is told."""
+    (data / "block.json").write_text("{", encoding="utf-8")
+    front = precision.write_precision(tmp_path / "out", data)
+    assert "block.json" in front.lack and front.defect
+
+
+def test_odd_measurements_are_told(data: Path) -> None:
+    """Disturbed and single runs, and problems that are not there."""
+    sheet = store.read("block", data)
+    assert sheet is not None
+    store.write(replace(sheet, points=(replace(sheet.points[0], disturbed=True, once=True), *sheet.points[1:])), data)
+    (data / "soft.json").unlink()
+    found = precision.measurements(data)
+    assert found is not None
+    assert any("1 of" in note and "disturbed" in note for note in found.notes) and any("single run" in note for note in found.notes)
+    assert any("not measured: soft" in note for note in found.notes)
+
+
+def test_what_is_drawn_is_what_is_judged(data: Path) -> None:
+    """Every dot and every failure is drawn, and the front falls."""
+    found = precision.measurements(data)
+    assert found is not None
+    for panel in found.panels:
+        shown = precision.panel_shown(panel)
+        assert len(shown.lacks) == len(panel.lacks) > 0 and "failed" in shown.lacks_words and "refused" in shown.lacks_words
+        assert sum(len(curve.times_s) for curve in shown.curves) == len(panel.dots) == len(precision.point_rows(panel))
+        assert list(shown.front[1]) == sorted(shown.front[1], reverse=True) and list(shown.front[0]) == sorted(shown.front[0])
+        assert {row[2] for row in precision.lack_rows(panel)} >= {FAILED, REFUSED}
+    assert precision.front_figure(found.panels).title == precision.finding(found.panels)
+
+
+def test_the_table_says_where_none_reaches(tmp_path: Path) -> None:
+    """A tolerance that no method reaches has no advice."""
+    store.write(made_up(PROBLEMS[0], error=3.0), tmp_path)
+    found = precision.measurements(tmp_path)
+    assert found is not None
+    row = precision.table_of(found.panels)[0]
+    assert not any(cell["ok"] for cell in row["cells"])  # type: ignore[index, attr-defined]
+    assert "none reaches it; best" in row["cells"][0]["words"]  # type: ignore[index]
+    assert precision.finding(found.panels).startswith("No quantity")
+
+
+def test_recommendations_come_from_the_data(data: Path) -> None:
+    """A sentence for each group of experiments, with what the scenes ask for."""
+    found = precision.measurements(data)
+    assert found is not None
+    words = precision.recommendations(found.panels)
+    assert len(words) == 2 and words[0].startswith("Experiments 1, 2, 3 and 4:") and words[1].startswith("Experiments 5 and 6:")
+    own = ("explicit, total, graded", "explicit, total")
+    assert all(f"The scenes' own setting ({setting}, 1 m)" in line for setting, line in zip(own, words))
