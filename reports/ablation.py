@@ -29,7 +29,8 @@ def section_of(kept: Sequence[Kept], why: Reasons) -> Section | None:
     if not kept:
         return None
     data = ablation_figure(kept)
-    return Section(title="What each experiment needs", intro=f"{data.title}. {words_of('ablation_method')}", figures=[Figure("ablation", data, draw_ablation, "ablation")],
+    return Section(title="What each experiment needs", intro=f"{data.title}. {words_of('ablation_method')}",
+                   figures=[Figure("ablation", data, draw_ablation, "ablation")],
                    tables=[table_of(one, why) for one in kept])
 
 

@@ -25,7 +25,8 @@ def section(runs: Path) -> Section | None:
         return None
     measured: Figures = {item["name"]: item for item in record["figures"] if item["values"]}
     rates, scaling, events = rate_figure(measured), scaling_figure(measured), event_figure(measured)
-    drawn = (("rates", rates, draw_rates, rates.panels), ("scaling", scaling, draw_scaling, scaling.panels), ("events", events, draw_events, events.events))
+    drawn = (("rates", rates, draw_rates, rates.panels), ("scaling", scaling, draw_scaling, scaling.panels),
+             ("events", events, draw_events, events.events))
     figures = [Figure(f"benchmark_{name}", data, draw, f"benchmark_{name}") for name, data, draw, any_ in drawn if any_]
     tables = [table for table in (mark_table(record["marks"]), run_table(record["figures"])) if table["rows"]]
     return Section(title="Speed", intro=_intro(record), figures=figures, tables=tables)

@@ -103,4 +103,5 @@ def inertia_words(rows: Sequence[Shown]) -> str:
     if not ratios:
         return words_of("inertia", rows=[])
     known = [row.kinetic_ratio.explicit for row in rows if row.kinetic_ratio.explicit is not None]
-    return words_of("inertia", rows=rows, unlike=sum(bool(row.unlike) for row in rows), half=float(np.median(known)), most=max(known), worst=ratios[max(known)])
+    return words_of("inertia", rows=rows, unlike=sum(bool(row.unlike) for row in rows), half=float(np.median(known)), most=max(known),
+                    worst=ratios[max(known)])

@@ -103,7 +103,8 @@ def _profile_panel(run: Run, times_s: np.ndarray, wanted_s: np.ndarray, named: b
         fields, time_s = fields_at(run, "fracture", index), float(times_s[index])
         inlet = fields.get("inlet_Pa", np.interp(time_s, run.history["time_s"], run.history["inlet_Pa"]))
         shade = np.clip((time_s - wanted_s[0]) / (float(wanted_s[-1] - wanted_s[0]) or 1.0), 0.0, 1.0)
-        profiles.append(Shown(height_m=fields["y_m"], opening_mm=1e3 * fields["opening_m"], time_s=time_s, inlet_MPa=float(inlet) / 1e6, shade=float(shade)))
+        profiles.append(Shown(height_m=fields["y_m"], opening_mm=1e3 * fields["opening_m"], time_s=time_s, inlet_MPa=float(inlet) / 1e6,
+                              shade=float(shade)))
     end = profiles[-1]
     heading = (
         f"{plain(run.variant)}{f', {mechanics_name(run.mechanics)}' if named else ''}: at the end {metres(float(end.height_m.max()))} high,"
@@ -138,7 +139,8 @@ def _path_panel(runs: list[Run]) -> Shown:
     steep = (window[3] - window[2]) / (window[1] - window[0])
     magnified, name = max(1.0, steep / PANEL_ASPECT), f"Experiment {drawn[0].number}"
     return Shown(name=name, heading=f"{name}: {_drift(paths, side)}", layout=layout, paths=paths, window_m=window, magnified=magnified,
-                 aspect=steep / magnified, lean=1 if sum(float(path.x_m[-1] - path.x_m[0]) for path in paths) > 0 else -1, aside=_aside(layout, window))
+                 aspect=steep / magnified, lean=1 if sum(float(path.x_m[-1] - path.x_m[0]) for path in paths) > 0 else -1,
+                 aside=_aside(layout, window))
 
 
 def _path(run: Run, side: float, beside: bool) -> Shown:

@@ -36,7 +36,8 @@ def panel_of(runs: Path, claims: list[ClaimResult], experiment: str, title: str,
                     beside=run.mechanics == "explicit") for run in found]
     said = {(claim.id, claim.mechanics): claim.verdict for claim in claims if claim.experiment == experiment}
     verdicts = [(name, *(said.get((name, mechanics), "") for mechanics in MECHANICS)) for name in sorted({name for name, _ in said})]
-    return Shown(title=title, is_path=is_path, curves=curves, interfaces_m=[place.at_m for place in layout_of(found[0]).interfaces], verdicts=verdicts)
+    return Shown(title=title, is_path=is_path, curves=curves, interfaces_m=[place.at_m for place in layout_of(found[0]).interfaces],
+                 verdicts=verdicts)
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -13,7 +13,8 @@ from reports.shown import Shown
 from reports.words import listed, mechanics_name, metres, mpa, number, plain, setting, share
 from verification.harness.claim_data import BY_J
 
-_FAMILIES: dict[str, tuple[str, ...]] = {"supplied": ("work", "supplied"), "stored": ("kinetic", "strain"), "dissipated": ("",)}  # words in their names
+_FAMILIES: dict[str, tuple[str, ...]] = {"supplied": ("work", "supplied"), "stored": ("kinetic", "strain"),
+                                         "dissipated": ("",)}  # words in their names
 _NOT_A_TERM: tuple[str, ...] = ("supplied", "stored", "dissipated", "total", "residual", "closure", "largest")
 # Monitors of a quasi-static run that are to be next to nothing, with what they are called; for runs that do not judge theirs.
 MONITORS: dict[str, str] = {"volume_balance": "fluid volume open by", "contact_residual": "contact open by"}

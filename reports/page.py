@@ -125,7 +125,7 @@ def comparison_row(row: Shown) -> dict[str, Any]:
         """A pair and its difference in words."""
         return (_told(pair.quasistatic, written), _told(pair.explicit, written), "" if pair.difference is None else signed(pair.difference))
 
-    pressures = {name: triple(pair, mpa, signed_mpa) for name, pair in (("start", row.start_Pa), ("arrest", row.arrest_Pa), ("restart", row.restart_Pa))}
+    pressures = {name: triple(getattr(row, f"{name}_Pa"), mpa, signed_mpa) for name in ("start", "arrest", "restart")}
     lengths = {name: triple(pair, metres, metres_signed) for name, pair in (("arrest_m", row.arrest_m), ("end", row.end_m))}
     return {
         "experiment": row.number, "variant": plain(row.variant), "is_main": row.is_main, **pressures, **lengths, "unlike": row.unlike,

@@ -131,7 +131,8 @@ def section(runs: Path) -> Section | None:
         title=f"Largest distance of the paths over the first {GROWTH_M:g} m of growth, or to {KEPT_OFF_M:g} m from the interface",
         header=["experiment", "block", "mechanics", "cell (m)", "increment (m)", "last tip x, y (m)", "distance (m)", "in cells",
                 "from forward path of that increment (m)"],
-        rows=[_row(path) for path in check.paths], marked=[k for k, path in enumerate(check.paths) if not path.within], note=words_of("path_check_note", leaving_m=leaving_m(), missing=check.missing),
+        rows=[_row(path) for path in check.paths], marked=[k for k, path in enumerate(check.paths) if not path.within],
+        note=words_of("path_check_note", leaving_m=leaving_m(), missing=check.missing),
     )
     intro = words_of("path_check_intro", near=sum(path.within for path in check.paths), count=len(check.paths))
     return Section(title=TITLE, intro=intro, figures=[Figure("path_check", check.figure, draw_path_check, "path_check")], tables=[table])

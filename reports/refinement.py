@@ -33,7 +33,8 @@ def section(runs: Path) -> Section | None:
             if data.panels:
                 figures.append(Figure(f"refine_{content['experiment']}_{mechanics}", data, draw_refinement, "refinement"))
             tables.append(refinement_table(content["experiment"], own, content.get("settings", [])))
-    return Section(title="Mesh refinement of the experiments", intro=f"{words_of('refinement_method')} {_intro(counted)}", figures=figures, tables=tables)
+    return Section(title="Mesh refinement of the experiments", intro=f"{words_of('refinement_method')} {_intro(counted)}", figures=figures,
+                   tables=tables)
 
 
 def judged(studies: Sequence[dict[str, Any]]) -> list[tuple[str, dict[str, Any]]]:
@@ -85,7 +86,7 @@ def refinement_figure(experiment: str, studies: list[dict[str, Any]]) -> Shown:
 
 
 def _line(study: dict[str, Any], row: dict[str, Any]) -> Shown | None:
-    """A quantity of a variant against (h/h of the coarsest)^order, limit and uncertainty at 0 where the order is clean; None of fewer than two values."""
+    """A quantity of a variant against (h/h of the coarsest)^order, limit and uncertainty at 0 where that is clean; None of fewer than two values."""
     sizes = [level["cell_m"] for level in study["levels"]]
     known = [(size, value) for size, value in zip(sizes, row["values"]) if value is not None]
     if len(known) < 2:

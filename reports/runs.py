@@ -188,7 +188,8 @@ def add_missing(runs: list[Run], experiments: Path, root: Path) -> list[Run]:
             declared = [(path.stem, name, one) for name in variants_of(path) for one in mechanics_of(path, name) if one in wanted]
         except (OSError, tomllib.TOMLDecodeError):
             continue
-        absent += [Run(stem, name, root / one / stem / name, one, problems=["not run"]) for stem, name, one in declared if (stem, name, one) not in have]
+        absent += [Run(stem, name, root / one / stem / name, one, problems=["not run"])
+                   for stem, name, one in declared if (stem, name, one) not in have]
     return sorted([*runs, *absent], key=order)
 
 

@@ -69,7 +69,8 @@ def _draw_edges(axes: Axes, layout: Any) -> None:
     axes.annotate(f"{layout.horizontal_Pa / 1e6:g} MPa, sides {layout.edges['sides']}", (width, 0.5 * height), xytext=(22, 0),
                   textcoords="offset points", va="center", rotation=90, fontsize=7.5)
     axes.plot([0, width], [0, 0], color=PALE, linewidth=2.5, linestyle=(0, (1, 1)), clip_on=False, zorder=6)
-    axes.annotate(f"bottom: {layout.edges['bottom']}", (0.98 * width, 0), xytext=(0, 4), ha="right", textcoords="offset points", fontsize=7, color=INK)
+    axes.annotate(f"bottom: {layout.edges['bottom']}", (0.98 * width, 0), xytext=(0, 4), ha="right", textcoords="offset points", fontsize=7,
+                  color=INK)
 
 
 def draw_heights(data: Shown) -> Figure:
@@ -101,7 +102,8 @@ def _draw_mark(axes: Axes, mark: Shown, curve: Shown) -> None:
         look: dict[str, Any] = {"markersize": 4.2, "markerfacecolor": "white", "markeredgecolor": colour, "markeredgewidth": 0.8, "zorder": 4.5}
     else:
         thin = mark.kind in ("stop", "reach_interface")
-        look = {"markersize": 6, "color": colour, "markeredgecolor": colour if thin else "white", "markeredgewidth": 1.6 if thin else 0.7, "zorder": 5}
+        look = {"markersize": 6, "color": colour, "markeredgecolor": colour if thin else "white", "markeredgewidth": 1.6 if thin else 0.7,
+                "zorder": 5}
     axes.plot([mark.inlet_MPa], [mark.height_m], marker=MARKERS[mark.kind], clip_on=True, **look)
     if mark.flag:
         axes.plot([mark.inlet_MPa], [mark.height_m], marker="o", markersize=13, markerfacecolor="none", markeredgecolor=FLAG, markeredgewidth=1.5,

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
 from reports.charts.style import DASHED, FLAG, INK, PALE, entry, panel_grid, put_legend
@@ -27,7 +28,8 @@ def draw_convergence(data: Shown) -> Figure:
     A curve: its errors, its gates as dashes above, crosses where it falls short; dashed where no order is asked for.
     """
     figure, every, columns = panel_grid(data.title, len(data.panels), 3.4, sharey=True)
-    known = [error for panel in data.panels for curve in panel.curves for error in (*curve.errors, *curve.gates) if math.isfinite(error) and error > 0.0]
+    every_error = [error for panel in data.panels for curve in panel.curves for error in (*curve.errors, *curve.gates)]
+    known = [error for error in every_error if math.isfinite(error) and error > 0.0]
     low, high = min(known) / 1.8, max(known) * 1.8
     looks = {name: _LOOKS[k % len(_LOOKS)] for k, name in enumerate(data.quantities)}
     for k, (axes, panel) in enumerate(zip(every, data.panels, strict=True)):
@@ -69,7 +71,7 @@ def draw_cost(data: Shown) -> Figure:
     return figure
 
 
-def _put_legend(figure: Figure, handles: list) -> None:
+def _put_legend(figure: Figure, handles: list[Line2D]) -> None:
     """A legend in as many columns as the longest label lets into the figure's width."""
     handles = [*handles, entry("not as its gate asks", color=FLAG, marker="X", markersize=8, linestyle="none")]
     longest = max(len(str(handle.get_label())) for handle in handles)
@@ -111,8 +113,8 @@ def _order_labels(axes: Axes, panel: Shown, low: float, high: float, colours: di
     wanted = sorted([(math.log(curve.errors[-1] / low) / height, curve) for curve in judged], key=lambda pair: pair[0])
     places = spread_apart([place for place, _ in wanted], _LABEL_GAP)
     for place, (_, curve) in zip(places, wanted):
-        axes.annotate(order_words(curve.order), (curve.sizes[-1], low * math.exp(place * height)), xytext=(-7, 0), textcoords="offset points", ha="right",
-                      va="center", fontsize=8.5, color=colours[curve.quantity], fontweight="bold", zorder=6)
+        axes.annotate(order_words(curve.order), (curve.sizes[-1], low * math.exp(place * height)), xytext=(-7, 0), textcoords="offset points",
+                      ha="right", va="center", fontsize=8.5, color=colours[curve.quantity], fontweight="bold", zorder=6)
 
 
 def spread_apart(places: list[float], gap: float) -> list[float]:

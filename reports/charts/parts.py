@@ -233,7 +233,8 @@ def _draw_refined(axes: Axes, line: Shown, number: int) -> None:
     if line.limit is not None:
         value, uncertainty = line.limit
         axes.plot((0.0, line.x[-1]), (value, line.y[-1]), color=colour, linewidth=0.8, linestyle=(0, (1, 1.5)), zorder=2)
-        axes.errorbar([-0.015 * (1 + number)], [value], yerr=[uncertainty], color=colour, marker="_", markersize=8, capsize=2.5, elinewidth=1.0, zorder=4)
+        axes.errorbar([-0.015 * (1 + number)], [value], yerr=[uncertainty], color=colour, marker="_", markersize=8, capsize=2.5, elinewidth=1.0,
+                      zorder=4)
 
 
 # --- paths beside boundary elements

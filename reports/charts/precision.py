@@ -125,8 +125,8 @@ def _advice(axes: Axes, panel: Shown) -> None:
     """The heading with what to use for 1 % and 0.1 % below it."""
     axes.set_title(panel.heading, pad=8 + 9.5 * len(panel.advice))
     for k, line in enumerate(panel.advice):
-        words = axes.annotate(line, (0.0, 1.0), xycoords="axes fraction", xytext=(0, 4 + 9.5 * (len(panel.advice) - 1 - k)), textcoords="offset points",
-                      fontsize=6.9, color=INK, ha="left", va="bottom", annotation_clip=False)
+        words = axes.annotate(line, (0.0, 1.0), xycoords="axes fraction", xytext=(0, 4 + 9.5 * (len(panel.advice) - 1 - k)),
+                              textcoords="offset points", fontsize=6.9, color=INK, ha="left", va="bottom", annotation_clip=False)
         words.set_in_layout(False)
 
 

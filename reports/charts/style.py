@@ -27,7 +27,8 @@ COLOURS: dict[str, str] = {
 }
 # Nearly equal curves lie on one another from wide and pale to thin and dashed, so that none hides another.
 WIDTHS: dict[str, float] = {"perfect": 5.4, "weak": 3.2, "friction": 1.7, "soft": 1.9, "weak_soft": 2.6, "soft_weak": 1.7}
-DASHES: dict[str, Any] = {"perfect": "-", "friction": (0, (3.5, 2.5)), "weak": "-", "soft": (0, (3, 1.2, 1, 1.2)), "weak_soft": "-", "soft_weak": (0, (5, 1.6))}
+DASHES: dict[str, Any] = {"perfect": "-", "friction": (0, (3.5, 2.5)), "weak": "-", "soft": (0, (3, 1.2, 1, 1.2)), "weak_soft": "-",
+                          "soft_weak": (0, (5, 1.6))}
 ALPHAS: dict[str, float] = {"perfect": 0.35}
 DOTTED, DASHED = (0, (1, 1.5)), (0, (4, 2))
 MARKERS: dict[str, str] = {"start": "o", "reach_interface": "|", "arrest": "s", "restart": "^", "stop": "x"}

@@ -1,4 +1,4 @@
-"""Pages beside that of the experiments: the stability atlas and the work-precision chart, from data that are there, that are wrong, and that are not."""
+"""Pages beside that of the experiments: the stability atlas and the work-precision chart, from data that are there, wrong, and not there."""
 
 from __future__ import annotations
 
@@ -88,7 +88,8 @@ def test_garbage_and_a_wrong_edge_are_told(tmp_path: Path, monkeypatch: pytest.M
     monkeypatch.setattr(stability, "figures_of", lambda part: [])  # are drawn in the test above
     assert not stability.write_stability(tmp_path, records).defect
     text = (tmp_path / stability.NAME).read_text(encoding="utf-8")
-    assert text.count('class="failures"') == 2 and "+5.0 % off what theory says" in text and "1 POINTS ARE GARBAGE" in "".join(map(stability.finding, every))
+    assert text.count('class="failures"') == 2 and "+5.0 % off what theory says" in text
+    assert "1 POINTS ARE GARBAGE" in "".join(map(stability.finding, every))
 
 
 def test_without_records_the_atlas_says_how_to_make_them(tmp_path: Path) -> None:

@@ -40,7 +40,8 @@ def test_chart_shows_every_run_and_the_interface_where_paths_come_near() -> None
     """Lines of each panel by their labels."""
     tips = np.array([[0.0, 5.0], [0.5, 7.0], [4.0, 9.0]])
     runs = {k: (a_path(k, 0.1, 0.1), a_path(k, 0.2, 0.1, 1.0)) for k in (5, 6)}
-    panels = [Shown(heading=f"panel {k}", converged=tips, converged_words="converged", shows_same=k == 6, runs=runs[k], interface_m=5.0) for k in (5, 6)]
+    panels = [Shown(heading=f"panel {k}", converged=tips, converged_words="converged", shows_same=k == 6, runs=runs[k],
+                    interface_m=5.0) for k in (5, 6)]
     figure = draw_path_check(Shown(title="a title", panels=panels))
     for axes, dashed in zip(figure.axes, (0, 3)):
         labels = [str(line.get_label()) for line in axes.get_lines()]

@@ -55,13 +55,15 @@ def write_budget(root: Path) -> Path:
 
     def tried(label: str, status: str = "completed", **values: float | None) -> dict[str, Any]:
         """An alternative that was run."""
-        return {"label": label, "settings": [], "status": status, "reason": "" if status == "completed" else "unknown key.", "effects": effects(**values)}
+        return {"label": label, "settings": [], "status": status, "reason": "" if status == "completed" else "unknown key.",
+                "effects": effects(**values)}
 
     lines = [
         {"id": "mesh", "label": "mesh", "group": "numerical", "why_not": "", "tried": [tried("cells of 0.5 m", start_Pa=-2.0e4, high_Pa=1.0e3)]},
         {"id": "both", "label": "mesh and increment", "group": "beside", "why_not": "", "tried": [tried("halves", start_Pa=9.0e5, high_Pa=9.0e5)]},
         {"id": "ring", "label": "J ring", "group": "numerical", "why_not": "", "tried": [tried("3 cells", "refused"), tried("5 cells", "refused")]},
-        {"id": "rate", "label": "loading rate", "group": "model", "why_not": "", "tried": [tried("half", start_Pa=-1.0e3, high_Pa=-9.0e4), tried("double", start_Pa=2.0e3, high_Pa=None)]},
+        {"id": "rate", "label": "loading rate", "group": "model", "why_not": "",
+         "tried": [tried("half", start_Pa=-1.0e3, high_Pa=-9.0e4), tried("double", start_Pa=2.0e3, high_Pa=None)]},
         {"id": "step", "label": "flow step", "group": "numerical", "why_not": "no flow", "tried": []},
     ]
     total = {"rss": 2.0e4, "sum": 2.2e4, "left_out": ["J ring (3 cells, 5 cells)"]}
