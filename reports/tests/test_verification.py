@@ -229,7 +229,7 @@ def test_parts_of_other_modules_are_shown(tmp_path: Path, monkeypatch: pytest.Mo
         """A part with a figure and a table."""
         rows = [["path <5>", "0.3"], ["path 6", "2.1"]]
         table = {"title": "Largest", "header": ["what", "m"], "rows": rows, "marked": [1], "note": "In cells."}
-        picture = Figure("paths", Shown(title="Paths agree"), lambda data: new_figure(3.0, 2.0), "Both.")
+        picture = Figure("paths", Shown(title="Paths agree"), lambda data: new_figure(3.0, 2.0), "cost")
         return {"title": "Paths", "intro": "They agree within a cell.", "figures": [picture], "tables": [table]}
 
     def breaks(runs: Path) -> None:
