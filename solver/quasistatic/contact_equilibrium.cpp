@@ -329,6 +329,9 @@ Equilibrium solve_with_fixed_bounds(const State& state, const Condensed& condens
       place.bound = bound;
     }
     if (round > 0 && change <= renewed * largest) break;
+    if (iterate(state, condensed, places, factor, true, at)) continue;
+    at.j.setZero();  // from the last round it went round: the problem is convex, so any start will do
+    factor = TangentFactor{};
     if (!iterate(state, condensed, places, factor, true, at)) break;
   }
   for (ContactPlace& place : places) place.bound = -1.0;
