@@ -6,14 +6,12 @@
 
 #include "explicit/momentum.hpp"
 #include "fracture/growth.hpp"
-#include "interfaces/columns.hpp"
 #include "interfaces/failure.hpp"
 #include "interfaces/tip_ties.hpp"
 #include "quasistatic/loaded_stress.hpp"
 #include "scene/path_geometry.hpp"
 #include "scene/points_across.hpp"
 #include "state/body_force.hpp"
-#include "state/make_grid.hpp"
 #include "state/rebuild.hpp"
 
 namespace strata {

@@ -4,9 +4,7 @@
 #include <cmath>
 
 #include "explicit/momentum.hpp"
-#include "explicit/new_openings.hpp"
 #include "explicit/reactions.hpp"
-#include "explicit/total/bond_sensors.hpp"
 #include "explicit/total/total_base.hpp"
 #include "explicit/total/total_operator.hpp"
 #include "explicit/transfers.hpp"

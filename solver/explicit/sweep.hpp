@@ -137,12 +137,6 @@ template <class Real>
   return {along_row(r, w.y), along_row(s, w.y), slope_of_row(r, w.y)};
 }
 
-template <class Real>
-[[gnu::always_inline]] inline Real value_at(const Real (&c)[3][3], const PlaceWeights<Real>& w) {
-  const Real r[3] = {along_row(c[0], w.x), along_row(c[1], w.x), along_row(c[2], w.x)};
-  return along_row(r, w.y);
-}
-
 // What a particle gives to the nodes: mass and momentum by N, and -V sigma, each component with the 1/length of the
 // axis along which it meets dN.
 template <class Real>
@@ -166,13 +160,12 @@ template <class Lanes>
           lanes.load(p.g_xx + q), lanes.load(p.g_xy + q), lanes.load(p.g_yx + q), lanes.load(p.g_yy + q)};
 }
 
-// Moves the particles at q, which are as `is` says and of the mass and area of those at `like`, by the grid's motion
-// over a step.
+// Moves the particles at q, which are as `is` says, by the grid's motion over a step.
 template <class Lanes>
 [[gnu::always_inline]] inline void move(const Lanes lanes, const SweepArrays& p, const SweepStep& step,
                                         const BlockSpans<Lanes>& at, const Coefficients<typename Lanes::Real>& c,
                                         const PlaceWeights<typename Lanes::Real>& w, const Elasticity& rock,
-                                        std::size_t q, std::size_t like, ParticleState<typename Lanes::Real>& is,
+                                        std::size_t q, ParticleState<typename Lanes::Real>& is,
                                         LaneReport<typename Lanes::Real>& report) {
   using Real = typename Lanes::Real;
   const auto change = [&](double* array, Real& value, const Real& by) {
@@ -181,9 +174,9 @@ template <class Lanes>
   };
   const auto add = [&](double* array, const Real& by) { lanes.store(array + q, lanes.load(array + q) + by); };
   const Interpolated<Real> x = interpolate(c[0], w), y = interpolate(c[1], w);
-  const Real m = lanes.load(p.m + like), V = lanes.load(p.V + like);
+  const Real m = lanes.load(p.m + q), V = lanes.load(p.V + q);
   report.before += m * (is.v_x * is.v_x + is.v_y * is.v_y);
-  is.v_x = step.keep * is.v_x + value_at(c[2], w), is.v_y = step.keep * is.v_y + value_at(c[3], w);
+  is.v_x = step.keep * is.v_x + interpolate(c[2], w).value, is.v_y = step.keep * is.v_y + interpolate(c[3], w).value;
   lanes.store(p.v_x + q, is.v_x), lanes.store(p.v_y + q, is.v_y);
   const Real speed2 = is.v_x * is.v_x + is.v_y * is.v_y;
   report.after += m * speed2;
@@ -200,16 +193,16 @@ template <class Lanes>
                              rock.mu * shear * shear);  // V dsigma : de
 }
 
-// What particles of the mass and area of those at `like` give as they are.
+// What the particles at q give as they are.
 template <class Lanes>
 [[gnu::always_inline]] inline void give(const Lanes lanes, const SweepArrays& p, const BlockSpans<Lanes>& at,
-                                        const Elasticity& rock, std::size_t like,
+                                        const Elasticity& rock, std::size_t q,
                                         const ParticleState<typename Lanes::Real>& is,
                                         Given<typename Lanes::Real>& to) {
   using Real = typename Lanes::Real;
-  const Real m = lanes.load(p.m + like);
+  const Real m = lanes.load(p.m + q);
   to.by_N[0] = m, to.by_N[1] = m * is.v_x, to.by_N[2] = m * is.v_y;
-  const Real V = lanes.load(p.V + like), V_x = -V * at.x.per_length, V_y = -V * at.y.per_length;
+  const Real V = lanes.load(p.V + q), V_x = -V * at.x.per_length, V_y = -V * at.y.per_length;
   const Real trace = rock.lambda * (is.g_xx + is.g_yy), s_xy = rock.mu * (is.g_xy + is.g_yx);
   to.s_xx = V_x * (trace + 2.0 * rock.mu * is.g_xx), to.s_xy_x = V_x * s_xy;
   to.s_yy = V_y * (trace + 2.0 * rock.mu * is.g_yy), to.s_xy_y = V_y * s_xy;
@@ -316,10 +309,9 @@ void sweep_block(const Lanes lanes, const std::vector<Elasticity>& rocks, const 
   int n = 0;
   for (int first = bin.first; first < bin.last; first += bin.stride) {
     const auto q = static_cast<std::size_t>(first);
-    const std::size_t like = bin.like < 0 ? q : static_cast<std::size_t>(bin.like);
     const Elasticity& rock = rocks[arrays.rock[q]];
-    const ParticleSizes<Real> size{Shape::template size<Real>(lanes, arrays.half_x + like, at.x.per_length),
-                                   Shape::template size<Real>(lanes, arrays.half_y + like, at.y.per_length)};
+    const ParticleSizes<Real> size{Shape::template size<Real>(lanes, arrays.half_x + q, at.x.per_length),
+                                   Shape::template size<Real>(lanes, arrays.half_y + q, at.y.per_length)};
     if constexpr (block) fetch_particles<Move>(arrays, q + particles_ahead);
     ParticleState<Real> is = load_particles(lanes, arrays, q);
     if constexpr (Move) {
@@ -327,12 +319,12 @@ void sweep_block(const Lanes lanes, const std::vector<Elasticity>& rocks, const 
       report.farthest_cells =
           larger(report.farthest_cells, lanes.used(larger(larger(off_x, -off_x), larger(off_y, -off_y))));
       const PlaceWeights<Real> w = weights_at<Shape>(at, is.x, is.y, size);
-      move(lanes, arrays, step, at, c, w, rock, q, like, is, report);
+      move(lanes, arrays, step, at, c, w, rock, q, is, report);
     }
     if constexpr (Gather) {
       Given<Real>& to = given[n++];
       to.w = weights_at<Shape>(at, is.x, is.y, size);
-      give(lanes, arrays, at, rock, like, is, to);
+      give(lanes, arrays, at, rock, q, is, to);
       if (n == together || first + bin.stride >= bin.last) add_given(lanes, bin, given, n, arrays), n = 0;
     }
   }

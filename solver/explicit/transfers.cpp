@@ -1,6 +1,7 @@
 #include "explicit/transfers.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "explicit/sweep.hpp"
 #include "state/parts.hpp"
@@ -35,23 +36,14 @@ SweepArrays arrays_of(const Uptake& uptake, State& state) {
   Particles& p = state.particles;
   const NodalMotion& by = state.motion;
   NodalSums& to = state.sums;
-  return {p.x.data(),
-          p.y.data(),
-          p.u_x.data(),
-          p.u_y.data(),
-          p.v_x.data(),
-          p.v_y.data(),
-          p.g_xx.data(),
-          p.g_xy.data(),
-          p.g_yx.data(),
-          p.g_yy.data(),
-          p.m.data(),
-          p.V.data(),
-          p.half_x.data(),
-          p.half_y.data(),
-          p.rock.data(),
-          {by.v_x.data(), by.v_y.data(), uptake.x->data(), uptake.y->data()},
-          {to.m.data(), to.mom_x.data(), to.mom_y.data(), to.f_x.data(), to.f_y.data()}};
+  SweepArrays a{};
+  a.x = p.x.data(), a.y = p.y.data(), a.u_x = p.u_x.data(), a.u_y = p.u_y.data();
+  a.v_x = p.v_x.data(), a.v_y = p.v_y.data(), a.g_xx = p.g_xx.data(), a.g_xy = p.g_xy.data();
+  a.g_yx = p.g_yx.data(), a.g_yy = p.g_yy.data(), a.m = p.m.data(), a.V = p.V.data();
+  a.half_x = p.half_x.data(), a.half_y = p.half_y.data(), a.rock = p.rock.data();
+  std::ranges::copy(std::array{by.v_x.data(), by.v_y.data(), uptake.x->data(), uptake.y->data()}, a.motion);
+  std::ranges::copy(std::array{to.m.data(), to.mom_x.data(), to.mom_y.data(), to.f_x.data(), to.f_y.data()}, a.sums);
+  return a;
 }
 
 template <class Lanes>
@@ -131,13 +123,8 @@ void for_each_stencil(const Scene& scene, NodalSums& sums, State& state, Visit v
     for_each_strip(state, &sums, [&](std::size_t k) {
       for (int b = state.strips[k].first; b < state.strips[k].last; ++b) {
         const Bin& bin = state.bins[static_cast<std::size_t>(b)];
-        for (const std::size_t q : bin) {
-          const Weights X = weights_x<Shape>(state.grid, bin.i, p.x[q], p.half_x[q]);
-          const Weights Y = weights_y<Shape>(state.grid, bin.j, p.y[q], p.half_y[q]);
-          std::array<double, 9> N;
-          for (std::size_t n = 0; n < 9; ++n) N[n] = X.N[n % 3] * Y.N[n / 3];
-          visit(q, N, bin.record);
-        }
+        for (const std::size_t q : bin)
+          visit(q, gradients_of<Shape>(state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q)).N, bin.record);
       }
     });
   });

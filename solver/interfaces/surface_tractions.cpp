@@ -6,14 +6,6 @@ namespace strata {
 
 namespace {
 
-template <class Shape>
-void weigh(const Grid& g, const Vec2& x, SurfaceStencil& stencil) {
-  const Weights X = weights_x<Shape>(g, stencil.i, x.x(), 0.0), Y = weights_y<Shape>(g, stencil.j, x.y(), 0.0);
-  for (std::size_t b = 0; b < 3; ++b) {
-    for (std::size_t a = 0; a < 3; ++a) stencil.N[3 * b + a] = X.N[a] * Y.N[b];
-  }
-}
-
 // A copy that no particle's shape function reaches has no motion of its own: there the node does not tell the sides
 // apart.
 void join_massless(const NodalSums& sums, SurfaceStencil& stencil) {
@@ -32,12 +24,13 @@ Vec2 velocity(const NodeMotion& motion) {
 
 void update_stencil_weights(const Scene& scene, State& state) {
   const bool spline = scene.numerics.shape == Numerics::Shape::bspline2;
+  const auto weights_at = spline ? gradients_of<QuadraticBspline> : gradients_of<Linear>;
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
     const auto weigh_all = [&](const std::vector<SurfacePoint>& points, std::vector<SurfaceStencil>& stencils) {
       for (std::size_t q = 0; q < points.size(); ++q) {
-        spline ? weigh<QuadraticBspline>(state.grid, points[q].x, stencils[q])
-               : weigh<Linear>(state.grid, points[q].x, stencils[q]);
-        join_massless(state.sums, stencils[q]);
+        SurfaceStencil& s = stencils[q];
+        s.N = weights_at(state.grid, s.i, s.j, points[q].x, Vec2::Zero()).N;
+        join_massless(state.sums, s);
       }
     };
     weigh_all(state.surfaces[k].points, state.point_stencils[k]);

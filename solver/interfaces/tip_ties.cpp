@@ -58,10 +58,8 @@ void update_tip_ties(const Scene& scene, const std::vector<Elasticity>& rocks, S
   std::vector<TipTie> old = std::move(state.ties);
   state.ties.clear();
   for (const Tip& tip : state.tips) {
-    const Surface& fracture = state.fracture();
-    const Vec2 at = tip.at_back ? fracture.vertices.back().x : fracture.vertices.front().x;
-    const Elasticity& rock =
-        rocks[rock_at(scene, at + ahead_cells * state.grid.h * tip_direction(fracture, tip.at_back))];
+    const Vec2 at = tip_position(state, tip);
+    const Elasticity& rock = rocks[rock_at(scene, place_ahead(state, tip))];
     for (const CutNode& cut : state.copies.cut) {
       if (cut.fracture == 0 || cut.records.size() < 2) continue;
       const int node = state.copies.node_of_record[static_cast<std::size_t>(cut.records.front())];

@@ -2,7 +2,6 @@
 
 #include <Eigen/CholmodSupport>
 
-#include "state/make_grid.hpp"
 #include "state/rebuild.hpp"
 #include "state/stiffness.hpp"
 

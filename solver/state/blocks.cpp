@@ -86,20 +86,6 @@ struct BlockBuilder {
   }
 };
 
-bool alike(const Particles& p, std::size_t a, std::size_t b) {
-  return p.m[a] == p.m[b] && p.V[a] == p.V[b] && p.half_x[a] == p.half_x[b] && p.half_y[a] == p.half_y[b];
-}
-
-// Whether all particles of the block that a bin is the first of are.
-bool all_alike(const Particles& p, const Bin& bin) {
-  const auto first = static_cast<std::size_t>(bin.first),
-             last = static_cast<std::size_t>(bin.last) + static_cast<std::size_t>(bin.stride) - 1;
-  for (std::size_t q = first + 1; q < last; ++q) {
-    if (!alike(p, first, q)) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 void number_along_rows(Copies& copies, std::vector<Bin>& bins) {
@@ -146,19 +132,6 @@ void make_blocks(const std::vector<std::uint8_t>& rock, std::vector<Bin>& bins, 
     b = end;
   }
   bins.swap(builder.bins), order.swap(builder.order);
-}
-
-void find_like(const Particles& particles, std::vector<Bin>& bins) {
-  int like = -1, lanes = 0;  // the last such place, and how many stand there side by side
-  for (std::size_t b = 0; b < bins.size(); b += static_cast<std::size_t>(bins[b].stride)) {
-    Bin& bin = bins[b];
-    if (bin.stride == 1 || !all_alike(particles, bin)) continue;
-    const auto same = [&] {
-      return alike(particles, static_cast<std::size_t>(bin.first), static_cast<std::size_t>(like));
-    };
-    if (like < 0 || bin.stride > lanes || !same()) like = bin.first, lanes = bin.stride;
-    bin.like = like;
-  }
 }
 
 }  // namespace strata

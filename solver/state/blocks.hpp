@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "state/copies.hpp"
-#include "state/particles.hpp"
 
 namespace strata {
 
@@ -17,9 +16,5 @@ void number_along_rows(Copies& copies, std::vector<Bin>& bins);
 /// those with more particles than the block shares have the rest in another bin, and `order` (the particles' indices,
 /// bin by bin) is permuted; rock: of each particle by these indices. Throws nothing.
 void make_blocks(const std::vector<std::uint8_t>& rock, std::vector<Bin>& bins, std::vector<std::size_t>& order);
-
-/// Tells blocks whose particles all have one mass, area and size where these can be read (Bin::like, of a block's first
-/// bin), most of them at one and the same place, which then stays in the caches. Throws nothing.
-void find_like(const Particles& particles, std::vector<Bin>& bins);
 
 }  // namespace strata

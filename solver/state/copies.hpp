@@ -39,10 +39,9 @@ struct Copies {
 // every n-th particle from its first one on; the block's bins stand side by side too, each with stride n. A bin takes a
 // line of memory of its own: sweeps read the first of each block alone, one of eight lines, which they ask for in time.
 struct alignas(line_bytes) Bin {
-  int first = 0, last = 0;  // particles first, first + stride, ... below last
-  int stride = 1;           // bins of its block
-  int i = 0, j = 0;         // column and row of the middle node of the 3 x 3 stencil
-  int like = -1;  // the first of particles side by side that have the mass, area and sides of all its block's; -1: none
+  int first = 0, last = 0;      // particles first, first + stride, ... below last
+  int stride = 1;               // bins of its block
+  int i = 0, j = 0;             // column and row of the middle node of the 3 x 3 stencil
   std::array<int, 9> record{};  // records of the stencil's nodes, row by row from the lower left
 
   // for (const std::size_t q : bin) goes through its particles.

@@ -25,16 +25,12 @@ constexpr int most_lanes = 2;
 typedef double Lane __attribute__((vector_size(8 * most_lanes)));
 typedef double UnalignedLane __attribute__((vector_size(8 * most_lanes), aligned(8), may_alias));
 
-// Lanes moved up by some, zeros before them; and those that this moves out, zeros behind.
+// Lanes moved up by some, or down by -by; zeros where none comes from.
 template <int by, std::size_t... l>
 inline Lane moved_up(const Lane& value, std::index_sequence<l...>) {
   constexpr int W = most_lanes;
-  return __builtin_shufflevector(value, Lane{}, (static_cast<int>(l) < by ? W : static_cast<int>(l) - by)...);
-}
-template <int by, std::size_t... l>
-inline Lane moved_out(const Lane& value, std::index_sequence<l...>) {
-  constexpr int W = most_lanes;
-  return __builtin_shufflevector(value, Lane{}, (static_cast<int>(l) < by ? W - by + static_cast<int>(l) : W)...);
+  constexpr auto from = [](int k) { return k >= 0 && k < W ? k : W; };
+  return __builtin_shufflevector(value, Lane{}, from(static_cast<int>(l) - by)...);
 }
 using EachLane = std::make_index_sequence<most_lanes>;
 
@@ -48,7 +44,7 @@ struct AllLanes {
   // to[l] += first[l], to[l + 1] += second[l], to[l + 2] += third[l].
   void add_shifted(double* to, const Lane& first, const Lane& second, const Lane& third) const {
     store(to, load(to) + (first + moved_up<1>(second, EachLane{}) + moved_up<2>(third, EachLane{})));
-    const Lane out = moved_out<1>(second, EachLane{}) + moved_out<2>(third, EachLane{});
+    const Lane out = moved_up<1 - most_lanes>(second, EachLane{}) + moved_up<2 - most_lanes>(third, EachLane{});
     to[most_lanes] += out[0], to[most_lanes + 1] += out[1];
   }
 };

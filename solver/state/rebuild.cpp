@@ -10,7 +10,6 @@
 #include "state/blocks.hpp"
 #include "state/elasticity.hpp"
 #include "state/light_copies.hpp"
-#include "state/make_grid.hpp"
 #include "state/parts.hpp"
 
 namespace strata {
@@ -366,6 +365,22 @@ void make_surface_stencils(State& state) {
 
 }  // namespace
 
+SideWord CutNode::key(SideWord sides) const {
+  const SideWord all = sides & mask, interfaces = all & ~fracture;
+  const bool everywhere = (mask & ~fracture) == 0;
+  const SideWord own = everywhere || std::ranges::count(entered, interfaces) > 0 ? all : interfaces;
+  const auto corner = std::ranges::find(joined, own, [](const auto& pair) { return pair[0]; });
+  return corner == joined.end() ? own : (*corner)[1];
+}
+
+int record_of(const Copies& copies, int node, SideWord sides) {
+  const int c = copies.cut_of_node[static_cast<std::size_t>(node)];
+  if (c < 0) return node;
+  const CutNode& cut = copies.cut[static_cast<std::size_t>(c)];
+  const auto at = std::ranges::find(cut.keys, cut.key(sides));
+  return at == cut.keys.end() ? -1 : cut.records[static_cast<std::size_t>(at - cut.keys.begin())];
+}
+
 SideWord sides_ahead(const State& state, const Tip& tip) {
   return sides_at(state, place_ahead(state, tip), state.fracture().bit);
 }
@@ -404,7 +419,6 @@ void rebuild_copies(const Scene& scene, State& state) {
     make_blocks(state.particles.rock, state.bins, order);
   }
   sort_particles(state.particles, order);
-  if (scene.numerics.in_lanes()) find_like(state.particles, state.bins);
   list_bins(reach, state);
   make_masters(scene, state);
   make_surface_stencils(state);

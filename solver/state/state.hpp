@@ -8,14 +8,13 @@
 #include <vector>
 
 #include "scene/scene.hpp"
-#include "state/bonds.hpp"
 #include "state/copies.hpp"
 #include "state/fluid_line.hpp"
 #include "state/grid.hpp"
 #include "state/monitors.hpp"
 #include "state/nodal.hpp"
 #include "state/particles.hpp"
-#include "state/split_places.hpp"
+#include "state/places.hpp"
 #include "state/surfaces.hpp"
 #include "state/total_motion.hpp"
 

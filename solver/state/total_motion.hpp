@@ -54,11 +54,6 @@ struct SingleSlot {
   int slot = 0, first = 0, last = 0;
 };
 
-// A slot beyond a symmetric or fixed side, which runs read, mirrors one inside.
-struct SlotImage {
-  int to = 0, from = 0;
-};
-
 // -M^-1 K of the masters, by slots.
 struct StencilOperator {
   Slots slots;
@@ -66,8 +61,6 @@ struct StencilOperator {
   std::vector<StencilRun> runs;
   std::vector<StencilSegment> segments;
   std::vector<SingleSlot> singles;
-  std::vector<SlotImage> images;
-  std::vector<int> held_x;        // slots of runs that a side holds
   std::vector<SlotRange> ranges;  // slots in use, a row of a plane each
 };
 

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "explicit/new_openings.hpp"
+#include "explicit/total/total_base.hpp"
 #include "fracture/growth.hpp"
 #include "fracture/j_integral.hpp"
 #include "output/checkpoint.hpp"

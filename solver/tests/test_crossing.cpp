@@ -2,7 +2,6 @@
 #include <catch2/catch.hpp>
 
 #include "explicit/total/total_base.hpp"
-#include "interfaces/columns.hpp"
 #include "interfaces/failure.hpp"
 #include "interfaces/monitors.hpp"
 #include "quasistatic/load_steps.hpp"

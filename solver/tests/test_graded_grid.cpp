@@ -7,7 +7,7 @@
 #include "fracture/growth.hpp"
 #include "scene/graded_cells.hpp"
 #include "small_scenes.hpp"
-#include "state/make_grid.hpp"
+#include "state/grid.hpp"
 #include "state/shape_functions.hpp"
 
 using namespace strata;

@@ -3,7 +3,7 @@
 
 #include "interfaces/surface_tractions.hpp"
 #include "small_scenes.hpp"
-#include "state/make_grid.hpp"
+#include "state/grid.hpp"
 #include "state/shape_functions.hpp"
 
 using namespace strata;

@@ -6,7 +6,6 @@
 #include <map>
 #include <new>
 #include <numeric>
-#include <set>
 
 #include "explicit/sweep.hpp"
 #include "explicit/transfers.hpp"
@@ -200,71 +199,6 @@ TEST_CASE("particles are in lanes") {
   CHECK(share_in_lanes(Run(scene).state) > 0.98 - left_over);
   add_interface(scene, soft_law(1e9, 1e9), 20.0);
   CHECK(share_in_lanes(Run(scene).state) > 0.97 - left_over);
-}
-
-// Requires that particles are said to be like others exactly where the whole block has one mass, area and size: nearly
-// everywhere on a uniform grid, at a handful of places in memory; not in a block of which one particle has another
-// area, and on a graded grid only where they are. Mutations that fail: the area not compared, the last particle of a
-// block left out.
-TEST_CASE("particles are read from others only where these are alike") {
-  Scene scene = block(80, 80);
-  hold_edges(scene);
-  add_fracture(scene, {{40.0, 0.0}, {40.0, 5.0}});
-  const double beyond = GENERATE(0.0, 30.0);
-  scene.domain.beyond_m = beyond;
-  Run run(scene);
-  State& state = run.state;
-  Particles& p = state.particles;
-  std::size_t block = 0;
-  while (state.bins[block].j < 20) block += static_cast<std::size_t>(state.bins[block].stride);
-  const auto odd = static_cast<std::size_t>(state.bins[block].last + state.bins[block].stride - 2);  // its last one
-  p.V[odd] *= 1.0 + 1e-12;
-  for (Bin& bin : state.bins) bin.like = -1;
-  find_like(p, state.bins);
-
-  std::set<int> places;
-  std::size_t in_lanes = 0, told = 0;
-  for (std::size_t b = 0; b < state.bins.size(); b += static_cast<std::size_t>(state.bins[b].stride)) {
-    const Bin& bin = state.bins[b];
-    const auto first = static_cast<std::size_t>(bin.first), last = static_cast<std::size_t>(bin.last + bin.stride - 1);
-    const auto same = [&](std::size_t q, std::size_t r) {
-      return p.m[q] == p.m[r] && p.V[q] == p.V[r] && p.half_x[q] == p.half_x[r] && p.half_y[q] == p.half_y[r];
-    };
-    bool all = bin.stride > 1;
-    for (std::size_t q = first; q < last; ++q) all = all && same(q, first);
-    CAPTURE(b, bin.like, bin.stride);
-    CHECK((bin.like >= 0) == all);
-    for (std::size_t l = 0; bin.like >= 0 && l < static_cast<std::size_t>(bin.stride); ++l)
-      CHECK(same(static_cast<std::size_t>(bin.like) + l, first));
-    if (first <= odd && odd < last) CHECK(bin.like == -1);
-    if (bin.like >= 0) places.insert(bin.like);
-    if (bin.stride > 1) in_lanes += last - first, told += bin.like >= 0 ? last - first : 0;
-  }
-  const double share = static_cast<double>(told) / static_cast<double>(in_lanes);
-  CHECK(share > (beyond == 0.0 ? 0.99 : 0.3));
-  if (beyond == 0.0) CHECK(places.size() < 10);
-}
-
-// Requires that a block reads as many particles side by side as it has lanes: after a block of two, which others follow
-// that differ, a wider one reads its own, and a further block of two what is there already. Mutation that fails: lanes
-// not compared.
-TEST_CASE("a wide block does not read from a narrow one") {
-  constexpr std::array lanes{2, 1, most_lanes, 2};
-  Particles p;
-  std::vector<Bin> bins;
-  for (const int n : lanes) {
-    for (int l = 0; l < n; ++l) {
-      Bin bin;
-      bin.first = static_cast<int>(p.m.size()), bin.last = bin.first + 1, bin.stride = n;
-      bins.push_back(bin);
-      p.m.push_back(n == 1 ? 3.0 : 2.0), p.V.push_back(1.0), p.half_x.push_back(0.5), p.half_y.push_back(0.5);
-    }
-  }
-  find_like(p, bins);
-  CHECK(bins[0].like == 0);
-  CHECK(bins[2].like == -1);
-  CHECK(bins[3].like == (most_lanes > 2 ? 3 : 0));
-  CHECK(bins[3 + most_lanes].like == bins[3].like);
 }
 
 // Requires that 15 arrays at equal steps of pages, whatever the step, ask no line of the page for more than 8 of them.

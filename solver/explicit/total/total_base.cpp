@@ -1,15 +1,17 @@
 #include "explicit/total/total_base.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <unordered_map>
 
 #include "explicit/momentum.hpp"
 #include "explicit/reactions.hpp"
-#include "explicit/total/bond_sensors.hpp"
 #include "explicit/total/total_operator.hpp"
 #include "explicit/transfers.hpp"
+#include "interfaces/failure.hpp"
 #include "interfaces/surface_tractions.hpp"
+#include "state/rebuild.hpp"
 #include "state/shape_functions.hpp"
 
 namespace strata {
@@ -259,6 +261,120 @@ void recount_kinetic(State& state) {
   for (std::size_t s = 0; s < t.m.size(); ++s) kinetic += 0.5 * t.m[s] * (t.v_x[s] * t.v_x[s] + t.v_y[s] * t.v_y[s]);
   state.ledger.transfer += state.ledger.kinetic - kinetic;
   state.ledger.kinetic = kinetic;
+}
+
+// --- bonded interfaces
+
+namespace {
+
+BondSensor::Entry& entry_at(BondSensor& sensor, int slot) {
+  for (BondSensor::Entry& entry : sensor.entries) {
+    if (entry.slot == slot) return entry;
+  }
+  return sensor.entries.emplace_back(BondSensor::Entry{slot, 0.0, 0.0, 0.0, 0.0});
+}
+
+// What a particle of a sample adds to its force where the nodes of its bin move.
+void add_particle(const Scene& scene, const Elasticity& rock, const State& state, const BondSample::Share& share,
+                  const Bin& bin, BondSensor& sensor) {
+  const Particles& p = state.particles;
+  const std::size_t q = share.index;
+  const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
+  for (std::size_t k = 0; k < 9; ++k) {
+    const auto r = static_cast<std::size_t>(bin.record[k]);
+    const Master& master = state.masters[r];
+    const Vec2 by_x = stress_of(rock, g.N_x[k], g.N_y[k], 0.0, 0.0).on(share.weight);
+    const Vec2 by_y = stress_of(rock, 0.0, 0.0, g.N_x[k], g.N_y[k]).on(share.weight);
+    BondSensor::Entry& entry = entry_at(sensor, state.total.op->slots.of_record[r]);
+    entry.xx += master.x * by_x.x(), entry.yx += master.x * by_x.y();
+    entry.xy += master.y * by_y.x(), entry.yy += master.y * by_y.y();
+  }
+}
+
+}  // namespace
+
+std::vector<BondSensor> make_bond_sensors(const Scene& scene, const std::vector<Elasticity>& rocks,
+                                          const State& state) {
+  std::vector<BondSensor> sensors;
+  const std::vector<std::size_t> bin_of = bins_of_particles(state);
+  for (const BondSample& sample : state.bonds.samples) {
+    BondSensor& sensor = sensors.emplace_back();
+    for (const BondSample::Share& share : sample.particles) {
+      const Bin& bin = state.bins[bin_of[share.index]];
+      add_particle(scene, rocks[state.particles.rock[share.index]], state, share, bin, sensor);
+    }
+    for (const BondSample::Mass& mass : sample.inertia)
+      entry_at(sensor, state.total.op->slots.of_record[static_cast<std::size_t>(mass.record)]).m += mass.m;
+  }
+  Bonds still = state.bonds;
+  for (BondSample& sample : still.samples) sample.inertia.clear();
+  find_forces(rocks, state, still);
+  for (std::size_t k = 0; k < sensors.size(); ++k) sensors[k].base = still.forces[k];
+  return sensors;
+}
+
+void forces_of_nodes(const State& state, std::vector<Vec2>& forces) {
+  const TotalMotion& t = state.total;
+  forces.clear();
+  for (const BondSensor& sensor : t.bonds) {
+    Vec2& force = forces.emplace_back(sensor.base);
+    for (const BondSensor::Entry& e : sensor.entries) {
+      const auto slot = static_cast<std::size_t>(e.slot);
+      force.x() += e.xx * t.u_x[slot] + e.xy * t.u_y[slot] + e.m * t.a_x[slot];
+      force.y() += e.yx * t.u_x[slot] + e.yy * t.u_y[slot] + e.m * t.a_y[slot];
+    }
+  }
+}
+
+// --- new points of a fracture
+
+namespace {
+
+// What parts a point on which nothing has been noted yet.
+bool is_new(const SurfacePoint& s) {
+  return s.w == Vec2::Zero();
+}
+
+// Bins around the new points: a nodal field follows from the particles of a few cells around.
+std::vector<Bin> bins_around(const State& state) {
+  constexpr double around_cells = 6.0;
+  Vec2 low = Vec2::Constant(HUGE_VAL), high = Vec2::Constant(-HUGE_VAL);
+  for (const auto* places : {&state.fracture().points, &state.fracture().vertices}) {
+    for (const SurfacePoint& s : *places) {
+      if (is_new(s)) low = low.cwiseMin(s.x), high = high.cwiseMax(s.x);
+    }
+  }
+  const double reach = around_cells * state.grid.h;
+  std::vector<Bin> bins;
+  std::ranges::copy_if(state.bins, std::back_inserter(bins), [&](const Bin& bin) {
+    const double x = state.grid.x(bin.i), y = state.grid.y(bin.j);
+    return x > low.x() - reach && x < high.x() + reach && y > low.y() - reach && y < high.y() + reach;
+  });
+  return bins;
+}
+
+}  // namespace
+
+void open_new_points(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+  // Where a fracture has grown over four cells by a fifth of one at a time, its volume is 0.5 % off by 8 passes, and
+  // 0.07 % by 24.
+  constexpr int passes = 24;
+  const Particles& p = state.particles;
+  const std::vector<Vec2> u = nodes_from_particles(scene, state, bins_around(state), p.u_x, p.u_y, passes);
+  NodalMotion field(u.size());  // displacements in the place of velocities
+  for (std::size_t r = 0; r < u.size(); ++r) field[r] = NodeMotion{u[r].x(), u[r].y(), 0.0, 0.0};
+  particles_to_grid(scene, rocks, state);  // masses
+  update_stencil_weights(scene, state);
+  const auto open = [&](std::vector<SurfacePoint>& points, const std::vector<SurfaceStencil>& stencils) {
+    for (std::size_t q = 0; q < points.size(); ++q) {
+      SurfacePoint& s = points[q];
+      if (!is_new(s)) continue;
+      s.w = jump(stencils[q], field);
+      s.w -= std::min(0.0, s.opening()) * s.n;  // of what was whole a moment ago no overlap is to be pushed back
+    }
+  };
+  open(state.fracture().points, state.point_stencils.front());
+  open(state.fracture().vertices, state.vertex_stencils.front());
 }
 
 }  // namespace strata

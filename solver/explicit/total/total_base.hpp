@@ -48,4 +48,17 @@ void carry_velocities(const Scene& scene, const RecordVelocities& before, State&
 /// Ledger and nodal kinetic energy after an event: what the nodes lost (or gained) by it counts as lost in transfer.
 void recount_kinetic(State& state);
 
+/// The forces of the rock of the samples of bonded places as linear functions of the nodal displacements since the base
+/// and accelerations; particles must be up to date. Throws nothing but std::bad_alloc.
+std::vector<BondSensor> make_bond_sensors(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state);
+
+/// What find_forces() gives, from the nodes (N/m). Throws nothing.
+void forces_of_nodes(const State& state, std::vector<Vec2>& forces);
+
+/// Gives the fracture's new points and vertices (those whose jump is still exactly nothing) the jump that the
+/// displacements have there, w = D u: within a cell a tip grows into nodes that are split, whose sides have moved apart
+/// before. Without it faces would meet, and J would be too small, by what had opened. Copies must be built, and all
+/// particles up to date. Changes state.sums. Throws nothing but std::bad_alloc.
+void open_new_points(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
+
 }  // namespace strata

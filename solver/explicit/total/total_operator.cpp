@@ -2,19 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <unordered_map>
 
-#include "explicit/total/stencil_rows.hpp"
 #include "explicit/transfers.hpp"
 #include "state/lanes.hpp"
 #include "state/parts.hpp"
 #include "state/shape_functions.hpp"
+#include "state/stiffness.hpp"
 
 namespace strata {
 
 namespace {
 
 constexpr int lanes = most_lanes;
-constexpr int shortest_run = 8;  // slots: below, what a run needs beside its sums is more than sharing them saves
+constexpr std::size_t shortest_run =
+    8;  // slots: below, what a run needs beside its sums is more than sharing them saves
 
 Lane load(const double* from) {
   return AllLanes{}.load(from);
@@ -23,72 +26,263 @@ void store(double* to, const Lane& value) {
   AllLanes{}.store(to, value);
 }
 
-// --- building
+// --- rows
 
-// Runs of slots with the same row, longest first extended to the block's sides by images.
-struct RunMaker {
-  const Grid& grid;
-  const Slots& slots;
-  const StencilRows& rows;
-  StencilOperator& op;
-  std::vector<char> taken;
+// A row of -M^-1 K: its blocks by ascending offset.
+using StencilRow = std::vector<StencilEntry>;
 
-  int row(int slot) const { return rows.row_of_slot[static_cast<std::size_t>(slot)]; }
-  const StencilRow& of(int slot) const { return rows.rows[static_cast<std::size_t>(row(slot))]; }
-  bool is_single(int slot) const { return row(slot) >= 0 && taken[static_cast<std::size_t>(slot)] == 0; }
-  bool extends(int run_row, int slot) const {
-    if (slot < 0 || slot >= slots.size || row(slot) < 0 || taken[static_cast<std::size_t>(slot)] != 0) return false;
-    return same_by_images(grid, slots, slot, rows.rows[static_cast<std::size_t>(run_row)], of(slot));
+// The rows of all masters. Slots whose surroundings are the same (particles, weights and copies around them) share one.
+struct StencilRows {
+  std::vector<StencilRow> rows;
+  std::vector<int> row_of_slot;  // -1: no master of a mass stands there
+};
+
+// Places within a cell are told apart by multiples of this (cells): far above the round-off of a coordinate, far below
+// what a kernel's results may differ by.
+constexpr double same_place = 1.0 / (1LL << 36);
+
+struct TokenHash {
+  template <class Tokens>
+  std::size_t operator()(const Tokens& tokens) const {
+    std::uint64_t hash = 0xcbf29ce484222325U;  // FNV-1a by words
+    for (const auto token : tokens) hash = (hash ^ static_cast<std::uint64_t>(token)) * 0x100000001b3U;
+    return static_cast<std::size_t>(hash ^ (hash >> 29));
   }
 };
 
-// Mirrored slots that the row reads at a slot near a side, and the component that the side holds.
-void note_images(RunMaker& make, const StencilRow& row, int slot) {
-  const int i = column_of(make.slots, slot);
-  if (i == 0 || i == make.grid.nx) make.op.held_x.push_back(slot);
-  for (const StencilEntry& entry : row) {
-    const int reached = slot + entry.offset, inside = mirrored_slot(make.grid, make.slots, reached);
-    if (inside != reached) make.op.images.push_back({reached, inside});
+// Numbers of things by what they are made of.
+template <class Token>
+using Kinds = std::unordered_map<std::vector<Token>, int, TokenHash>;
+
+// What the particles of a bin do to the nine nodes around it.
+struct BinKind {
+  LocalStiffness K = LocalStiffness::Zero();
+  std::array<double, 9> m{};
+};
+
+std::int64_t in_steps(double cells) {
+  return std::llround(cells / same_place);
+}
+
+void describe_bin(const State& state, const Bin& bin, std::vector<std::int64_t>& tokens) {
+  const Grid& g = state.grid;
+  const Particles& p = state.particles;
+  tokens.clear();
+  for (const int k : {-1, 0, 1}) {
+    tokens.push_back(g.x_knots.empty() ? 0 : in_steps(g.span_x(bin.i + k) / g.h));
+    tokens.push_back(g.y_knots.empty() ? 0 : in_steps(g.span_y(bin.j + k) / g.h));
+  }
+  for (const std::size_t q : bin) {
+    tokens.push_back(in_steps((p.x[q] - g.x(bin.i)) / g.h));
+    tokens.push_back(in_steps((p.y[q] - g.y(bin.j)) / g.h));
+    tokens.push_back(in_steps(p.V[q] / (g.h * g.h)));
+    tokens.push_back(p.rock[q]);
   }
 }
 
-void add_run(RunMaker& make, SlotRange range) {
-  const int number = make.row(range.first);
-  const StencilRow& row = make.rows.rows[static_cast<std::size_t>(number)];
-  for (int slot = range.first; make.extends(number, slot - 1); --slot) --range.first;
-  for (int slot = range.last; make.extends(number, slot); ++slot) ++range.last;
-  for (int slot = range.first; slot < range.last; ++slot) {
-    make.taken[static_cast<std::size_t>(slot)] = 1;
-    const int i = column_of(make.slots, slot);
-    if (make.row(slot) != number || i <= 0 || i >= make.grid.nx) note_images(make, row, slot);
+BinKind make_kind(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Bin& bin) {
+  const Particles& p = state.particles;
+  BinKind kind;
+  for (const std::size_t q : bin) {
+    const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
+    add_stiffness(rocks[p.rock[q]], g, p.V[q], kind.K);
+    for (std::size_t n = 0; n < 9; ++n) kind.m[n] += g.N[n] * p.m[q];
   }
-  StencilRun run;
-  run.slots = range;
-  run.entry = static_cast<int>(make.op.entries.size());
-  for (const bool diagonal : {false, true}) {
-    for (const StencilEntry& entry : row) {
-      if ((entry.xy == 0.0 && entry.yx == 0.0) != diagonal) continue;
-      make.op.entries.push_back(entry);
-      ++(diagonal ? run.diagonal : run.full);
-    }
-  }
-  make.op.runs.push_back(run);
+  return kind;
 }
 
-void find_runs(RunMaker& make) {
-  for (int slot = 0; slot < make.slots.size;) {
-    SlotRange range{slot, slot + 1};
-    if (make.row(slot) >= 0) {
-      while (range.last < make.slots.size && make.row(range.last) == make.row(slot)) ++range.last;
-      if (range.last - range.first >= shortest_run) add_run(make, range);
-    }
-    slot = std::max(range.last, slot + 1);
+struct BinKinds {
+  std::vector<BinKind> kinds;
+  std::vector<int> of_bin;
+};
+
+BinKinds find_bin_kinds(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
+  BinKinds out;
+  Kinds<std::int64_t> numbers;
+  std::vector<std::int64_t> tokens;
+  for (const Bin& bin : state.bins) {
+    describe_bin(state, bin, tokens);
+    const auto [number, is_new] = numbers.try_emplace(tokens, static_cast<int>(numbers.size()));
+    if (is_new) out.kinds.push_back(make_kind(scene, rocks, state, bin));
+    out.of_bin.push_back(number->second);
   }
-  auto& images = make.op.images;
-  std::sort(images.begin(), images.end(), [](const SlotImage& a, const SlotImage& b) { return a.to < b.to; });
-  images.erase(
-      std::unique(images.begin(), images.end(), [](const SlotImage& a, const SlotImage& b) { return a.to == b.to; }),
-      images.end());
+  return out;
+}
+
+// That a node of a bin's nine is, or is tied to, a master.
+struct Incidence {
+  int bin = 0;
+  int node = 0;
+};
+
+// Those of each slot, in the order of bins.
+std::vector<std::vector<Incidence>> find_incidences(const State& state, const Slots& slots) {
+  std::vector<std::vector<Incidence>> of_slot(static_cast<std::size_t>(slots.size));
+  for (std::size_t b = 0; b < state.bins.size(); ++b) {
+    for (std::size_t n = 0; n < 9; ++n) {
+      const auto record = static_cast<std::size_t>(state.bins[b].record[n]);
+      auto& at = of_slot[static_cast<std::size_t>(slots.of_record[record])];
+      if (at.empty()) at.reserve(9);
+      at.push_back({static_cast<int>(b), static_cast<int>(n)});
+    }
+  }
+  return of_slot;
+}
+
+const Master& master_at(const State& state, const Bin& bin, int node) {
+  return state.masters[static_cast<std::size_t>(bin.record[static_cast<std::size_t>(node)])];
+}
+
+int code_of(const Master& master) {
+  return 3 * (static_cast<int>(master.x) + 1) + static_cast<int>(master.y) + 1;
+}
+
+// What a row is assembled from.
+struct Assembly {
+  const State& state;
+  const Slots& slots;
+  const BinKinds& bins;
+  const std::vector<std::vector<Incidence>>& incidences;
+
+  template <class Visit>
+  void visit(int slot, Visit visit_one) const {
+    for (const Incidence& at : incidences[static_cast<std::size_t>(slot)]) {
+      const auto b = static_cast<std::size_t>(at.bin);
+      visit_one(state.bins[b], at.node, bins.of_bin[b]);
+    }
+  }
+};
+
+void describe_row(const Assembly& from, int slot, std::vector<std::int32_t>& tokens) {
+  tokens.clear();
+  from.visit(slot, [&](const Bin& bin, int node, int kind) {
+    tokens.push_back(kind);
+    tokens.push_back(16 * node + code_of(master_at(from.state, bin, node)));
+    for (int n = 0; n < 9; ++n) {
+      const int column = from.slots.of_record[static_cast<std::size_t>(bin.record[static_cast<std::size_t>(n)])];
+      tokens.push_back(16 * (column - slot) + code_of(master_at(from.state, bin, n)));
+    }
+  });
+}
+
+StencilEntry& entry_at(StencilRow& row, int offset) {
+  const auto at = std::lower_bound(row.begin(), row.end(), offset,
+                                   [](const StencilEntry& entry, int value) { return entry.offset < value; });
+  if (at != row.end() && at->offset == offset) return *at;
+  return *row.insert(at, {offset, 0.0, 0.0, 0.0, 0.0});
+}
+
+double largest_of(const StencilEntry& e) {
+  return std::max({std::abs(e.xx), std::abs(e.xy), std::abs(e.yx), std::abs(e.yy)});
+}
+
+double largest_of(const StencilRow& row) {
+  double most = 0.0;
+  for (const StencilEntry& entry : row) most = std::max(most, largest_of(entry));
+  return most;
+}
+
+// Coefficients that are round-off of sums that cancel.
+void drop_round_off(StencilRow& row) {
+  constexpr double nothing = 1e-15;
+  const double small = nothing * largest_of(row);
+  for (StencilEntry& entry : row) {
+    for (double* value : {&entry.xx, &entry.xy, &entry.yx, &entry.yy}) {
+      if (std::abs(*value) <= small) *value = 0.0;
+    }
+  }
+  std::erase_if(row, [](const StencilEntry& entry) { return largest_of(entry) == 0.0; });
+}
+
+// Empty where the node has no mass.
+StencilRow make_row(const Assembly& from, int slot) {
+  StencilRow row;
+  double m = 0.0;
+  from.visit(slot, [&](const Bin& bin, int node, int kind) {
+    const BinKind& local = from.bins.kinds[static_cast<std::size_t>(kind)];
+    const Master& own = master_at(from.state, bin, node);
+    m += local.m[static_cast<std::size_t>(node)];
+    for (int n = 0; n < 9; ++n) {
+      const auto block = local.K.block<2, 2>(2 * node, 2 * n);
+      if (block.isZero(0.0)) continue;
+      const Master& other = master_at(from.state, bin, n);
+      const int column = from.slots.of_record[static_cast<std::size_t>(bin.record[static_cast<std::size_t>(n)])];
+      StencilEntry& entry = entry_at(row, column - slot);
+      entry.xx -= own.x * other.x * block(0, 0), entry.xy -= own.x * other.y * block(0, 1);
+      entry.yx -= own.y * other.x * block(1, 0), entry.yy -= own.y * other.y * block(1, 1);
+    }
+  });
+  if (!(m > 0.0)) return {};
+  for (StencilEntry& entry : row) entry.xx /= m, entry.xy /= m, entry.yx /= m, entry.yy /= m;
+  drop_round_off(row);
+  return row;
+}
+
+// Where the nodal quantities of a state stand.
+Slots make_slots(const State& state) {
+  const Grid& g = state.grid;
+  Slots slots;
+  const int width = g.nx + 1 + 2 * Slots::ring, rows = g.ny + 1 + 2 * Slots::ring;
+  slots.stride = (width + 7) / 8 * 8 + 8;  // vectors that begin in a row's last slots end before the next row's first
+  slots.plane = slots.stride * rows;
+  int planes = 1;
+  const auto place = [&](int record) {
+    const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
+    const int c = state.copies.cut_of_node[static_cast<std::size_t>(node)];
+    int copy = 0;
+    if (c >= 0) {
+      const auto& records = state.copies.cut[static_cast<std::size_t>(c)].records;
+      const auto at = std::find(records.begin(), records.end(), record);
+      if (at != records.end()) copy = static_cast<int>(at - records.begin());
+    }
+    planes = std::max(planes, copy + 1);
+    return copy * slots.plane + (g.row(node) + Slots::ring) * slots.stride + g.column(node) + Slots::ring;
+  };
+  for (const Master& master : state.masters) slots.of_record.push_back(place(master.record));
+  slots.size = planes * slots.plane + 16;
+  return slots;
+}
+
+// Rows of -M^-1 K with K = sum_p V_p B^T C B (add_stiffness()) and lumped masses, rows and columns folded to masters.
+// Surroundings count as the same where they agree to 1.5e-11 of a cell.
+StencilRows make_stencil_rows(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
+                              const Slots& slots) {
+  const BinKinds bins = find_bin_kinds(scene, rocks, state);
+  const auto incidences = find_incidences(state, slots);
+  const Assembly from{state, slots, bins, incidences};
+  StencilRows out;
+  out.row_of_slot.assign(static_cast<std::size_t>(slots.size), -1);
+  Kinds<std::int32_t> numbers;
+  std::vector<std::int32_t> tokens;
+  for (int slot = 0; slot < slots.size; ++slot) {
+    const auto s = static_cast<std::size_t>(slot);
+    if (incidences[s].empty()) continue;
+    describe_row(from, slot, tokens);
+    const auto [number, is_new] = numbers.try_emplace(tokens, static_cast<int>(numbers.size()));
+    if (is_new) out.rows.push_back(make_row(from, slot));
+    if (!out.rows[static_cast<std::size_t>(number->second)].empty()) out.row_of_slot[s] = number->second;
+  }
+  return out;
+}
+
+// --- building
+
+// Runs of slots with the same row.
+void find_runs(const StencilRows& rows, StencilOperator& op) {
+  const std::vector<int>& row = rows.row_of_slot;
+  for (std::size_t first = 0, last = 0; first < row.size(); first = last) {
+    for (last = first + 1; last < row.size() && row[last] == row[first];) ++last;
+    if (row[first] < 0 || last - first < shortest_run) continue;
+    StencilRun run{{static_cast<int>(first), static_cast<int>(last)}, static_cast<int>(op.entries.size())};
+    for (const bool diagonal : {false, true}) {
+      for (const StencilEntry& entry : rows.rows[static_cast<std::size_t>(row[first])]) {
+        if ((entry.xy == 0.0 && entry.yx == 0.0) != diagonal) continue;
+        op.entries.push_back(entry);
+        ++(diagonal ? run.diagonal : run.full);
+      }
+    }
+    op.runs.push_back(run);
+  }
 }
 
 void add_segments(const StencilRow& row, std::vector<StencilSegment>& segments) {
@@ -116,17 +310,20 @@ void find_ranges(StencilOperator& op) {
 }
 
 // All slots that no run has, with the segments of their rows.
-void find_singles(const RunMaker& make) {
+void find_singles(const StencilRows& rows, StencilOperator& op) {
   std::vector<SlotRange> segments;
-  for (const StencilRow& row : make.rows.rows) {
-    const auto first = static_cast<int>(make.op.segments.size());
-    add_segments(row, make.op.segments);
-    segments.push_back({first, static_cast<int>(make.op.segments.size())});
+  for (const StencilRow& row : rows.rows) {
+    const auto first = static_cast<int>(op.segments.size());
+    add_segments(row, op.segments);
+    segments.push_back({first, static_cast<int>(op.segments.size())});
   }
-  for (int slot = 0; slot < make.slots.size; ++slot) {
-    if (!make.is_single(slot)) continue;
-    const SlotRange& of_row = segments[static_cast<std::size_t>(make.row(slot))];
-    make.op.singles.push_back({slot, of_row.first, of_row.last});
+  auto run = op.runs.begin();
+  for (int slot = 0; slot < op.slots.size; ++slot) {
+    while (run != op.runs.end() && run->slots.last <= slot) ++run;
+    const int row = rows.row_of_slot[static_cast<std::size_t>(slot)];
+    if (row < 0 || (run != op.runs.end() && run->slots.first <= slot)) continue;
+    const SlotRange& of_row = segments[static_cast<std::size_t>(row)];
+    op.singles.push_back({slot, of_row.first, of_row.last});
   }
 }
 
@@ -198,17 +395,11 @@ void apply_stencils(TotalMotion& t) {
   const StencilOperator& op = *t.op;
 #pragma omp parallel if (t.m.size() > worth_threads)
   {
-#pragma omp for schedule(static)
-    for (const SlotImage& image : op.images) {
-      const auto to = static_cast<std::size_t>(image.to), from = static_cast<std::size_t>(image.from);
-      t.u_x[to] = -t.u_x[from], t.u_y[to] = t.u_y[from];
-    }
 #pragma omp for schedule(static) nowait
     for (const StencilRun& run : op.runs) apply_run(op, run, t);
 #pragma omp for schedule(static)
     for (const SingleSlot& single : op.singles) apply_single(op, single, t);
   }
-  for (const int slot : op.held_x) t.a_x[static_cast<std::size_t>(slot)] = 0.0;
 }
 
 // The same by particles: f_i = -sum_p V_p sigma(grad u) grad N_ip, folded to masters.
@@ -267,9 +458,8 @@ StencilOperator make_operator(const Scene& scene, const std::vector<Elasticity>&
   StencilOperator op;
   op.slots = make_slots(state);
   const StencilRows rows = make_stencil_rows(scene, rocks, state, op.slots);
-  RunMaker make{state.grid, op.slots, rows, op, std::vector<char>(static_cast<std::size_t>(op.slots.size), 0)};
-  find_runs(make);
-  find_singles(make);
+  find_runs(rows, op);
+  find_singles(rows, op);
   find_ranges(op);
   return op;
 }

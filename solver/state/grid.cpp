@@ -1,4 +1,4 @@
-#include "state/make_grid.hpp"
+#include "state/grid.hpp"
 
 #include <cmath>
 
