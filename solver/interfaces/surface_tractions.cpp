@@ -24,12 +24,12 @@ Vec2 velocity(const NodeMotion& motion) {
 
 void update_stencil_weights(const Scene& scene, State& state) {
   const bool spline = scene.numerics.shape == Numerics::Shape::bspline2;
-  const auto weights_at = spline ? gradients_of<QuadraticBspline> : gradients_of<Linear>;
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
     const auto weigh_all = [&](const std::vector<SurfacePoint>& points, std::vector<SurfaceStencil>& stencils) {
       for (std::size_t q = 0; q < points.size(); ++q) {
         SurfaceStencil& s = stencils[q];
-        s.N = weights_at(state.grid, s.i, s.j, points[q].x, Vec2::Zero()).N;
+        s.N = spline ? gradients_of<QuadraticBspline>(state.grid, s.i, s.j, points[q].x, Vec2::Zero()).N
+                     : gradients_of<Linear>(state.grid, s.i, s.j, points[q].x, Vec2::Zero()).N;
         join_massless(state.sums, s);
       }
     };
