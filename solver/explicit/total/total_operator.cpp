@@ -16,8 +16,7 @@ namespace strata {
 namespace {
 
 constexpr int lanes = most_lanes;
-constexpr std::size_t shortest_run =
-    8;  // slots: below, what a run needs beside its sums is more than sharing them saves
+constexpr std::size_t shortest_run = 8;  // slots: below, a run needs more beside its sums than sharing them saves
 
 Lane load(const double* from) {
   return AllLanes{}.load(from);
