@@ -1,7 +1,5 @@
 """The part of the page of verification on what each ingredient of an experiment is worth: what ci/ablate kept, as a chart and tables."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

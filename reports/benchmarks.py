@@ -1,7 +1,5 @@
 """The part of the page of verification on speed: what ci/bench recorded last, as charts and a table of marks."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

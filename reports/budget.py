@@ -1,7 +1,5 @@
 """The part of the page of verification on error budgets: what ci/budget found, as tables and tornado charts."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from pathlib import Path

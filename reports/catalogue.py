@@ -1,7 +1,5 @@
 """The figures of the page of the experiments: which data each is made from, what draws it, and which words are its caption."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial

@@ -1,7 +1,5 @@
 """Prepares one figure for each open point: every choice beside the default, as height curves or paths."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """The harness's verdicts as rows of a table, and which of the study's claims survive which choice, as a table of plain cells."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from reports.shown import Shown

@@ -1,7 +1,5 @@
 """What inertia changes: the same variant in both mechanics, number by number."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

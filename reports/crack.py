@@ -1,7 +1,5 @@
 """Prepares Figures 1 and 2: the copies of nodes about a crack, and the stress and pressure of a pressurised one."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.spatial import cKDTree
 

@@ -1,7 +1,5 @@
 """Prepares Figures 3 to 8 for drawing: heights, openings and paths from run folders."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

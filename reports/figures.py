@@ -1,7 +1,5 @@
 """What pages are made of, whichever page it is: figures as declarations, tables and parts as plain data; and what writes them."""
 
-from __future__ import annotations
-
 import argparse
 import re
 import sys

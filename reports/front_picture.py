@@ -3,8 +3,6 @@
 usage: python3 -m reports.front_picture [--runs runs] [--out experiments]     (after ci/reproduce)
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from pathlib import Path

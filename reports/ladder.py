@@ -1,7 +1,5 @@
 """The accuracy ladder's ladder.json as plain data, and what its charts draw."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -1,7 +1,5 @@
 """The geometry of an experiment from its resolved scene: layers, interfaces, fracture, edges, in-situ stress."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

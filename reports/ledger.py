@@ -1,7 +1,5 @@
 """Prepares the energy ledger and the dot plot of every variant's events; and what of a run is not to be trusted."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,8 +1,6 @@
 #!/usr/bin/python3
 """Writes the page of results: reports/make_page.py --runs runs --out reports/out."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from concurrent.futures import ProcessPoolExecutor

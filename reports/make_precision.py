@@ -1,8 +1,6 @@
 #!/usr/bin/python3
 """Writes the page of error against time alone: reports/make_precision.py --out reports/out."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

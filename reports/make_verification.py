@@ -1,8 +1,6 @@
 #!/usr/bin/python3
 """Writes the page of verification: reports/make_verification.py --runs runs --out reports/out."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What a run did, told from its events: start, arrests, restarts, end; and sentences that say so."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any

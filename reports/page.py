@@ -1,7 +1,5 @@
 """Turns runs, verdicts and figures into the page: tables as plain data, then the template."""
 
-from __future__ import annotations
-
 import platform
 import shutil
 from collections.abc import Callable, Sequence

@@ -1,7 +1,5 @@
 """The paths of Experiments 5 and 6 with a perfect interface beside those of boundary elements in the infinite plane."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The work-precision chart: error against wall time for every method, what follows for who uses the solver, and the page behind it."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Sequence

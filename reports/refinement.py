@@ -1,7 +1,5 @@
 """The part of the page of verification on mesh refinement of the experiments: what ci/refine found, as tables and charts."""
 
-from __future__ import annotations
-
 import json
 import statistics
 from collections.abc import Sequence

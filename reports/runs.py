@@ -1,7 +1,5 @@
 """Reads run folders; what is missing or unreadable is recorded in the run, never raised."""
 
-from __future__ import annotations
-
 import csv
 import json
 import math

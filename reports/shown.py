@@ -1,7 +1,5 @@
 """Plain data that a chart draws or a template shows."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 

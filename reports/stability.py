@@ -1,7 +1,5 @@
 """The page of the stability atlas: families and their records turned into rows, words and figures, and what the front page says."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Sequence

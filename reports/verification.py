@@ -5,8 +5,6 @@ runs in words, with its figures as declarations and its tables; None where the c
 is to be said in a row, a caption or the intro.
 """
 
-from __future__ import annotations
-
 import importlib
 import math
 import traceback

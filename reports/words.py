@@ -1,7 +1,5 @@
 """Numbers as words: units, rounding and lists, used by titles, captions and tables."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Sequence

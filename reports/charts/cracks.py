@@ -1,7 +1,5 @@
 """Draws Figure 1, the copies of nodes about a crack, and Figure 2, a pressurised crack."""
 
-from __future__ import annotations
-
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure

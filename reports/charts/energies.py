@@ -1,7 +1,5 @@
 """Draws the energy ledgers and the dot plot of all variants."""
 
-from __future__ import annotations
-
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 

@@ -1,7 +1,5 @@
 """Draws the experiments: layouts, height against inlet pressure (Figs 3 to 6), openings (7), paths (8), and open choices."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

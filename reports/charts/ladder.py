@@ -1,7 +1,5 @@
 """Draws the accuracy ladder: error against size, a panel a case, and error against cost, a panel a family."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

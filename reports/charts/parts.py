@@ -1,7 +1,5 @@
 """Draws the parts of the page of verification: ingredients, benchmarks, budgets, refinement, paths."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from matplotlib.axes import Axes

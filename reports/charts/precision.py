@@ -1,7 +1,5 @@
 """Draws error against wall time: panels of curves with Pareto front, marks of accuracy, uncertainty of the reference, failures."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from matplotlib.axes import Axes

@@ -1,7 +1,5 @@
 """Draws walks across the edges of the methods: outcomes along the walked parameter, edges predicted and measured."""
 
-from __future__ import annotations
-
 import textwrap
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Colours, lines and the small drawing helpers that all charts share."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Iterator, Sequence
 from pathlib import Path

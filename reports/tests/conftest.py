@@ -1,7 +1,5 @@
 """Settings of these tests."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Writes run folders that look like the solver's, from made-up curves: what the page's tests read."""
 
-from __future__ import annotations
-
 import csv
 import json
 from dataclasses import dataclass, replace

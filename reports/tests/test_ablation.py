@@ -1,7 +1,5 @@
 """The part of the page on what each experiment needs."""
 
-from __future__ import annotations
-
 from reports.ablation import ablation_figure, section_of, verdict_words
 from verification.ablation import store
 from verification.ablation.effects import not_needed

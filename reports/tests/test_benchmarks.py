@@ -1,7 +1,5 @@
 """The part of the page on speed says what the last record says, of whichever machine, and nothing where there is none."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Pages beside that of the experiments: the stability atlas and the work-precision chart, from data that are there, wrong, and not there."""
 
-from __future__ import annotations
-
 import html
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """The page is made from run folders alone, holds every figure, and survives runs that failed or are missing."""
 
-from __future__ import annotations
-
 import re
 import shutil
 from html.parser import HTMLParser

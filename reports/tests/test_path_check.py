@@ -1,7 +1,5 @@
 """The part of the page about paths: what counts as near, what the title says, what is drawn and what is said of nothing."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What the figures show, checked by hand on small cases."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The parts of the page of verification on refinement and on error budgets say what is in their files, failures included."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import asdict
 from pathlib import Path

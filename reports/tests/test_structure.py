@@ -1,7 +1,5 @@
 """Computing and drawing stay apart, and the code keeps to its limits."""
 
-from __future__ import annotations
-
 import ast
 from pathlib import Path
 

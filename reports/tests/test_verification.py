@@ -1,7 +1,5 @@
 """The page of verification shows every comparison, says what was found, and survives what is broken or missing."""
 
-from __future__ import annotations
-
 import json
 import re
 import sys

@@ -7,7 +7,6 @@ interfaces act most (soft; weak_soft and soft_weak in Experiment 3), and of the 
 scene's own mechanics (explicit). Tables are printed, and kept in verification/ablation/records (DIR) where nothing was chosen by
 --ingredients or --set.
 """
-from __future__ import annotations
 
 import sys
 

@@ -3,7 +3,6 @@
 A pressure counts by its net part, P less the stress that closes the fracture: a background can be added to both at will. A height counts
 by the base's own, a path by its length. An ingredient whose run has no value where the base has one changes what happens.
 """
-from __future__ import annotations
 
 import math
 from collections.abc import Sequence

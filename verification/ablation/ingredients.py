@@ -3,7 +3,6 @@
 An ingredient of the group `modelled` is switched off, one of `resolved` is made coarser; `left_out` is what the scene itself goes without
 and its run has: the table's other side.
 """
-from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

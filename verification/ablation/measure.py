@@ -1,5 +1,4 @@
 """Runs a scene with each of its ingredients left out, one after the other on one thread, and takes the CPU time of each."""
-from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path

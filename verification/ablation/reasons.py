@@ -1,5 +1,4 @@
 """Why scenes keep what 1 % does not ask of them, or go without what it does: experiments/choices/ablation.toml."""
-from __future__ import annotations
 
 import tomllib
 from pathlib import Path

@@ -1,5 +1,4 @@
 """The tables as they are kept: a JSON file a variant of an experiment, in verification/ablation/records/."""
-from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path

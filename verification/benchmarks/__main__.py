@@ -1,5 +1,4 @@
 """Times kernels, events and whole runs, beside what the machine gives at the same time. See ci/bench --help."""
-from __future__ import annotations
 
 import argparse
 import datetime

@@ -1,5 +1,4 @@
 """A measured figure: its repetitions with the machine's rates beside each, and what is made of them."""
-from __future__ import annotations
 
 import math
 import statistics

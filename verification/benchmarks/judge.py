@@ -1,5 +1,4 @@
 """What figures say: now against the last record of the same machine, and against the marks."""
-from __future__ import annotations
 
 import math
 from collections.abc import Sequence

@@ -1,5 +1,4 @@
 """Runs strata_bench and reads what it says: a figure a benchmark."""
-from __future__ import annotations
 
 import json
 import os

@@ -1,5 +1,4 @@
 """The machine that measures: what it is, how busy it is, and what was built on it."""
-from __future__ import annotations
 
 import os
 import platform

@@ -1,5 +1,4 @@
 """What was measured, kept as a line of JSON a record in a file a machine."""
-from __future__ import annotations
 
 import json
 from dataclasses import dataclass, fields

@@ -1,5 +1,4 @@
 """Whole runs: the experiments, K_I of a pressurised crack, how the cost of runs without inertia grows, memory a point."""
-from __future__ import annotations
 
 import os
 import tempfile

@@ -1,5 +1,4 @@
 """Figures, comparisons and marks as lines for a terminal."""
-from __future__ import annotations
 
 import math
 from collections.abc import Sequence

@@ -4,7 +4,6 @@ usage: python3 -m verification.faults [--kills 200] [--seed 1] [--checkpoint-eve
 
 Exit status: 0 all the same, 1 something differs or is torn.
 """
-from __future__ import annotations
 
 import subprocess
 import sys

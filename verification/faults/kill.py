@@ -1,5 +1,4 @@
 """Kills runs at random moments, resumes them, perhaps to kill them again, and holds what they end with against a run left alone."""
-from __future__ import annotations
 
 import random
 import shutil

@@ -1,5 +1,4 @@
 """Whether two run folders say the same, but for what the clock says, and whether an interrupted one can be read."""
-from __future__ import annotations
 
 import csv
 import json

@@ -1,5 +1,4 @@
 """The scenes that are killed: each mechanics and law of the fluid, each a second or so long."""
-from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path

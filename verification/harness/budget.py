@@ -6,7 +6,6 @@ usage: ci/budget [exp1 ...] [--variants perfect,soft] [--factors mesh,ring] [--m
 Without names: all experiments. What has been run for the same scene and solver is not run again; the base and the run with half
 the cells are those of ci/refine. Writes DIR/EXPERIMENT.json (DIR: runs/budget) and prints it; reports/budget.py draws it.
 """
-from __future__ import annotations
 
 import math
 import sys

@@ -5,7 +5,6 @@ usage: ci/reproduce [--only exp1[,exp2...]] [--mechanics explicit|quasistatic|bo
 A run's folder is RUNS/MECHANICS/EXPERIMENT/VARIANT. A variant that only one mechanics can run is made in that one only. What is there
 for the same scene and solver is not run again; a run that was interrupted goes on.
 """
-from __future__ import annotations
 
 import subprocess
 import sys

@@ -1,5 +1,4 @@
 """What the study leaves open, and which variants show another choice: experiments/choices/points.toml as plain data."""
-from __future__ import annotations
 
 import tomllib
 from dataclasses import dataclass, field

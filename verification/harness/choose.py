@@ -1,5 +1,4 @@
 """Lists of cases: gathered from the modules of a package, chosen by the beginnings of their names, each with a folder of its own."""
-from __future__ import annotations
 
 import fcntl
 import importlib

@@ -1,5 +1,4 @@
 """Claims and what became of them as plain data, and claims.json written from it and read back."""
-from __future__ import annotations
 
 import json
 from collections.abc import Callable

@@ -7,7 +7,6 @@ Beside the runs of the scenes as they are stand those of cells of half the size 
 them: experiments/expected/claims_0.5m.json, written by --record.
 usage: python3 -m verification.harness.claims [--experiments DIR] [--runs DIR] [--out FILE] [--record]
 """
-from __future__ import annotations
 
 import math
 import sys

@@ -1,5 +1,4 @@
 """The options that the commands share, each told once."""
-from __future__ import annotations
 
 import argparse
 from pathlib import Path

@@ -1,5 +1,4 @@
 """Paths of Experiments 5 and 6 by boundary elements in the infinite plane, and paths of runs in the same frame."""
-from __future__ import annotations
 
 import numpy as np
 

@@ -1,5 +1,4 @@
 """What one change of a scene moves in what is followed of it: a run against the scene's own."""
-from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass

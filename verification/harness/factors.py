@@ -1,5 +1,4 @@
 """What an error budget varies: for each factor, the other settings of a scene that differ from it in this alone."""
-from __future__ import annotations
 
 import json
 from dataclasses import dataclass

@@ -2,7 +2,6 @@
 
 usage: python3 -m verification.harness.front_table LADDER.json [--write]     (LADDER.json as ci/verify leaves it; --write puts it into README.md)
 """
-from __future__ import annotations
 
 import argparse
 import json

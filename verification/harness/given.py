@@ -1,5 +1,4 @@
 """What a run was given and what it came to, as references take it; SI."""
-from __future__ import annotations
 
 import math
 from collections.abc import Callable

@@ -2,7 +2,6 @@
 
 Loaded by each conftest.py before anything of the project. $STRATA, $STRATA_REFERENCE and $STRATA_BENCH may name programs of another build.
 """
-from __future__ import annotations
 
 import atexit
 import os

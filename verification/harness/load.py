@@ -1,5 +1,4 @@
 """Reads a run's folder into plain data: scene, summary, history, and on demand what result.h5 holds."""
-from __future__ import annotations
 
 import csv
 import json

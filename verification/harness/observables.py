@@ -3,7 +3,6 @@
 Every observable is an interval: a single number where a run shows it, and a bound where the run ended first. Heights are
 tip y above the symmetry line (m); pressures are inlet pressures (Pa).
 """
-from __future__ import annotations
 
 import math
 from collections.abc import Callable

@@ -1,5 +1,4 @@
 """Where things are in the project."""
-from __future__ import annotations
 
 import os
 from pathlib import Path

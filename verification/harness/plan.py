@@ -1,5 +1,4 @@
 """Runs before they are made: what they will cost, whether that may be spent, and making them side by side."""
-from __future__ import annotations
 
 import argparse
 import sys

@@ -3,7 +3,6 @@
 Pressures are inlet pressures (Pa), heights those of the tip above the symmetry line (m). Nothing here is counted in cells, so that
 the numbers mean the same on every mesh.
 """
-from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence

@@ -1,5 +1,4 @@
 """Asks strata-reference for analytic values, so that no test has to hold one."""
-from __future__ import annotations
 
 import json
 import subprocess

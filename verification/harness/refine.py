@@ -7,7 +7,6 @@ An experiment is the beginning of its name, or a scene file. What has been run f
 Writes DIR/EXPERIMENT/refine.json (DIR: runs/refine) and prints it as tables; reports/refinement.py draws it. Where runs that are
 still to be made would take longer than --limit (minutes, by an estimate that is printed first), nothing is run without --yes.
 """
-from __future__ import annotations
 
 import math
 import sys

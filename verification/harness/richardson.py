@@ -3,7 +3,6 @@
 Sources: Roache, J. Fluids Eng. 116 (1994) 405; Celik et al., J. Fluids Eng. 130 (2008) 078001; for the factor of safety where
 the order is not confirmed, Oberkampf & Roy, Verification and Validation in Scientific Computing (2010), section 8.7.
 """
-from __future__ import annotations
 
 import math
 from collections.abc import Sequence

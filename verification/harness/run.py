@@ -1,5 +1,4 @@
 """Runs one variant of a scene into a folder, unless that folder already holds the same run by the same solver."""
-from __future__ import annotations
 
 import hashlib
 import json

@@ -2,7 +2,6 @@
 
 The solver merges variants and settings by the same rule; where it prints what it makes of them, merged() can go.
 """
-from __future__ import annotations
 
 import tomllib
 from collections.abc import Sequence

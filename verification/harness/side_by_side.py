@@ -1,5 +1,4 @@
 """Does tasks side by side, those that take longest first, and tells how far it is; one that breaks does not stop the others."""
-from __future__ import annotations
 
 import signal
 import threading

@@ -1,5 +1,4 @@
 """The six experiments at smoke size in each mechanics, and the values of them that the regression keeps."""
-from __future__ import annotations
 
 import json
 import threading

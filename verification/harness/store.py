@@ -1,5 +1,4 @@
 """Records as JSON: dataclasses written whole or not at all, a record a line where asked; what is not finite is null."""
-from __future__ import annotations
 
 import dataclasses
 import json

@@ -1,5 +1,4 @@
 """Rows of words as aligned text."""
-from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence

@@ -10,7 +10,6 @@ result left too wide is noted and fails nothing. --out: for the page (default: r
 Exit status: 0 all pass, 1 a gate does not hold, is missing, belongs to nothing or lets wrong results pass, or there is nothing
 to judge, 2 wrong use, 3 a run failed.
 """
-from __future__ import annotations
 
 import sys
 

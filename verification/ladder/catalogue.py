@@ -1,5 +1,4 @@
 """The families of cases: every module of verification/ladder/cases/ with its CASES, checked for what the ladder relies on."""
-from __future__ import annotations
 
 import importlib
 from collections.abc import Iterable

@@ -1,5 +1,4 @@
 """Fields of the particles at a run's end beside a reference solution at the same material points, for cases of the ladder."""
-from __future__ import annotations
 
 import math
 import tempfile

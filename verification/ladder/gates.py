@@ -3,7 +3,6 @@
 A gate belongs to a case, a quantity and a level: the largest error, and the smallest order from the level before. It holds
 what was measured when it was accepted, so that it can be checked to be no wider than the rules below.
 """
-from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass

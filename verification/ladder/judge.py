@@ -1,5 +1,4 @@
 """Judges rows by their gates, and the gates by wrong results that they must refuse."""
-from __future__ import annotations
 
 from dataclasses import dataclass, replace
 

@@ -1,5 +1,4 @@
 """Puts what runs gave beside their references: a row for each case, quantity and level, as plain data."""
-from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace

@@ -1,5 +1,4 @@
 """Makes the runs of cases, several at a time, each in RUNS/FAMILY/CASE/LEVEL; what was run before is not run again."""
-from __future__ import annotations
 
 import threading
 from dataclasses import dataclass

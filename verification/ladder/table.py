@@ -1,5 +1,4 @@
 """Rows of the ladder as aligned text, and as ladder.json for the page."""
-from __future__ import annotations
 
 import math
 import platform

@@ -9,7 +9,6 @@ goes on where it was. --quick measures coarse sizes of a few methods once, into 
 measured, what is known and how long it will take.
 Exit status: 0 done (failures of methods are results), 2 wrong use or no idle machine.
 """
-from __future__ import annotations
 
 import sys
 from collections.abc import Sequence

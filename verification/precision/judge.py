@@ -6,7 +6,6 @@ An error counts only as far as it lasts. Three things make a small one worthless
 - it has another sign than at the size before, so that it fell faster than any order of the method allows: it counts with what
   third order would have left.
 """
-from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence

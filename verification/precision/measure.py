@@ -4,7 +4,6 @@ What is timed is the whole process, from its start to its end with everything it
 warm-up and does not count; REPEATS runs follow. Longer ones need no warm-up of their own: of those SOME runs are made, of runs
 above LONG_S one.
 """
-from __future__ import annotations
 
 import hashlib
 import json

@@ -2,7 +2,6 @@
 
 A problem says by a `Base` what of its scene depends on mechanics and size; the lists below say which settings it is solved with.
 """
-from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -3,7 +3,6 @@
 A problem and its methods only describe; measuring (measure.py), judging (judge.py) and drawing (reports/precision.py) are elsewhere.
 Scenes, samples and references are the ladder's (verification/ladder/case.py).
 """
-from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace

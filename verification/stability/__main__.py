@@ -6,7 +6,6 @@ Runs go to runs/atlas/FAMILY/POINT; what is there for the same scene, settings a
 written: what differs from the records (verification/stability/records) is told. --smoke judges by the recorded edges.
 Exit status: 0 all as declared and as recorded, 1 some are not, 2 wrong use.
 """
-from __future__ import annotations
 
 import argparse
 import sys

@@ -1,5 +1,4 @@
 """The value at which something ceases to hold."""
-from __future__ import annotations
 
 from collections.abc import Callable
 

@@ -1,5 +1,4 @@
 """All families of the atlas: every module of verification/stability/families/ with its FAMILIES, checked for what the judge relies on."""
-from __future__ import annotations
 
 from verification.harness.choose import folder_name, listed, twice
 from verification.stability import families as package

@@ -1,5 +1,4 @@
 """What the families with a pressurised crack share: the scene, where the crack lies, the closed forms it is held against."""
-from __future__ import annotations
 
 import math
 

@@ -1,5 +1,4 @@
 """Judges what was found of a family: no garbage, the edge where theory says, and beyond it what the family declares."""
-from __future__ import annotations
 
 import math
 from collections.abc import Iterable

@@ -1,5 +1,4 @@
 """Runs the points of a family through the command line and says how each ended; what was run before is not run again."""
-from __future__ import annotations
 
 import json
 import math

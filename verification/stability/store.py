@@ -1,5 +1,4 @@
 """What was found of a family as data: verification/stability/records/FAMILY.json, written by ci/atlas --accept, read by page and tests."""
-from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path

@@ -1,5 +1,4 @@
 """Runs that tests share: made once for the same scene and solver, also when several tests ask at the same time."""
-from __future__ import annotations
 
 import hashlib
 from pathlib import Path

@@ -1,5 +1,4 @@
 """Puts the project's root on the path of the tests and keeps them to themselves."""
-from __future__ import annotations
 
 import sys
 from pathlib import Path

@@ -1,5 +1,4 @@
 """Writes run folders as the contract describes them, so that the harness can be tested without the solver."""
-from __future__ import annotations
 
 import json
 from collections.abc import Sequence

@@ -5,7 +5,6 @@ history and in events; the fold left out; a lost arrest taken for no effect; the
 lowest layer of a mirrored block as thick as it was, its interfaces not mirrored; shares that are NaN let pass; what costs nothing taken
 for what wants a reason; ingredients without need, or missing ones, that want none.
 """
-from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path

@@ -1,5 +1,4 @@
 """What K, paths, energies and pressures may be off by, whatever was measured: the gates of the ladder, which its runs are judged by, keep it."""
-from __future__ import annotations
 
 import re
 

@@ -1,5 +1,4 @@
 """Benchmarks: what is read, stored and judged; a figure that is zero, doubled or of another machine is caught."""
-from __future__ import annotations
 
 import math
 import os

@@ -3,7 +3,6 @@
 Mutations that were run and fail here: the fracture left where it was in a wider block, effects of the wrong sign, the root of
 squares taken of signed sums, refused runs counted as no effect, factors shown beside the others summed as well.
 """
-from __future__ import annotations
 
 import json
 import math

@@ -1,5 +1,4 @@
 """Which runs there are: both mechanics, but for variants that only one can run; choices name what exists."""
-from __future__ import annotations
 
 import json
 import os

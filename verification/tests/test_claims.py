@@ -1,5 +1,4 @@
 """Verdicts: each claim of the experiments can be reproduced and can fail; what is missing is not judged."""
-from __future__ import annotations
 
 import json
 import shutil

@@ -1,5 +1,4 @@
 """Flow into a fracture that starts closed: its start does not go by the cells, and what the floor of the opening decides is marked."""
-from __future__ import annotations
 
 import json
 import subprocess

@@ -1,5 +1,4 @@
 """Distances between paths, and boundary elements' paths as the command line gives them."""
-from __future__ import annotations
 
 import numpy as np
 import pytest

@@ -1,5 +1,4 @@
 """The energy ledger of whole runs closes, summed here from its parts."""
-from __future__ import annotations
 
 import numpy as np
 import pytest

@@ -1,5 +1,4 @@
 """Experiment 1 with a perfect interface: where growth starts, and how the fracture climbs."""
-from __future__ import annotations
 
 import pytest
 

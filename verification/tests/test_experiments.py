@@ -1,5 +1,4 @@
 """Regression: the six experiments at smoke size against experiments/expected/MECHANICS/*.json, which ci/accept rewrites."""
-from __future__ import annotations
 
 import copy
 import math

@@ -1,5 +1,4 @@
 """A run whose disc, folder or process fails: it says so, what it had written is whole, and `resume` ends as if nothing had been."""
-from __future__ import annotations
 
 import csv
 import json

@@ -1,5 +1,4 @@
 """What is kept of the kills: as many as are claimed, of every scene, and not one run that ended otherwise."""
-from __future__ import annotations
 
 import json
 

@@ -1,5 +1,4 @@
 """Fields of particles for the ladder: where points start, and references at many points through files."""
-from __future__ import annotations
 
 import numpy as np
 import pytest

@@ -1,5 +1,4 @@
 """The README's table of accuracy says what the ladder's gates allow, and is made as its module says."""
-from __future__ import annotations
 
 import json
 import re

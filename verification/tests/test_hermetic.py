@@ -1,5 +1,4 @@
 """Tests keep to themselves: what the user has in the checkout and in the environment decides on none of them."""
-from __future__ import annotations
 
 import importlib
 import os

@@ -1,5 +1,4 @@
 """Scenes that must be refused: with status 2, all that their head expects on stderr, and nothing written."""
-from __future__ import annotations
 
 import re
 import subprocess

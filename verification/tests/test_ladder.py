@@ -1,5 +1,4 @@
 """The accuracy ladder at smoke size: every case against its reference, judged by the gates of the full ladder."""
-from __future__ import annotations
 
 import pytest
 

@@ -1,5 +1,4 @@
 """The ladder's own rules on made-up numbers: samples, orders, gates, verdicts, runs that fail."""
-from __future__ import annotations
 
 import json
 import math

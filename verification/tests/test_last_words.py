@@ -1,5 +1,4 @@
 """What a run says when it ends, and what `resume` does where the scene in the run's folder was changed."""
-from __future__ import annotations
 
 import json
 import shutil

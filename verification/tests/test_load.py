@@ -1,5 +1,4 @@
 """Run folders are read as the contract has them, and what is missing is named."""
-from __future__ import annotations
 
 import json
 import math

@@ -1,5 +1,4 @@
 """States that are no solution of their equations end a run with exit status 3, the reason, and the last good state."""
-from __future__ import annotations
 
 import csv
 import json

@@ -1,5 +1,4 @@
 """Observables of made-up runs whose answers are known, and of mutations of them that must be told apart."""
-from __future__ import annotations
 
 import json
 import math

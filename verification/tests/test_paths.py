@@ -1,5 +1,4 @@
 """With a perfect interface the fractures of Experiments 5 and 6 turn the way a crack beside a bonded interface does."""
-from __future__ import annotations
 
 import math
 import tomllib

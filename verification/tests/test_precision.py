@@ -1,5 +1,4 @@
 """The work-precision chart: what is judged of its measurements, that failures stay, what is measured again, and one problem end to end."""
-from __future__ import annotations
 
 import json
 from dataclasses import replace

@@ -1,5 +1,4 @@
 """The mechanics without inertia: mechanisms, damped motion settling on it, runs that go on. Its accuracy is the ladder's."""
-from __future__ import annotations
 
 import signal
 import subprocess

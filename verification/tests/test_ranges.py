@@ -1,5 +1,4 @@
 """Runs that leave the range of their equations say so, those within it do not, on the README's first scene."""
-from __future__ import annotations
 
 import json
 import math

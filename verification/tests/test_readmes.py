@@ -1,5 +1,4 @@
 """What the README files name is there."""
-from __future__ import annotations
 
 import re
 from pathlib import Path

@@ -1,5 +1,4 @@
 """What all lists of cases share: records as JSON, choosing by name, tables, options."""
-from __future__ import annotations
 
 import math
 from collections.abc import Mapping

@@ -3,7 +3,6 @@
 Mutations that were run and fail here: the increment left to follow the cells, pauses counted from the first row, a bound taken
 for a value, the cost without the particles of finer cells, the path compared over all its length.
 """
-from __future__ import annotations
 
 import json
 import math

@@ -1,5 +1,4 @@
 """The result of a run depends neither on the number of threads nor on when it is made."""
-from __future__ import annotations
 
 from pathlib import Path
 

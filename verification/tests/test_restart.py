@@ -1,5 +1,4 @@
 """Restart behind an interface by the energy of a finite increment: that of the reference, and not of the cells."""
-from __future__ import annotations
 
 import pytest
 

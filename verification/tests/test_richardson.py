@@ -3,7 +3,6 @@
 Mutations that were run and fail here: the order's logarithm of the inverse ratio, the denominator r^p - 1 without the 1, the
 safety factor left out, oscillating differences taken by their size.
 """
-from __future__ import annotations
 
 import math
 

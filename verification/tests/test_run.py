@@ -1,5 +1,4 @@
 """Runs are made once for the same scene and solver, and a failing one is told, not raised."""
-from __future__ import annotations
 
 import json
 import threading

@@ -3,7 +3,6 @@
 Mutations that were run and fail here: the order of the list kept, the shortest first, results in the order in which they end, the first
 exception ends all, threads not counted, tasks not told of an interrupt, those that wait begun after it.
 """
-from __future__ import annotations
 
 import os
 import signal

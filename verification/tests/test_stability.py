@@ -1,5 +1,4 @@
 """The stability atlas: what is recorded of every family is as it is to be, and its smoke points still end as recorded."""
-from __future__ import annotations
 
 from dataclasses import replace
 

@@ -1,5 +1,4 @@
 """The swing of a chain after its last bond has failed, and the checks of the families that are held against it."""
-from __future__ import annotations
 
 import math
 from pathlib import Path

@@ -1,5 +1,4 @@
 """The models that the families of long flow steps are held against, on problems whose answers are known, and the families' checks."""
-from __future__ import annotations
 
 import math
 from pathlib import Path

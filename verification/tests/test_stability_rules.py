@@ -1,5 +1,4 @@
 """The atlas' judge on made-up families: what it must refuse."""
-from __future__ import annotations
 
 import math
 from dataclasses import replace

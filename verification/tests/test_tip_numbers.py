@@ -1,5 +1,4 @@
 """What is told of a tip: numbers where there are numbers, null with the reason where there are none."""
-from __future__ import annotations
 
 import math
 

@@ -1,5 +1,4 @@
 """The version is the same wherever it stands."""
-from __future__ import annotations
 
 import re
 

@@ -2,7 +2,6 @@
 
 The references are strata-reference block_crack for the block as it is: the crack starts on the symmetric bottom, or is whole.
 """
-from __future__ import annotations
 
 import math
 from collections.abc import Callable

@@ -4,7 +4,6 @@ Where the tip stands on faces that are apart the rock behind is cut through; bey
 values are asked of strata-reference (cut_blocks, crossing_pressure, interface_ahead, sliding_blocks); numbers in the cases' words are
 what it answers for the scene as it stands.
 """
-from __future__ import annotations
 
 from collections.abc import Callable
 from operator import attrgetter

@@ -1,5 +1,4 @@
 """Flow by the study's law along a fracture that stays as it is: the pressure along it against series solutions."""
-from __future__ import annotations
 
 from functools import lru_cache
 

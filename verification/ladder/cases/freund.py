@@ -1,5 +1,4 @@
 """A suddenly pressurised crack: K_I(t) before any wave comes back, against a semi-infinite crack (Freund 1990, chapter 2)."""
-from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache

@@ -4,7 +4,6 @@ of one with friction, against integral equations in the infinite plane.
 Levels are named by the cells between the crack and the interface. Nearer than 4 cells a run flags K; nearer than 2.5 cells to faces that
 are apart, and than 2 to another rock, there is none.
 """
-from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any

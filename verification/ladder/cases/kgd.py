@@ -1,5 +1,4 @@
 """A fracture fed at a constant rate (KGD): length, mouth opening, inlet pressure and volume at and between the two vertices."""
-from __future__ import annotations
 
 from collections.abc import Callable
 from operator import attrgetter

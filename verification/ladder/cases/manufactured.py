@@ -7,7 +7,6 @@ What is not of order 2, and why: stress at the points of linear functions is of 
 uGIMP's, which is linear while points stay in their places. PIC is of order 1: each step smooths velocities by the order of the
 cells' square, and there are as many steps as cells.
 """
-from __future__ import annotations
 
 import math
 

@@ -1,5 +1,4 @@
 """Rigid motion, uniform stress, springs, own weight, layers that share a load: what a discretisation has to have right."""
-from __future__ import annotations
 
 from collections.abc import Callable
 

@@ -3,7 +3,6 @@
 Experiment 6's path is unstable and depends on the increment: it is held against the exact path of the same increment, and
 increments have three cells because the solver takes the whole turn of maximum hoop stress only then.
 """
-from __future__ import annotations
 
 from collections.abc import Callable
 

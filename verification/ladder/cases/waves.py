@@ -1,5 +1,4 @@
 """Waves along a column of rock from a pulse of velocity: plane, through a border of rocks or a soft interface, in a thin bar."""
-from __future__ import annotations
 
 from typing import Any
 

@@ -1,5 +1,4 @@
 """All problems of the chart, in the order of its panels."""
-from __future__ import annotations
 
 from verification.precision.problem import Problem, checked
 from verification.precision.problems import cracks, growth

@@ -1,5 +1,4 @@
 """K_I of a pressurised crack in the study's block, near a bonded and near a soft interface, against analytic references."""
-from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace

@@ -1,5 +1,4 @@
 """What becomes of growing fractures: Experiment 1 behind a soft interface, the path of Experiment 6, fractures fed at a rate."""
-from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace

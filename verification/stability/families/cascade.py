@@ -1,5 +1,4 @@
 """A weak interface fails at once and its load swings onto another one: what fails with inertia and would not without."""
-from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import lru_cache

@@ -1,5 +1,4 @@
 """A fracture that closes under falling pressure: its permeability goes to nothing, and must not take the pressure with it."""
-from __future__ import annotations
 
 import numpy as np
 

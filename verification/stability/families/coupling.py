@@ -1,5 +1,4 @@
 """Flow and rock solved one after the other, or together; J with the in-situ stress in it: what becomes of both, by models of their own."""
-from __future__ import annotations
 
 import numpy as np
 

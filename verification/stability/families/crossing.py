@@ -1,5 +1,4 @@
 """Points that change cells under large strain: hat functions, averaged ones and quadratic B-splines."""
-from __future__ import annotations
 
 import math
 

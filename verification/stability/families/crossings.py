@@ -1,5 +1,4 @@
 """A fracture that crosses an interface at an angle, two interfaces closer than a cell, a fracture that meets a corner or an edge."""
-from __future__ import annotations
 
 import math
 

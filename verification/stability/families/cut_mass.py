@@ -1,5 +1,4 @@
 """Small cut masses: a crack anywhere in a cell leaves copies of nodes with next to no mass on one of its sides."""
-from __future__ import annotations
 
 import math
 

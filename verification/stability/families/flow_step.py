@@ -1,5 +1,4 @@
 """The time rules of the study's flow beyond their limits: explicit steps, trapezoid ringing, backward Euler; and closing channels."""
-from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any

@@ -1,5 +1,4 @@
 """A fracture that passes a column of particles at a small angle: what is left of a node's rock on one side is a particle or two."""
-from __future__ import annotations
 
 from verification.harness.given import E_prime, path_key
 from verification.harness.load import Run

@@ -1,5 +1,4 @@
 """Growth in increments from a quarter of a cell to four cells: paths that wander."""
-from __future__ import annotations
 
 import numpy as np
 

@@ -1,5 +1,4 @@
 """The study's flow with a permeability foreseen, and flow and rock in one system: steps that grow long."""
-from __future__ import annotations
 
 from functools import lru_cache
 

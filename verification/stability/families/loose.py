@@ -1,5 +1,4 @@
 """Parts that nothing holds along a cut without friction: with inertia they fly as Newton says, without there is no equilibrium."""
-from __future__ import annotations
 
 import numpy as np
 

@@ -1,5 +1,4 @@
 """What a hundred thousand steps make of noise and of a wave: null space, damping of the transfers, drift of the energy."""
-from __future__ import annotations
 
 import math
 

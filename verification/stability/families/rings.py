@@ -1,5 +1,4 @@
 """Rings for J that would reach over an interface: bonded to another rock, sliding, soft."""
-from __future__ import annotations
 
 from verification.harness.given import E_prime, given
 from verification.harness.load import Run

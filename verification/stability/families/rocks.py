@@ -1,5 +1,4 @@
 """Rock near incompressibility, and rocks whose stiffnesses are far apart."""
-from __future__ import annotations
 
 from pathlib import Path
 

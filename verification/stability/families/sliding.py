@@ -1,5 +1,4 @@
 """Stick-slip and chatter: two blocks that are pressed together and pushed past each other."""
-from __future__ import annotations
 
 from collections.abc import Mapping
 

@@ -1,5 +1,4 @@
 """Interface springs from soft to stiff, explicit: a pulse meets them in a column of rock, against the exact wave."""
-from __future__ import annotations
 
 from verification.harness.load import Run
 from verification.ladder.cases.waves import SCENE, VELOCITY

@@ -1,5 +1,4 @@
 """The explicit time step against the largest one that the points' own mass and stiffness allow, by shape, transfer and points a cell."""
-from __future__ import annotations
 
 import math
 from functools import partial

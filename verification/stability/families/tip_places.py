@@ -1,5 +1,4 @@
 """Where a tip stands: within its cell, near an interface, near an edge of the block."""
-from __future__ import annotations
 
 from typing import Any
 

@@ -1,5 +1,4 @@
 """A tip from two cells below to four cells above an interface whose faces are apart: energy, first growth, finite increments."""
-from __future__ import annotations
 
 from collections.abc import Callable
 

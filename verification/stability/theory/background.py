@@ -4,7 +4,6 @@ Linear hat functions, 2 x 2 points a cell, a crack along x = middle that splits 
 it. From total stress, total strain and the whole pressure J is a small difference of large terms, of which a ring's points sum each to some per cent
 only; from changes of stress and the net pressure these terms are not there.
 """
-from __future__ import annotations
 
 from functools import lru_cache
 

@@ -5,7 +5,6 @@ at the end), eigenvalues -lambda. A step theta of the implicit part multiplies a
     g = (1 - (1 - theta) z)/(1 + theta z), z = lambda dt:
 stable while |g| <= 1, free of sign changes while g >= 0 (Hairer & Wanner 1996, IV.2).
 """
-from __future__ import annotations
 
 import numpy as np
 

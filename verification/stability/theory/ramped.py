@@ -5,7 +5,6 @@ paper     dP/dt = (M/mu) d/ds(k dP/ds), k = w^2/12 of the step's start (lagged),
 reynolds  (w/M) dp/dt + dw/dt = d/ds(w^3/(12 mu) dp/ds), backward Euler, w of the step's end (Picard)
 Steps are given: short ones for the solution, long ones for what becomes of it where permeability lags.
 """
-from __future__ import annotations
 
 from collections.abc import Sequence
 

@@ -4,7 +4,6 @@ With the rock's answer w = C p, C the compliance of a pressurised crack in the i
 takes w from the last pressure and finds p from (w/M) (p - p_old)/dt + (w(p_old) - w(p_older))/dt = d/ds(w^3/(12 mu) dp/ds). Its linear map of
 (p_old, p_older) errors to p has an eigenvalue whose size is the factor by which an error grows in a step.
 """
-from __future__ import annotations
 
 import numpy as np
 

@@ -10,7 +10,6 @@ velocity V, with S = M^-1 N^T m N what a transfer to the points and back leaves 
 and dt is the longest for which no eigenvalue of that map is larger than 1. For a mode that M^-1 K and S share these are
 (omega dt)^2 <= 4/(2 - S), 2 (1 + S) and (2 + 4 S - 2 S^2)/(1 + S - S^2).
 """
-from __future__ import annotations
 
 import math
 from collections.abc import Callable

@@ -12,7 +12,6 @@ With damping a = f/m - c v each mode decays as
     e^(-c t/2) (cos(w' t) + c/(2 w') sin(w' t)), w'^2 = w^2 - c^2/4
 (Meirovitch 2001, Fundamentals of Vibrations, 2.2 and 7.4).
 """
-from __future__ import annotations
 
 from dataclasses import dataclass
 
