@@ -66,7 +66,7 @@ class Ingredient:
 def ingredients_of(content: dict[str, Any]) -> list[Ingredient]:
     """All ingredients of an explicit scene, its keys with a variant's in place."""
     numerics, fracture = content["numerics"], content["fracture"]
-    damped, flows = float(numerics.get("damping_1_s", 0.0)) > 0.0, content["fluid"].get("law", "paper") != "uniform"
+    damped, flows = float(numerics["damping_1_s"]) > 0.0, content["fluid"]["law"] != "uniform"
     straight, endless = fracture.get("direction", "straight") == "straight", float(content["domain"].get("beyond_m", 0.0)) > 0.0
     return [
         _part("inertia", "inertia", "", "quasi-static", "numerics.mechanics=quasistatic"),
@@ -165,7 +165,7 @@ def mirrored(strata: dict[str, Any], height_m: float) -> dict[str, Any]:
 def _resolution(content: dict[str, Any]) -> list[Ingredient]:
     """What is resolved, coarser."""
     numerics = content["numerics"]
-    cell, courant = float(numerics["cell_m"]), float(numerics.get("courant", 0.5))
+    cell, courant = float(numerics["cell_m"]), float(numerics["courant"])
     ends = any(key in numerics for key in ("fine_left_m", "fine_right_m", "fine_bottom_m", "fine_top_m"))
     meets = content["fracture"].get("direction", "straight") != "straight" and not ends
     far = ("far_cells", "fine cells far away", "the path may turn into coarse cells" if meets else "", f"{GRADED * cell:g} m there",

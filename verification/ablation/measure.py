@@ -42,7 +42,10 @@ def table_of(
 
     Raises NoBase where the scene's own run fails, ValueError for a name that is no ingredient.
     """
-    content = content_of(scene, variant, settings)
+    try:
+        content = content_of(scene, variant, settings)
+    except ValueError as refused:
+        raise NoBase(f"{scene.stem} {variant}: {refused}") from refused
     wanted: dict[str, Callable[[Ingredient], bool]] = {
         EVERYTHING: lambda _: True, OWN: lambda one: one.group != LEFT_OUT, INTERFACES: lambda one: one.id.startswith("interface"),
     }  # fmt: skip

@@ -104,7 +104,7 @@ def jobs_of(
     scene: Path, mechanics: str, variant: str, factors: Sequence[Factor], settings: Sequence[str], root: Path, refined: Path
 ) -> dict[Key, Job]:
     """The runs of a budget: base and half the cells are the refinement study's, others the base's settings with their own in place."""
-    cell = float(content_of(scene, variant, settings)["numerics"]["cell_m"])
+    cell = float(content_of(scene, variant, (f"numerics.mechanics={mechanics}", *settings))["numerics"]["cell_m"])
     others = [setting for setting in settings if setting.partition("=")[0] != "numerics.cell_m"]
     base, half = (job_of(scene, mechanics, variant, size, others, refined) for size in (cell, cell / 2.0))
     jobs = {("", ""): base}
@@ -144,7 +144,7 @@ def budget_of(
     outcome, base = made["", ""]
     if base is None or not outcome.ok:
         return Budget(mechanics, variant, outcome.word if not outcome.ok else "failed", outcome.reason, {}, (), (), {})
-    content = content_of(scene, variant, settings)
+    content = content_of(scene, variant, (f"numerics.mechanics={mechanics}", *settings))
     quantities, with_path = followed(content, base), turns(content)
     names = [(one.name, one.label, one.unit) for one in quantities] + [("path_m", "path, largest distance", "m")] * with_path
 
@@ -211,7 +211,7 @@ def main(arguments: list[str] | None = None) -> int:
         for scene in [scene_of(name) for name in options.experiments] or scenes_of(EXPERIMENTS):
             for variant in chosen(scene, options.variants or ",".join(VARIANTS.get(scene.stem, ()))):
                 if options.mechanics in mechanics_of(scene, variant):
-                    every = factors_of(content_of(scene, variant, settings), options.mechanics)
+                    every = factors_of(content_of(scene, variant, (f"numerics.mechanics={options.mechanics}", *settings)), options.mechanics)
                     factors = [one for one in every if not wanted or one.id in wanted]
                     jobs = jobs_of(scene, options.mechanics, variant, factors, settings, root, options.refined.resolve())
                     cases.setdefault(scene, []).append((variant, factors, jobs))

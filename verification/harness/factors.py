@@ -9,9 +9,6 @@ from verification.harness.quantities import turns
 # Radii of the widest J ring, in cells, beside the default of 4.
 RINGS = (3.0, 5.0)
 
-# numerics.flow_change and flow_error by default: what a step of the flow may change of an event's margin, and its error.
-FLOW_CHANGE, FLOW_ERROR = 0.3, 1e-3
-
 # Beyond the fine cells a straight fracture's larger block is graded up to so many cells, which leaves results as they are.
 FAR_CELLS = 4.0
 
@@ -53,9 +50,9 @@ def is_graded(content: dict[str, Any]) -> bool:
 
 def factors_of(content: dict[str, Any], mechanics: str) -> list[Factor]:
     """All factors of a scene (its keys as used) in a mechanics; each alternative differs from it in that factor alone."""
-    numerics, inlet = content["numerics"], content.get("fluid", {}).get("inlet", {})
-    cell, points = float(numerics["cell_m"]), int(numerics.get("particles_per_cell", 4))
-    increment, rate = float(content["fracture"].get("increment_m", 1.0)), float(inlet.get("rate_Pa_s", 0.0))
+    numerics, inlet = content["numerics"], content["fluid"]["inlet"]
+    cell, points = float(numerics["cell_m"]), int(numerics["particles_per_cell"])
+    increment, rate = float(content["fracture"]["increment_m"]), float(inlet.get("rate_Pa_s", 0.0))
     half_cell, half_step = f"numerics.cell_m={cell / 2.0!r}", f"fracture.increment_m={increment / 2.0!r}"
     both = _one("half", f"cells {cell / 2.0:g} m, increment {increment / 2.0:g} m", half_cell, half_step)
     return [
@@ -92,12 +89,12 @@ def _step(content: dict[str, Any], mechanics: str) -> Factor:
     """Half the time step, or half of what a step of the flow may change."""
     numerics = content["numerics"]
     if mechanics == "explicit":
-        half = float(numerics.get("courant", 0.5)) / 2.0
+        half = float(numerics["courant"]) / 2.0
         return _factor("step", "time step", "numerical", "", _one("half", f"Courant number {half:g}", f"numerics.courant={half!r}"))
-    if content.get("fluid", {}).get("law", "paper") == "uniform":
+    if content["fluid"]["law"] == "uniform":
         return _factor("step", "flow step", "numerical", "no flow")
-    change = float(numerics.get("flow_change", FLOW_CHANGE)) / 2.0
-    error = float(numerics.get("flow_error", FLOW_ERROR)) / 8.0  # goes by the third power of the step
+    change = float(numerics["flow_change"]) / 2.0
+    error = float(numerics["flow_error"]) / 8.0  # goes by the third power of the step
     words = f"flow change {change:g}, flow error {error:g}"
     return _factor("step", "flow step", "numerical", "", _one("half", words, f"numerics.flow_change={change!r}", f"numerics.flow_error={error!r}"))
 
@@ -113,14 +110,16 @@ def _larger(content: dict[str, Any], mechanics: str, factor: float) -> Alternati
     path = [[float(x) + shift, float(y)] for x, y in content["fracture"]["path_m"]]
     settings = [f"domain.width_m={width!r}", f"domain.height_m={height!r}", f"fracture.path_m={toml(path)}"]
     layers = [dict(layer) for layer in strata["layers"]]
-    along_x = strata.get("along", "y") == "x"
+    along_x = strata["along"] == "x"
     if along_x and "thickness_m" in layers[0]:
         layers[0]["thickness_m"] = float(layers[0]["thickness_m"]) + shift
     if "thickness_m" in layers[-1]:
         layers[-1].pop("thickness_m")  # takes what remains
     if layers != list(strata["layers"]):
         settings.append(f"strata.layers={toml(layers)}")
-    cell = float(content["numerics"]["cell_m"])
+    numerics = content["numerics"]
+    cell = float(numerics["cell_m"])
+    settings += [f"numerics.{key}={float(numerics[key]) + shift!r}" for key in ("fine_left_m", "fine_right_m") if key in numerics]
     if turns(content):
         settings.append(f"numerics.far_cell_m={cell!r}")
     elif mechanics == "quasistatic":

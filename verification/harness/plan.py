@@ -23,15 +23,20 @@ Made = tuple[Outcome, Run | None]  # how a run ended, and its data where it has 
 def about_s(content: dict[str, Any]) -> float:
     """How long a scene (its keys as they will be used) takes on one thread, s, by the points of a uniform grid and their steps."""
     numerics, domain = content["numerics"], content["domain"]
-    cell, mechanics = float(numerics["cell_m"]), str(numerics.get("mechanics", "explicit"))
-    points = float(domain["width_m"]) * float(domain["height_m"]) / cell**2 * float(numerics.get("particles_per_cell", 4))
+    cell, mechanics = float(numerics["cell_m"]), str(numerics["mechanics"])
+    points = float(domain["width_m"]) * float(domain["height_m"]) / cell**2 * float(numerics["particles_per_cell"])
     return SECONDS_A_POINT[mechanics] * points / (cell if mechanics == "explicit" else 1.0)
 
 
 def expected_s(job: Job) -> float:
-    """How long a job will take on one thread, s: as long as the last time, or by what its scene says."""
+    """How long a job will take on one thread, s: as long as the last time, or by what its scene says; nothing where that is refused."""
     before = load_outcome(job.out)
-    return before.wall_s if before is not None and before.ok else about_s(content_of(job.scene, job.variant, job.settings))
+    if before is not None and before.ok:
+        return before.wall_s
+    try:
+        return about_s(content_of(job.scene, job.variant, job.settings))
+    except ValueError:
+        return 0.0
 
 
 def name_of(job: Job) -> str:

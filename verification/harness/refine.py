@@ -64,18 +64,13 @@ class Study:
     notes: tuple[str, ...] = ()
 
 
-def increment_of(content: dict[str, Any]) -> float:
-    """Growth increment of a scene, m; the solver's default is 1 m."""
-    return float(content["fracture"].get("increment_m", 1.0))
-
-
 def job_of(scene: Path, mechanics: str, variant: str, cell_m: float, settings: Sequence[str] = (), root: Path = REFINE_RUNS) -> Job:
     """The run at a cell size (m), the increment fixed to what scene, variant and settings say.
 
     Its grid is uniform unless settings say otherwise: with its cells the fine part of a graded one would shrink, too.
     """
-    content = content_of(scene, variant, settings)
-    own = [f"numerics.mechanics={mechanics}", f"numerics.cell_m={cell_m!r}", f"fracture.increment_m={increment_of(content)!r}", *settings]
+    content = content_of(scene, variant, (f"numerics.mechanics={mechanics}", *settings))
+    own = [f"numerics.mechanics={mechanics}", f"numerics.cell_m={cell_m!r}", f"fracture.increment_m={content['fracture']['increment_m']!r}", *settings]
     if "far_cell_m" in content["numerics"] and not any(setting.startswith("numerics.far_cell_m=") for setting in settings):
         own.append(f"numerics.far_cell_m={cell_m!r}")
     return Job(scene, variant, root / scene.stem / mechanics / variant / f"{cell_m:g}m", tuple(own))
@@ -135,14 +130,14 @@ def study_of(
     scene: Path, mechanics: str, variant: str, levels: Sequence[Level], settings: Sequence[str] = (), heights_m: Sequence[float] = HEIGHTS_M
 ) -> Study:
     """What the runs of one variant in one mechanics say."""
-    content = content_of(scene, variant, settings)
+    content = content_of(scene, variant, (f"numerics.mechanics={mechanics}", *settings))
     rows = [row for row in (row_of(quantity, levels) for quantity in quantities_of(content, heights_m)) if not arrests_nowhere(row)]
     nowhere = [row.label for row in rows if all(value is None for value in row.values)]
     rows = [row for row in rows if row.label not in nowhere] + (path_rows(levels) if turns(content) else [])
     notes = unlike(content, [level.cell_m for level in levels])
     if nowhere:
         notes += (f"{variant or 'base'}: at no size is there a {', '.join(nowhere)}",)
-    return Study(mechanics, variant, increment_of(content), tuple(levels), tuple(rows), notes)
+    return Study(mechanics, variant, content["fracture"]["increment_m"], tuple(levels), tuple(rows), notes)
 
 
 def unlike(content: dict[str, Any], cells_m: Sequence[float]) -> tuple[str, ...]:
@@ -245,9 +240,9 @@ def main(arguments: list[str] | None = None) -> int:
         cases = [(one, variant) for one in mechanics for variant in variants if one in mechanics_of(scene, variant)]
         if not cases:
             raise ValueError(f"none of {', '.join(variants)} runs in {options.mechanics}")
+        jobs = [job_of(scene, *case, cell, options.settings, options.out.resolve()) for case in cases for cell in cells]
     except ValueError as error:
         parser.error(str(error))
-    jobs = [job_of(scene, *case, cell, options.settings, options.out.resolve()) for case in cases for cell in cells]
     if not affordable(jobs, options):
         return 2
     made = make_all(jobs, options.jobs)

@@ -1,15 +1,13 @@
-"""What scene files say before anything runs: variants, their keys with settings in place, and the mechanics each can run in.
+"""What scene files say before anything runs: variants, their keys with settings in place, and the mechanics each can run in."""
 
-The solver merges variants and settings by the same rule; where it prints what it makes of them, merged() can go.
-"""
-
+import subprocess
 import tomllib
 from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from verification.harness.paths import EXPERIMENTS
+from verification.harness.paths import EXPERIMENTS, solver
 
 # The two models of the rock, in the order in which they are run and shown.
 MECHANICS: tuple[str, ...] = ("explicit", "quasistatic")
@@ -65,39 +63,30 @@ def chosen(scene: Path, names: str) -> list[str]:
     return wanted
 
 
-def merged(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
-    """A table with the keys of another in place of its own, table by table."""
-    both = dict(base)
-    for key, value in over.items():
-        inner = base.get(key)
-        both[key] = merged(inner, value) if isinstance(value, dict) and isinstance(inner, dict) else value
-    return both
-
-
-def nested(setting: str) -> dict[str, Any]:
-    """A setting key.path=value of the command line as nested tables; a value that is no TOML is a word."""
-    key, _, text = setting.partition("=")
-    try:
-        value = tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
-        value = text
-    for part in reversed(key.split(".")):
-        value = {part: value}
-    return value
+@lru_cache(maxsize=None)
+def _resolved(program: Path, scene: Path, variant: str, settings: tuple[str, ...], _: tuple[int, ...]) -> dict[str, Any]:
+    """What the solver makes of a scene; the last argument is the times of change of both files."""
+    words = [str(program), "resolve", str(scene), *(["--variant", variant] if variant else []), *(word for one in settings for word in ("--set", one))]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise ValueError(done.stderr.strip() or f"{program} cannot resolve {scene}")
+    return tomllib.loads(done.stdout)
 
 
 def content_of(scene: Path, variant: str, settings: Sequence[str] = ()) -> dict[str, Any]:
-    """The keys of a scene with those of a variant and of settings in place, without variants and claims."""
-    content = {key: value for key, value in read_scene(scene).items() if key not in ("variants", "claim")}
-    for over in (read_scene(scene).get("variants", {}).get(variant, {}), *map(nested, settings)):
-        content = merged(content, over)
-    return content
+    """The keys of a scene as a run with this variant and settings has them, defaults included. Do not change it: it is shared.
+
+    Raises ValueError for what the solver refuses.
+    """
+    times = tuple(path.stat().st_mtime_ns for path in (solver(), scene))
+    return _resolved(solver(), scene, variant, tuple(settings), times)
 
 
 def mechanics_of(scene: Path, variant: str) -> tuple[str, ...]:
     """The mechanics that a variant can run in: the one it names itself or that its keys need, else both."""
-    named = read_scene(scene).get("variants", {}).get(variant, {}).get("numerics", {}).get("mechanics")
-    content = content_of(scene, variant)
-    if any(content.get(table, {}).get(key) == value for table, key, value in QUASISTATIC_ONLY):
+    base = read_scene(scene)
+    own = base.get("variants", {}).get(variant, {})
+    named = own.get("numerics", {}).get("mechanics")
+    if any(own.get(table, {}).get(key, base.get(table, {}).get(key)) == value for table, key, value in QUASISTATIC_ONLY):
         named = "quasistatic"
     return (str(named),) if named else MECHANICS

@@ -54,9 +54,7 @@ def test_cells_far_away_are_what_a_fracture_goes_without_that_cannot_meet_them(s
     """A graded scene is tried with the uniform grid, a uniform one with a graded grid, but for a path that would meet it: it turns, and nothing says how far."""
     own = content_of(scene, "perfect", ())
     uniform = content_of(scene, "perfect", ("numerics.far_cell_m=1.0",))
-    endless = content_of(scene, "perfect", ("numerics.far_cell_m=1.0",))
-    for key in [key for key in endless["numerics"] if key.startswith("fine_")]:
-        del endless["numerics"][key]
+    endless = {**uniform, "numerics": {key: value for key, value in uniform["numerics"].items() if not key.startswith("fine_")}}
     found, other, turned = (next(one for one in ingredients_of(content) if one.id == "far_cells") for content in (own, uniform, endless))
     assert (found.group, found.settings) == (LEFT_OUT, ("numerics.far_cell_m=1.0",))
     assert (other.group, other.settings) == (RESOLVED, ("numerics.far_cell_m=4.0",))

@@ -53,10 +53,13 @@ def test_what_a_variant_can_run_in(scene: Path, variant: str, expected: tuple[st
     assert mechanics_of(scene, variant) == expected
 
 
-def test_a_variant_replaces_keys_and_keeps_the_rest(scene: Path) -> None:
-    assert content_of(scene, "flow")["fluid"] == {"law": "reynolds"}
-    assert content_of(scene, "graded")["numerics"] == {"mechanics": "explicit", "cell_m": 1.0, "far_cell_m": 5.0}
-    assert "variants" not in content_of(scene, "plain")
+def test_keys_are_those_that_a_run_has() -> None:
+    """Defaults, a variant's and settings in place; what the solver refuses is an error with its words."""
+    content = content_of(scene_of("exp1"), "uniform_soft", ("numerics.cell_m=2", "fracture.increment_m=3"))
+    assert content["fluid"]["law"] == "uniform" and content["strata"]["interfaces"] == ["soft"] and content["numerics"]["courant"] == 0.5
+    assert (content["numerics"]["cell_m"], content["fracture"]["increment_m"]) == (2.0, 3.0) and "variants" not in content
+    with pytest.raises(ValueError, match="there is no variant nobody"):
+        content_of(scene_of("exp1"), "nobody")
 
 
 def test_the_campaign_runs_both_mechanics_but_what_one_cannot(tmp_path: Path) -> None:
@@ -83,6 +86,7 @@ def test_the_list_of_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
 
 # Stands for the solver: as long as its variant says, then done, failed, or, of the variant `stuck`, never.
 SOLVER = """#!/bin/sh
+[ "$1" = run ] || exit 1
 while [ $# -gt 0 ]; do case "$1" in --out) out=$2;; --variant) variant=$2;; esac; shift; done
 echo "$variant" >> "$(dirname "$0")/calls"
 case "$variant" in
