@@ -10,8 +10,7 @@ import sys
 from dataclasses import asdict
 from pathlib import Path
 
-from verification.faults.kill import Tally, campaign
-from verification.faults.scenes import KILLED
+from verification.faults.kill import KILLED, Tally, campaign
 from verification.harness import store
 from verification.harness.command import command
 from verification.harness.paths import solver

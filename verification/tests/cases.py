@@ -1,11 +1,16 @@
-"""Runs that tests share: made once for the same scene and solver, also when several tests ask at the same time."""
+"""Runs that tests share, made once for the same scene and solver, also when several tests ask at the same time; and runs of their own."""
 
+import csv
 import hashlib
+import json
+import subprocess
 from pathlib import Path
+from typing import Any
 
 from verification.harness import paths
 from verification.harness.choose import claimed
 from verification.harness.load import Run, load
+from verification.harness.paths import solver
 from verification.harness.run import Job, Outcome, run
 
 RUNS = paths.RUNS / "tests"
@@ -29,3 +34,34 @@ def completed(scene: Path, variant: str = "", settings: tuple[str, ...] = ()) ->
     outcome, folder = make(scene, variant, settings)
     assert outcome.ok, f"{scene.stem} {variant}: {outcome.reason}"
     return load(folder)
+
+
+def strata(folder: Path, *arguments: str | Path, **how: Any) -> subprocess.CompletedProcess[str]:
+    """A command of the solver, run in a folder."""
+    return subprocess.run([str(solver()), *map(str, arguments)], cwd=folder, capture_output=True, text=True, check=False, timeout=300, **how)
+
+
+def summary_of(run: Path) -> dict[str, Any]:
+    """The summary in a run's folder."""
+    return dict(json.loads((run / "summary.json").read_text(encoding="utf-8")))
+
+
+def rows_of(run: Path) -> list[dict[str, str]]:
+    """The rows of the history in a run's folder."""
+    return list(csv.DictReader((run / "history.csv").read_text(encoding="utf-8").splitlines()))
+
+
+def run_in(folder: Path, scene: str | Path, *settings: str, variant: str = "") -> subprocess.CompletedProcess[str]:
+    """A run of a scene (its text, or its file) with these settings into folder/X, in place of one that is there."""
+    file = scene if isinstance(scene, Path) else folder / "scene.toml"
+    if isinstance(scene, str):
+        file.write_text(scene, encoding="utf-8")
+    chosen = [*(["--variant", variant] if variant else []), *(word for setting in settings for word in ("--set", setting))]
+    return strata(folder, "run", file, *chosen, "--out", "X", "--replace", "--quiet", "--threads", "1")
+
+
+def summary_in(folder: Path, scene: str | Path, *settings: str) -> dict[str, Any]:
+    """The summary of such a run, which has to complete."""
+    done = run_in(folder, scene, *settings)
+    assert done.returncode == 0, done.stderr
+    return summary_of(folder / "X")

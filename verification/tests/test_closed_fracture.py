@@ -1,14 +1,13 @@
 """Flow into a fracture that starts closed: its start does not go by the cells, and what the floor of the opening decides is marked."""
 
-import json
-import subprocess
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from verification.harness.paths import ANALYTIC, solver
+from verification.harness.paths import ANALYTIC
 from verification.harness.reference import value
+from verification.tests.cases import summary_in
 
 # A closed fracture of 5 m under 10 MPa whose inlet rises by 1 MPa/s from 5 MPa.
 RAMP = """\
@@ -43,18 +42,6 @@ time_s = 20
 """
 
 
-def summary(folder: Path, scene: str | Path, *settings: str) -> dict[str, Any]:
-    """The summary of a run of a scene (its text, or its file) with these settings."""
-    file = scene if isinstance(scene, Path) else folder / "scene.toml"
-    if isinstance(scene, str):
-        file.write_text(scene)
-    sets = [word for setting in settings for word in ("--set", setting)]
-    call = [str(solver()), "run", str(file), *sets, "--out", str(folder / "X"), "--replace", "--quiet", "--threads", "1"]
-    done = subprocess.run(call, capture_output=True, text=True, check=False, timeout=300)
-    assert done.returncode == 0, done.stderr
-    return dict(json.loads((folder / "X" / "summary.json").read_text()))
-
-
 def start_MPa(run: dict[str, Any]) -> float:
     return float(next(event["inlet_Pa"] for event in run["events"] if event["kind"] == "start")) / 1e6
 
@@ -66,7 +53,7 @@ def marks(run: dict[str, Any]) -> list[str]:
 
 def test_the_start_under_a_ramp_is_that_of_resolved_cells(tmp_path: Path) -> None:
     """11.5 MPa by another model of the same equations; cells that part as a whole alone gave 14.3 at 0.5 m and 12.4 at 0.25 m."""
-    coarse, fine = (summary(tmp_path, RAMP, f"numerics.cell_m={h}", f"fracture.increment_m={h}") for h in (0.5, 0.25))
+    coarse, fine = (summary_in(tmp_path, RAMP, f"numerics.cell_m={h}", f"fracture.increment_m={h}") for h in (0.5, 0.25))
     assert start_MPa(coarse) == pytest.approx(11.5, abs=0.25)  # a sixth of the net pressure
     assert start_MPa(fine) == pytest.approx(11.5, abs=0.2)
     assert abs(start_MPa(fine) - 11.5) < abs(start_MPa(coarse) - 11.5)
@@ -75,7 +62,7 @@ def test_the_start_under_a_ramp_is_that_of_resolved_cells(tmp_path: Path) -> Non
 
 def test_closed_faces_that_hardly_conduct_part_by_the_fluid(tmp_path: Path) -> None:
     """Without a floor the fluid parts the faces ahead of it: 0.4 MPa more than with 1e-5 m at most, whatever the cells."""
-    found = [start_MPa(summary(tmp_path, RAMP, "fluid.minimum_opening_m=0", f"numerics.cell_m={h}", f"fracture.increment_m={h}")) for h in (0.5, 0.25)]
+    found = [start_MPa(summary_in(tmp_path, RAMP, "fluid.minimum_opening_m=0", f"numerics.cell_m={h}", f"fracture.increment_m={h}")) for h in (0.5, 0.25)]
     assert found[0] == pytest.approx(found[1], abs=0.1)
     assert 11.5 < found[0] < 12.0
 
@@ -86,21 +73,21 @@ def test_a_rate_into_a_closed_fracture_without_a_floor(tmp_path: Path) -> None:
     exact = value(
         "kgd_viscosity", "inlet_pressure_Pa", time_s=1.0, viscosity_Pa_s=1e-3, rate_m2_s=1e-4, youngs_modulus_Pa=10e9, poisson_ratio=0.2
     )  # fmt: skip
-    at_once = summary(tmp_path, RAMP, *rate, "stop.time_s=1e-3")
+    at_once = summary_in(tmp_path, RAMP, *rate, "stop.time_s=1e-3")
     assert at_once["inlet_Pa"] < 20e6
-    net = float(summary(tmp_path, RAMP, *rate, "stop.time_s=1")["inlet_Pa"]) - 10e6
+    net = float(summary_in(tmp_path, RAMP, *rate, "stop.time_s=1")["inlet_Pa"]) - 10e6
     assert net == pytest.approx(exact, rel=0.2)  # the fluid has gone a cell
 
 
 def test_the_study_s_law_without_a_floor_is_marked(tmp_path: Path) -> None:
     """A closed fracture does not conduct under it, so that the first segment's mean decides; with a floor it starts as under even pressure."""
     law = ("fluid.law=paper",)
-    even = start_MPa(summary(tmp_path, RAMP, "fluid.law=uniform"))
-    none = summary(tmp_path, RAMP, *law, "fluid.minimum_opening_m=0")
+    even = start_MPa(summary_in(tmp_path, RAMP, "fluid.law=uniform"))
+    none = summary_in(tmp_path, RAMP, *law, "fluid.minimum_opening_m=0")
     assert start_MPa(none) > 1.5 * even and marks(none) == ["flow_fall"]
     inertia = ("numerics.mechanics=explicit", "numerics.damping_1_s=100", "fluid.inlet.start_Pa=9e6")
-    assert marks(summary(tmp_path, RAMP, *law, *inertia, "fluid.minimum_opening_m=0")) == ["flow_fall"]
-    sound = summary(tmp_path, RAMP, *law)
+    assert marks(summary_in(tmp_path, RAMP, *law, *inertia, "fluid.minimum_opening_m=0")) == ["flow_fall"]
+    sound = summary_in(tmp_path, RAMP, *law)
     assert start_MPa(sound) == pytest.approx(even, abs=0.05) and marks(sound) == []
 
 
@@ -109,7 +96,7 @@ def test_a_floor_that_makes_a_fracture_longer_is_marked(tmp_path: Path, floor: s
     """Water into rock without toughness, fed at a rate: the default floor makes it a quarter longer than the viscosity vertex says."""
     water = ("fluid.viscosity_Pa_s=1e-3", "rock.stiff.toughness_Pa_sqrt_m=0", f"fluid.minimum_opening_m={floor}")
     small = ("numerics.cell_m=0.25", "fracture.increment_m=0.25", "domain.width_m=160", "domain.height_m=80", "fracture.path_m=[[80, 0], [80, 1]]")
-    run = summary(tmp_path, ANALYTIC / "kgd.toml", *water, *small, "stop.time_s=60")
+    run = summary_in(tmp_path, ANALYTIC / "kgd.toml", *water, *small, "stop.time_s=60")
     exact = value("kgd_viscosity", "half_length_m", time_s=60.0, viscosity_Pa_s=1e-3, rate_m2_s=1e-4, youngs_modulus_Pa=10e9, poisson_ratio=0.2)
     assert off[0] < float(run["tips"][0]["y_m"]) / exact - 1.0 < off[1]
     assert marks(run) == marked

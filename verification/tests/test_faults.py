@@ -1,8 +1,6 @@
 """A run whose disc, folder or process fails: it says so, what it had written is whole, and `resume` ends as if nothing had been."""
 
-import csv
 import json
-import math
 import os
 import re
 import resource
@@ -16,19 +14,15 @@ from pathlib import Path
 
 import pytest
 
-from verification.faults.kill import command, run_until
+from verification.faults.__main__ import RECORD
+from verification.faults.kill import KILLED, Killed, command, run_until
 from verification.faults.kill import campaign as kill_campaign
 from verification.faults.same import differences, stored, torn
-from verification.faults.scenes import KILLED, Killed
 from verification.harness.paths import solver
+from verification.tests.cases import strata, summary_of
 
 BY_NAME = {killed.name: killed for killed in KILLED}
 LONG = BY_NAME["explicit updated"]
-
-
-def strata(*arguments: str, **how: object) -> subprocess.CompletedProcess[str]:
-    """A command of the solver."""
-    return subprocess.run([str(solver()), *arguments], capture_output=True, text=True, check=False, timeout=120, **how)  # type: ignore[call-overload]
 
 
 def started(killed: Killed, folder: Path, until: str = "result.xdmf", every_s: float = 0.0) -> subprocess.Popen[str]:
@@ -52,28 +46,27 @@ def test_a_second_run_is_refused_unless_it_is_to_replace_the_first(tmp_path: Pat
         '[domain]\nwidth_m = 8\nheight_m = 8\n[rock.r]\nyoungs_modulus_Pa = 10e9\n[strata]\nlayers = [{rock = "r"}]\n'
         "[numerics]\ncell_m = 1\n[stop]\ntime_s = 0.01\n[variants.longer]\nstop.time_s = 0.02\n"
     )
-    first = strata("run", "block.toml", "--out", "X", "--quiet", cwd=tmp_path)
+    first = strata(tmp_path, "run", "block.toml", "--out", "X", "--quiet")
     assert (first.returncode, first.stderr) == (0, "")
     before = {file.name: file.read_bytes() for file in (tmp_path / "X").iterdir()}
-    second = strata("run", "block.toml", "--variant", "longer", "--out", "X", cwd=tmp_path)
+    second = strata(tmp_path, "run", "block.toml", "--variant", "longer", "--out", "X")
     assert second.returncode == 2
     for word in ("X: holds a run already", "strata resume X", "--replace", "--out"):
         assert word in second.stderr
     assert {file.name: file.read_bytes() for file in (tmp_path / "X").iterdir()} == before
-    assert strata("resume", "X", cwd=tmp_path).returncode == 0
+    assert strata(tmp_path, "resume", "X").returncode == 0
     assert {file.name: file.read_bytes() for file in (tmp_path / "X").iterdir()} == before
-    assert strata("run", "block.toml", "--variant", "longer", "--out", "X", "--replace", cwd=tmp_path).returncode == 0
-    assert json.loads((tmp_path / "X" / "summary.json").read_text())["variant"] == "longer"
+    assert strata(tmp_path, "run", "block.toml", "--variant", "longer", "--out", "X", "--replace").returncode == 0
+    assert summary_of(tmp_path / "X")["variant"] == "longer"
 
 
 def test_a_folder_in_use_is_refused(tmp_path: Path, alone: Path) -> None:
     process = started(LONG, tmp_path / "X")
     process.send_signal(signal.SIGSTOP)  # it is in the middle of its run, and stays there
     try:
-        for arguments in (["resume", str(tmp_path / "X")], command(LONG, tmp_path / "Y", 60.0)[1:] + ["--out", str(tmp_path / "X"), "--replace"]):
-            if "--replace" in arguments:
-                del arguments[arguments.index("--out"):arguments.index("--out") + 2]
-            done = strata(*arguments)
+        again = [str(tmp_path / "X") if word == str(tmp_path / "Y") else word for word in command(LONG, tmp_path / "Y", 60.0)[1:]]
+        for arguments in (["resume", "X"], [*again, "--replace"]):
+            done = strata(tmp_path, *arguments)
             assert done.returncode == 2
             assert "X: in use by a run that is going on" in done.stderr
     finally:
@@ -84,7 +77,7 @@ def test_a_folder_in_use_is_refused(tmp_path: Path, alone: Path) -> None:
 
 def limited(folder: Path, bytes_: int) -> subprocess.CompletedProcess[str]:
     """Run or resume LONG where no file may grow beyond so many bytes."""
-    return strata(*command(LONG, folder, 0.0)[1:], preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (bytes_, bytes_)))
+    return strata(folder.parent, *command(LONG, folder, 0.0)[1:], preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (bytes_, bytes_)))
 
 
 def test_a_file_that_may_not_grow_ends_the_run_and_loses_nothing(tmp_path: Path, alone: Path) -> None:
@@ -118,14 +111,14 @@ def small_disc(tmp_path: Path) -> Iterator[Path]:
 
 def test_a_disc_that_is_full_ends_the_run_and_loses_nothing(small_disc: Path, alone: Path) -> None:
     folder = small_disc / "X"
-    done = strata(*command(LONG, folder, 0.0)[1:])
+    done = strata(small_disc, *command(LONG, folder, 0.0)[1:])
     assert done.returncode == 2, done.stderr
     assert "cannot be written: No space left on device" in done.stderr
     assert f"`strata resume {folder}` goes on" in done.stderr
     assert torn(folder) == []
     written = stored(folder / "result.h5")["times"][1][0]
     subprocess.run(["mount", "-o", "remount,size=64m", str(small_disc)], check=True)
-    done = strata("resume", str(folder), "--quiet")
+    done = strata(small_disc, "resume", str(folder), "--quiet")
     assert (done.returncode, done.stderr) == (0, "")  # from the checkpoint, not from the start
     assert written > 0
     assert differences(alone, folder) == []
@@ -153,11 +146,11 @@ def test_a_disc_that_becomes_read_only_ends_the_run_and_loses_nothing(small_disc
     assert process.returncode == 2
     assert "Read-only file system" in said
     assert torn(folder) == []
-    refused = strata("resume", str(folder))
+    refused = strata(small_disc, "resume", str(folder))
     assert refused.returncode == 2 and "Read-only file system" in refused.stderr
-    assert strata(*command(LONG, small_disc / "new", 60.0)[1:]).returncode == 2
+    assert strata(small_disc, *command(LONG, small_disc / "new", 60.0)[1:]).returncode == 2
     subprocess.run(["mount", "-o", "remount,rw", str(small_disc)], check=True)
-    assert strata("resume", str(folder)).returncode == 0
+    assert strata(small_disc, "resume", str(folder)).returncode == 0
     assert differences(alone, folder) == []
 
 
@@ -192,7 +185,7 @@ def test_a_folder_that_vanishes_ends_the_run(tmp_path: Path, alone: Path, way: s
     assert not folder.exists()
     if way == "moved":
         assert torn(tmp_path / "Y") == []
-        assert strata("resume", str(tmp_path / "Y")).returncode == 0
+        assert strata(tmp_path, "resume", str(tmp_path / "Y")).returncode == 0
         assert differences(alone, tmp_path / "Y") == []
 
 
@@ -217,7 +210,7 @@ def test_a_run_that_is_interrupted_ends_at_once_and_goes_on_to_the_same_digits(t
     assert took_s < max(2.0, wall_s / 2)  # 2 s; more where others keep the machine busy
     assert not (folder / "summary.json").exists()
     assert torn(folder) == []
-    assert strata("resume", str(folder), "--quiet").returncode == 0
+    assert strata(tmp_path, "resume", str(folder), "--quiet").returncode == 0
     assert differences(whole, folder) == []
 
 
@@ -245,104 +238,6 @@ def test_runs_that_are_killed_end_as_those_that_are_not() -> None:
         assert tally.problems == []
 
 
-BLOCK = """\
-[domain]
-width_m = 8
-height_m = 8
-[in_situ]
-vertical_Pa = 1e6
-horizontal_Pa = 1e6
-[rock.r]
-youngs_modulus_Pa = 10e9
-[interface.cut]
-law = "friction"
-coefficient = 0
-[strata]
-layers = [{rock = "r", thickness_m = 4}, {rock = "r"}]
-interfaces = ["perfect"]
-[body]
-acceleration_m_s2 = ["sin(pi*X/8)*cos(pi*Y/8)*sqrt(0.02 - t)", "0"]
-[numerics]
-cell_m = 1
-[output]
-fields_every_s = 0.002
-[stop]
-time_s = 0.05
-[variants.updated]
-[variants.total]
-numerics.kinematics = "total"
-[variants.quasistatic]
-numerics.mechanics = "quasistatic"
-[variants.overflow]
-numerics.mechanics = "quasistatic"
-body.acceleration_m_s2 = ["sin(pi*X/8)*cos(pi*Y/8)*exp(20000*t)", "0"]
-[variants.mechanism]
-body.acceleration_m_s2 = ["0", "0"]
-numerics.mechanics = "quasistatic"
-domain.sides = "traction"
-strata.interfaces = ["cut"]
-fracture.path_m = [[4, 0], [4, 2]]
-fluid.inlet = {start_Pa = 1.2e6, rate_Pa_s = 1e6}
-"""
-
-
-@pytest.mark.parametrize("variant", ["updated", "total", "quasistatic"])
-def test_what_is_no_longer_finite_ends_the_run_with_its_last_good_state(tmp_path: Path, variant: str) -> None:
-    """The push is no number from 0.02 s on: exit 3, the reason, finite results up to there, and a checkpoint that loads."""
-    (tmp_path / "block.toml").write_text(BLOCK)
-    done = strata("run", "block.toml", "--variant", variant, "--out", "X", "--quiet", cwd=tmp_path)
-    assert done.returncode == 3, done.stderr
-    summary = json.loads((tmp_path / "X" / "summary.json").read_text())
-    assert summary["status"] == "failed"
-    assert "-nan at X = " in summary["reason"] and "The last good state, of step " in summary["reason"]
-    assert 0.0 <= summary["time_s"] < 0.0201
-    assert math.isfinite(summary["energy"]["strain_J"])
-    assert torn(tmp_path / "X") == []
-    rows = list(csv.DictReader((tmp_path / "X" / "history.csv").open()))
-    assert len(rows) > 5 and float(rows[-1]["time_s"]) < 0.0201
-    assert all(math.isfinite(float(row["strain_J"])) and float(row["strain_J"]) > 0.0 for row in rows[2:-1])  # the push ends at 0
-    # The state that was kept is sound: without its summary the run goes on from it, into the same wall.
-    (tmp_path / "X" / "summary.json").unlink()
-    again = strata("resume", "X", "--quiet", cwd=tmp_path)
-    assert again.returncode == 3 and "starts anew" not in again.stderr
-    assert json.loads((tmp_path / "X" / "summary.json").read_text())["reason"] == summary["reason"]
-
-
-def test_energies_that_are_no_longer_finite_end_the_run(tmp_path: Path) -> None:
-    """The push is finite throughout, its square beyond any number from 0.018 s on: exit 3, named, no row with it written."""
-    (tmp_path / "block.toml").write_text(BLOCK)
-    done = strata("run", "block.toml", "--variant", "overflow", "--out", "X", "--quiet", cwd=tmp_path)
-    assert done.returncode == 3, done.stderr
-    summary = json.loads((tmp_path / "X" / "summary.json").read_text())
-    assert summary["status"] == "failed" and summary["reason"] in done.stderr
-    assert "energies of the ledger are no finite numbers: strain, body_work" in summary["reason"]
-    assert all(math.isfinite(energy) for energy in summary["energy"].values())
-    rows = list(csv.DictReader((tmp_path / "X" / "history.csv").open()))
-    assert 0.016 <= float(rows[-1]["time_s"]) < 0.0185
-    assert all(math.isfinite(float(row[name])) for row in rows for name in ("strain_J", "body_work_J"))
-    assert (tmp_path / "X" / "checkpoint.bin").exists() and torn(tmp_path / "X") == []
-
-
-def test_a_mechanism_ends_the_run_with_the_reason_in_its_summary(tmp_path: Path) -> None:
-    (tmp_path / "block.toml").write_text(BLOCK)
-    done = strata("run", "block.toml", "--variant", "mechanism", "--out", "X", "--quiet", cwd=tmp_path)
-    assert done.returncode == 3, done.stderr
-    summary = json.loads((tmp_path / "X" / "summary.json").read_text())
-    assert summary["status"] == "failed" and summary["reason"] in done.stderr
-    assert torn(tmp_path / "X") == []
-
-
-def test_a_limit_of_memory_is_bad_input_and_no_bug(tmp_path: Path) -> None:
-    (tmp_path / "block.toml").write_text(BLOCK)
-    limit = 600_000_000  # of addresses; programs and threads take most of it
-    done = strata(
-        "run", "block.toml", "--set", "numerics.cell_m=0.01", "--out", "X", "--threads", "1", cwd=tmp_path,
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)),
-    )
-    assert done.returncode == 2, done.stderr
-    assert ("out of memory" in done.stderr or "too large for this machine" in done.stderr) and "a bug" not in done.stderr
-
-
 @pytest.mark.parametrize("name, changed", [("explicit total", ()), ("explicit updated", ()), ("quasi-static paper", ("stop.tip_y_m=12",))])
 def test_memory_is_estimated_a_little_above_what_a_run_takes(tmp_path: Path, name: str, changed: tuple[str, ...]) -> None:
     """At 1 m cells, checkpoints written: within 30 % above the peak, never below."""
@@ -351,8 +246,21 @@ def test_memory_is_estimated_a_little_above_what_a_run_takes(tmp_path: Path, nam
     if name.startswith("explicit"):  # too short for equilibria to decide about growth
         short = Killed(name, short.scene, short.variant, (*short.settings, "stop.time_s=0.12", "fracture.crossing=J"))
     arguments = [word for word in command(short, tmp_path / "X", 0.0)[1:] if word != "--quiet"]
-    done = strata(*arguments)
+    done = strata(tmp_path, *arguments)
     assert done.returncode == 0, done.stderr
     estimate_MB = 1e3 * float(re.search(r"([\d.e+-]+) GB", done.stderr).group(1))  # type: ignore[union-attr]
-    peak_MB = json.loads((tmp_path / "X" / "summary.json").read_text())["peak_memory_MB"]
+    peak_MB = summary_of(tmp_path / "X")["peak_memory_MB"]
     assert 1.0 < estimate_MB / peak_MB < 1.3
+
+
+def test_two_hundred_kills_and_every_run_the_same() -> None:
+    """What is kept of the kills: as many as are claimed, of every scene, and not one run that ended otherwise."""
+    record = json.loads(RECORD.read_text(encoding="utf-8"))
+    assert record["kills"] >= 200
+    assert record["identical"] == record["trials"] > 0
+    assert record["from_checkpoint"] > 100
+    assert [scene["name"] for scene in record["scenes"]] == [killed.name for killed in KILLED]
+    for scene in record["scenes"]:
+        assert scene["kills"] >= 30 and scene["problems"] == []
+        assert scene["identical"] == scene["trials"] > 10
+        assert sum(scene[key] for key in ("from_checkpoint", "from_start", "before_folder", "after_end")) == scene["kills"]

@@ -1,12 +1,11 @@
 """Scenes that must be refused: with status 2, all that their head expects on stderr, and nothing written."""
 
 import re
-import subprocess
 from pathlib import Path
 
 import pytest
 
-from verification.harness.paths import solver
+from verification.tests.cases import strata
 
 FOLDER = Path(__file__).resolve().parents[1] / "invalid"
 SCENES = sorted(FOLDER.glob("*.toml"))
@@ -16,11 +15,6 @@ def head_lines(scene: Path, word: str) -> list[str]:
     """The texts behind `# word: ` at the head of a scene."""
     prefix = f"# {word}: "
     return [line[len(prefix):] for line in scene.read_text().splitlines() if line.startswith(prefix)]
-
-
-def strata(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """A command of the solver, run in `folder`."""
-    return subprocess.run([str(solver()), *arguments], cwd=folder, capture_output=True, text=True, timeout=60, check=False)
 
 
 def test_folder_is_not_empty() -> None:

@@ -1,6 +1,5 @@
 """What a run says when it ends, and what `resume` does where the scene in the run's folder was changed."""
 
-import json
 import shutil
 import signal
 import subprocess
@@ -12,6 +11,7 @@ import pytest
 
 from verification.faults.same import differences
 from verification.harness.paths import solver
+from verification.tests.cases import strata, summary_of
 
 BLOCK = """\
 [domain]
@@ -49,11 +49,6 @@ stop.inlet_Pa = 4e6
 """
 
 
-def strata(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """A command of the solver, run in `folder`."""
-    return subprocess.run([str(solver()), *arguments], cwd=folder, capture_output=True, text=True, timeout=120, check=False)
-
-
 def content(folder: Path) -> dict[str, bytes]:
     """All files of a folder."""
     return {str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob("*") if file.is_file()}
@@ -72,7 +67,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
 def test_a_run_ends_with_five_lines(whole: tuple[Path, str]) -> None:
     """They say what the summary says."""
     folder, said = whole
-    summary = json.loads((folder / "summary.json").read_text())
+    summary = summary_of(folder)
     how, growth, tip, monitors, where = said.splitlines()[-5:]
     assert how.startswith(f"completed at step {summary['steps']}, t = ") and how.endswith(": tip reached y = 12 m")
     start = next(event for event in summary["events"] if event["kind"] == "start")
@@ -97,7 +92,7 @@ def test_a_run_that_fails_says_so_in_its_first_line(tmp_path: Path) -> None:
     (tmp_path / "block.toml").write_text(BLOCK)
     done = strata(tmp_path, "run", "block.toml", "--variant", "mechanism", "--out", "X")
     assert done.returncode == 3, done.stderr
-    reason = json.loads((tmp_path / "X" / "summary.json").read_text())["reason"]
+    reason = summary_of(tmp_path / "X")["reason"]
     first = next(line for line in done.stderr.splitlines() if line.startswith("failed at step "))
     assert first.endswith(reason)
     assert done.stderr.count(reason) == 1
@@ -161,7 +156,7 @@ def test_what_the_refusal_advises_runs_the_changed_scene(tmp_path: Path, whole: 
     scene.write_text(scene.read_text().replace("tip_y_m = 12.0", "tip_y_m = 14.0"))
     assert strata(tmp_path, "run", "X/scene.toml", "--out", "Y", "--quiet").returncode == 0
     assert strata(tmp_path, "run", "X/scene.toml", "--out", "X", "--replace", "--quiet").returncode == 0
-    assert json.loads((tmp_path / "X" / "summary.json").read_text())["tips"][0]["y_m"] == pytest.approx(14.0, abs=1e-6)
+    assert summary_of(tmp_path / "X")["tips"][0]["y_m"] == pytest.approx(14.0, abs=1e-6)
     assert differences(tmp_path / "X", tmp_path / "Y") == []
 
 
@@ -169,7 +164,7 @@ def test_a_run_that_has_ended_is_left_as_it_is_and_says_so(tmp_path: Path, whole
     shutil.copytree(whole[0], tmp_path / "X")
     files = content(tmp_path / "X")
     done = strata(tmp_path, "resume", "X")
-    reason = json.loads((tmp_path / "X" / "summary.json").read_text())["reason"]
+    reason = summary_of(tmp_path / "X")["reason"]
     assert (done.returncode, done.stdout) == (0, "")
     assert done.stderr == f"X: has ended and is left as it is (completed: {reason})\n"
     assert content(tmp_path / "X") == files

@@ -1,21 +1,19 @@
 """States that are no solution of their equations end a run with exit status 3, the reason, and the last good state."""
 
-import csv
-import json
 import math
+import resource
 import subprocess
 from pathlib import Path
 
 import pytest
 
 from verification.faults.same import torn
-from verification.harness.paths import ANALYTIC, solver
+from verification.harness.paths import ANALYTIC
+from verification.tests.cases import rows_of, run_in, strata, summary_in, summary_of
 
 # A small fracture fed at a rate; that of the scene is 1e-4 m^2/s, its viscosity 1e-5 Pa s, its least opening 2e-5 m.
-FED = (
-    str(ANALYTIC / "kgd.toml"), "--set", "numerics.cell_m=1", "--set", "fracture.increment_m=1", "--set", "domain.width_m=60",
-    "--set", "fracture.path_m=[[30, 0], [30, 2]]", "--set", "stop.time_s=1",
-)
+KGD = ANALYTIC / "kgd.toml"
+FED = ("numerics.cell_m=1", "fracture.increment_m=1", "domain.width_m=60", "fracture.path_m=[[30, 0], [30, 2]]", "stop.time_s=1")
 
 # Two blocks on an interface that fails at once, with friction that no rock has, and a fracture through both at 63 degrees.
 ROUGH = """\
@@ -55,26 +53,21 @@ interface.rough.residual_friction = 0.6
 """
 
 
-def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """A run into folder/X."""
-    whole = [str(solver()), "run", *arguments, "--out", "X", "--quiet", "--threads", "1"]
-    return subprocess.run(whole, cwd=folder, capture_output=True, text=True, check=False, timeout=120)
-
-
-def check_failed(folder: Path, done: subprocess.CompletedProcess[str], *words: str) -> None:
-    """Exit 3 with these words, told alike on the terminal and in the summary; finite rows; a checkpoint that meets the same end."""
+def check_failed(folder: Path, done: subprocess.CompletedProcess[str], *words: str) -> list[dict[str, str]]:
+    """Exit 3 with these words, told alike on the terminal and in the summary; finite rows; a checkpoint that meets the same end. The rows."""
     assert done.returncode == 3, done.stderr
-    summary = json.loads((folder / "X" / "summary.json").read_text())
+    summary, rows = summary_of(folder / "X"), rows_of(folder / "X")
     assert summary["status"] == "failed" and done.stderr.strip() == summary["reason"]
     for word in (*words, ". The last good state, of step "):
         assert word in summary["reason"]
-    assert math.isfinite(summary["inlet_Pa"]) and math.isfinite(summary["mouth_opening_m"])
-    rows = list(csv.DictReader((folder / "X" / "history.csv").open()))
-    assert rows and all(math.isfinite(float(row["inlet_Pa"])) and math.isfinite(float(row["strain_J"])) for row in rows)
+    assert all(math.isfinite(summary[name]) for name in ("time_s", "inlet_Pa", "mouth_opening_m"))
+    assert all(math.isfinite(energy) for energy in summary["energy"].values())
+    assert rows and all(math.isfinite(float(row[name])) for row in rows for name in ("inlet_Pa", "strain_J", "body_work_J"))
     assert torn(folder / "X") == []
     (folder / "X" / "summary.json").unlink()
-    again = subprocess.run([str(solver()), "resume", "X", "--quiet"], cwd=folder, capture_output=True, text=True, check=False, timeout=120)
+    again = strata(folder, "resume", "X", "--quiet")
     assert again.returncode == 3 and again.stderr.strip() == summary["reason"]
+    return rows
 
 
 @pytest.mark.parametrize(
@@ -86,20 +79,90 @@ def check_failed(folder: Path, done: subprocess.CompletedProcess[str], *words: s
 )
 def test_flow_and_rock_that_do_not_come_together_end_the_run(tmp_path: Path, change: str, words: tuple[str, ...]) -> None:
     """A rate with which no step converges, an infinite flow."""
-    check_failed(tmp_path, run(tmp_path, *FED, "--set", change), *words, "fluid.inlet")
+    check_failed(tmp_path, run_in(tmp_path, KGD, *FED, change), *words, "fluid.inlet")
 
 
 def test_no_fluid_is_lost_in_round_off(tmp_path: Path) -> None:
     """Cells that conduct without limit: what has come in is there, although flows between cells cannot be told from round-off."""
-    done = run(tmp_path, *FED, "--set", "fluid.inlet={rate_m2_s=1e-3}", "--set", "fluid.minimum_opening_m=1")
-    assert done.returncode == 0, done.stderr
-    summary = json.loads((tmp_path / "X" / "summary.json").read_text())
+    summary = summary_in(tmp_path, KGD, *FED, "fluid.inlet={rate_m2_s=1e-3}", "fluid.minimum_opening_m=1")
     assert summary["fracture_volume_m2"] == pytest.approx(0.5e-3, rel=1e-5)  # half of it in the modelled half
     assert [mark["monitor"] for mark in summary["suspect"]] == []
 
 
 def test_contact_that_is_far_from_its_laws_ends_the_run(tmp_path: Path) -> None:
-    (tmp_path / "rough.toml").write_text(ROUGH)
-    check_failed(tmp_path, run(tmp_path, "rough.toml"), "contact, friction and springs were not solved: after 200 sweeps")
-    done = run(tmp_path, "rough.toml", "--variant", "usual", "--replace")
+    check_failed(tmp_path, run_in(tmp_path, ROUGH), "contact, friction and springs were not solved: after 200 sweeps")
+    done = run_in(tmp_path, ROUGH, variant="usual")
     assert done.returncode == 0, done.stderr
+
+
+# A push that is no number from 0.02 s on; or, of the variant `overflow`, one whose square is beyond any number from 0.018 s on.
+BLOCK = """\
+[domain]
+width_m = 8
+height_m = 8
+[in_situ]
+vertical_Pa = 1e6
+horizontal_Pa = 1e6
+[rock.r]
+youngs_modulus_Pa = 10e9
+[interface.cut]
+law = "friction"
+coefficient = 0
+[strata]
+layers = [{rock = "r", thickness_m = 4}, {rock = "r"}]
+interfaces = ["perfect"]
+[body]
+acceleration_m_s2 = ["sin(pi*X/8)*cos(pi*Y/8)*sqrt(0.02 - t)", "0"]
+[numerics]
+cell_m = 1
+[output]
+fields_every_s = 0.002
+[stop]
+time_s = 0.05
+[variants.updated]
+[variants.total]
+numerics.kinematics = "total"
+[variants.quasistatic]
+numerics.mechanics = "quasistatic"
+[variants.overflow]
+numerics.mechanics = "quasistatic"
+body.acceleration_m_s2 = ["sin(pi*X/8)*cos(pi*Y/8)*exp(20000*t)", "0"]
+[variants.mechanism]
+body.acceleration_m_s2 = ["0", "0"]
+numerics.mechanics = "quasistatic"
+domain.sides = "traction"
+strata.interfaces = ["cut"]
+fracture.path_m = [[4, 0], [4, 2]]
+fluid.inlet = {start_Pa = 1.2e6, rate_Pa_s = 1e6}
+"""
+
+
+@pytest.mark.parametrize("variant", ["updated", "total", "quasistatic"])
+def test_what_is_no_longer_finite_ends_the_run_with_its_last_good_state(tmp_path: Path, variant: str) -> None:
+    rows = check_failed(tmp_path, run_in(tmp_path, BLOCK, variant=variant), "-nan at X = ")
+    assert len(rows) > 5 and float(rows[-1]["time_s"]) < 0.0201
+    assert all(float(row["strain_J"]) > 0.0 for row in rows[2:-1])  # the push ends at 0
+
+
+def test_energies_that_are_no_longer_finite_end_the_run(tmp_path: Path) -> None:
+    """No row with them is written."""
+    rows = check_failed(tmp_path, run_in(tmp_path, BLOCK, variant="overflow"), "energies of the ledger are no finite numbers: strain, body_work")
+    assert 0.016 <= float(rows[-1]["time_s"]) < 0.0185
+    assert (tmp_path / "X" / "checkpoint.bin").exists()
+
+
+def test_a_mechanism_ends_the_run_with_the_reason_in_its_summary(tmp_path: Path) -> None:
+    done = run_in(tmp_path, BLOCK, variant="mechanism")
+    assert done.returncode == 3, done.stderr
+    summary = summary_of(tmp_path / "X")
+    assert summary["status"] == "failed" and summary["reason"] in done.stderr
+    assert torn(tmp_path / "X") == []
+
+
+def test_a_limit_of_memory_is_bad_input_and_no_bug(tmp_path: Path) -> None:
+    (tmp_path / "block.toml").write_text(BLOCK)
+    limit = 600_000_000  # of addresses; programs and threads take most of it
+    arguments = ("run", "block.toml", "--set", "numerics.cell_m=0.01", "--out", "X", "--threads", "1")
+    done = strata(tmp_path, *arguments, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+    assert done.returncode == 2, done.stderr
+    assert ("out of memory" in done.stderr or "too large for this machine" in done.stderr) and "a bug" not in done.stderr

@@ -1,8 +1,6 @@
 """Runs that leave the range of their equations say so, those within it do not, on the README's first scene."""
 
-import json
 import math
-import subprocess
 import textwrap
 from functools import cache
 from pathlib import Path
@@ -10,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from verification.harness.paths import ROOT, solver
+from verification.harness.paths import ROOT
+from verification.tests.cases import summary_in
 
 
 @cache
@@ -19,17 +18,6 @@ def first_scene() -> str:
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     lines = text.split("## A first scene", 1)[1].split("[variants.stronger]", 1)[0].splitlines()
     return textwrap.dedent("\n".join(line for line in lines if line.startswith("    ")))
-
-
-def summary_of(folder: Path, *settings: str) -> dict[str, Any]:
-    """The summary of a run of the first scene with these settings."""
-    (folder / "first.toml").write_text(first_scene())
-    changes = [word for setting in settings for word in ("--set", setting)]
-    whole = [str(solver()), "run", "first.toml", *changes, "--out", "X", "--quiet", "--threads", "1"]
-    done = subprocess.run(whole, cwd=folder, capture_output=True, text=True, check=False, timeout=300)
-    assert done.returncode == 0, done.stderr
-    read: dict[str, Any] = json.loads((folder / "X" / "summary.json").read_text())
-    return read
 
 
 def marks(summary: dict[str, Any]) -> set[str]:
@@ -43,7 +31,7 @@ QUASISTATIC, TOTAL = "numerics.mechanics=quasistatic", "numerics.kinematics=tota
 @pytest.mark.parametrize("mechanics", [(QUASISTATIC,), (TOTAL,), ()])
 def test_the_first_scene_is_sound(tmp_path: Path, mechanics: tuple[str, ...]) -> None:
     """With inertia it says that speeds of growth are no result."""
-    assert marks(summary_of(tmp_path, *mechanics)) == (set() if mechanics == (QUASISTATIC,) else {"surface_energy_share"})
+    assert marks(summary_in(tmp_path, first_scene(), *mechanics)) == (set() if mechanics == (QUASISTATIC,) else {"surface_energy_share"})
 
 
 @pytest.mark.parametrize("mechanics", [(QUASISTATIC,), (TOTAL, "stop.time_s=0.1"), ("stop.time_s=0.1",)])
@@ -52,10 +40,8 @@ def test_a_closed_fracture_at_rest_is_sound(tmp_path: Path, mechanics: tuple[str
     """A closed fracture, or one that the fluid just holds, has nothing but round-off in its energies and momenta."""
     at_rest = f"fluid.inlet={{start_Pa={start_Pa}, rate_Pa_s=0}}"
     leaning = "fracture.path_m=[[8.3, 6.1], [11.2, 11.4]]"
-    for k, settings in enumerate((("domain.sides=traction",), (leaning, "domain.bottom=traction", "domain.sides=traction"))):
-        folder = tmp_path / str(k)
-        folder.mkdir()
-        summary = summary_of(folder, "stop.time_s=0", at_rest, *settings, *mechanics)
+    for settings in (("domain.sides=traction",), (leaning, "domain.bottom=traction", "domain.sides=traction")):
+        summary = summary_in(tmp_path, first_scene(), "stop.time_s=0", at_rest, *settings, *mechanics)
         assert marks(summary) == set(), summary["suspect"]
 
 
@@ -75,7 +61,7 @@ def test_a_closed_fracture_at_rest_is_sound(tmp_path: Path, mechanics: tuple[str
 )
 def test_what_leaves_the_range_is_marked(tmp_path: Path, settings: tuple[str, ...], expected: set[str]) -> None:
     """Units of another kind, loads that are not slow: marked by at least these monitors."""
-    summary = summary_of(tmp_path, *settings)
+    summary = summary_in(tmp_path, first_scene(), *settings)
     assert expected <= marks(summary), summary["suspect"]
     for mark in summary["suspect"]:
         assert summary["monitors"][mark["monitor"]] == mark["value"] and len(mark["why"]) > 40
@@ -88,9 +74,7 @@ def test_the_increment_hardly_moves_the_pressure(tmp_path: Path, kinematics: str
     the edges. (One increment a look would take 0.33 s more at 0.02 m.)"""
     ends, c_R, a_m, rate_Pa_s = {}, 1176.0, 5.0, 0.35e6
     for increment in (0.02, 0.1, 0.5, 1.0):
-        folder = tmp_path / str(increment)
-        folder.mkdir()
-        ends[increment] = summary_of(folder, f"fracture.increment_m={increment}", f"numerics.kinematics={kinematics}")["inlet_Pa"]
+        ends[increment] = summary_in(tmp_path, first_scene(), f"fracture.increment_m={increment}", f"numerics.kinematics={kinematics}")["inlet_Pa"]
     skipped = {increment: rate_Pa_s * a_m / c_R * math.log(increment / 0.02) for increment in ends}
     for increment in (0.1, 0.5, 1.0):
         assert 0.0 < ends[0.02] - ends[increment] < 2.0 * skipped[increment]
