@@ -9,7 +9,7 @@ from reports.shown import Shown
 from reports.words import NONE, amount, base_words, experiment_name, listed, number, plain, share, small_unit
 from verification.ablation.effects import CHANGES, NEEDED, NOTHING, SPARED, WANTED, Tried, free, missing, needs, not_needed
 from verification.ablation.ingredients import LEFT_OUT, MODELLED, RESOLVED
-from verification.ablation.reasons import REASONS, Reasons, reason_for, reasons
+from verification.ablation.store import REASONS, Reasons, reason_for, reasons
 from verification.ablation.store import RECORDS, Table as Kept, read_all
 
 _GROUPS = {MODELLED: "modelled", RESOLVED: "resolved", LEFT_OUT: "gone without"}

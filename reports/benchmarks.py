@@ -1,7 +1,6 @@
 """The part of the page of verification on speed: what ci/bench recorded last, as charts and a table of marks."""
 
 import json
-import math
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +8,7 @@ from reports.charts.parts import draw_events, draw_rates, draw_scaling
 from reports.figures import Figure, Section, Table
 from reports.shown import Shown
 from reports.words import NONE, listed, mechanics_name, number
+from verification.benchmarks.figure import exponent
 
 RECORDS = Path("verification") / "benchmarks" / "records"  # from the folder that the folder of runs stands in
 SHAPES = {"bspline2": "quadratic B-spline", "gimp": "uGIMP", "linear": "linear"}
@@ -101,10 +101,8 @@ def _curve(label: str, found: list[tuple[float, float]]) -> Shown | None:
     found = sorted(found)
     if len(found) < 2:
         return None
-    x, y = [math.log(points) for points, _ in found], [math.log(seconds) for _, seconds in found]
-    mean_x, mean_y = math.fsum(x) / len(x), math.fsum(y) / len(y)
-    slope = math.fsum((a - mean_x) * (b - mean_y) for a, b in zip(x, y)) / math.fsum((a - mean_x) ** 2 for a in x)
-    return Shown(label=label, points=tuple(points for points, _ in found), seconds=tuple(seconds for _, seconds in found), exponent=slope)
+    points, seconds = zip(*found)
+    return Shown(label=label, points=points, seconds=seconds, exponent=exponent(points, seconds))
 
 
 _EVENT_KINDS = {"growth": "growth", "start": "start of a run", "contact": "contact", "flow": "flow step", "write": "writing"}

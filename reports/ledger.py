@@ -8,15 +8,12 @@ from reports.layout import settings_between
 from reports.outcome import Outcome, outcome_of
 from reports.runs import Arrays, NotAvailable, Run
 from reports.shown import Shown
-from reports.words import listed, mechanics_name, metres, mpa, number, plain, setting, share
+from reports.words import listed, mechanics_name, metres, mpa, plain, setting, share
 from verification.harness.claim_data import BY_J
 
 _FAMILIES: dict[str, tuple[str, ...]] = {"supplied": ("work", "supplied"), "stored": ("kinetic", "strain"),
                                          "dissipated": ("",)}  # words in their names
 _NOT_A_TERM: tuple[str, ...] = ("supplied", "stored", "dissipated", "total", "residual", "closure", "largest")
-# Monitors of a quasi-static run that are to be next to nothing, with what they are called; for runs that do not judge theirs.
-MONITORS: dict[str, str] = {"volume_balance": "fluid volume open by", "contact_residual": "contact open by"}
-CLOSED = 1e-8  # what volume and contact are to be satisfied to, relative to the run's own
 
 
 def energies_of(run: Run) -> dict[str, Arrays]:
@@ -30,16 +27,8 @@ def energies_of(run: Run) -> dict[str, Arrays]:
 
 def closure_of(run: Run) -> float | None:
     """What the ledger leaves unexplained, as a fraction of its largest energy."""
-    for key, value in (run.summary.get("energy") or {}).items():
-        if "closure" in key and isinstance(value, (int, float)):
-            return float(value)
-    energies = energies_of(run)
-    columns = [column for own in energies.values() for column in own.values()]
-    if not columns or not run.drawable:
-        return None
-    sums = {family: sum(float(column[-1]) for column in own.values()) for family, own in energies.items()}
-    scale = max(float(np.nanmax(np.abs(column))) for column in columns)
-    return (sums["stored"] + sums["dissipated"] - sums["supplied"]) / scale if scale > 0 else None
+    value = (run.summary.get("energy") or {}).get("closure")
+    return float(value) if isinstance(value, (int, float)) else None
 
 
 def ledger_figure(runs: list[Run], mechanics: str) -> Shown:
@@ -146,24 +135,15 @@ def differences(run: Run, runs: list[Run]) -> str:
 
 def spread_of(run: Run) -> float | None:
     """The median spread of J over its rings at growth away from interfaces, as a fraction of its mean."""
-    for name in ("J_spread", "J_spread_at_growth"):
-        if name in run.history:
-            column = run.history[name]
-            grown = np.isfinite(column) & (run.history.get("J_N_m", column) > 0.0)
-            return float(np.median(column[grown])) if grown.any() else None
-    tips = [tip.get("J_spread") for tip in run.summary.get("tips") or []]
-    return max((float(value) for value in tips if isinstance(value, (int, float))), default=None)
+    if "J_spread" not in run.history:
+        return None
+    column = run.history["J_spread"]
+    grown = np.isfinite(column) & (run.history.get("J_N_m", column) > 0.0)
+    return float(np.median(column[grown])) if grown.any() else None
 
 
 def suspicions(run: Run, runs: Sequence[Run] = ()) -> list[str]:
     """What the run itself or its data mark as not to be trusted, in words; J at an interface unless a run confirms it."""
-    flags = run.marks
-    if run.drawable:
-        places = list(dict.fromkeys(metres(arrest.height_m) for arrest in outcome_of(run, runs).arrests if arrest.flag))
-        flags += [f"{BY_J} ({listed(places)})"] if places else []
-    if "suspect" in run.summary:
-        return flags
-    closure, monitors = closure_of(run), run.summary.get("monitors") or {}
-    flags += [f"energy open by {share(abs(closure))}"] if closure is not None and abs(closure) > 0.01 else []
-    found = [(words, monitors.get(key)) for key, words in MONITORS.items()]
-    return flags + [f"{words} {number(abs(float(size)))}" for words, size in found if isinstance(size, (int, float)) and abs(size) > CLOSED]
+    arrests = outcome_of(run, runs).arrests if run.drawable else ()
+    places = list(dict.fromkeys(metres(arrest.height_m) for arrest in arrests if arrest.flag))
+    return run.marks + ([f"{BY_J} ({listed(places)})"] if places else [])

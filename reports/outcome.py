@@ -115,25 +115,13 @@ def arrests_of(run: Run) -> tuple[Arrest, ...]:
     for event, follower in zip(events, [*events[1:], {"kind": "", "inlet_Pa": 0.0}]):
         if event["kind"] == "arrest":
             until = float(follower["inlet_Pa"]) if follower["kind"] == "restart" else None
-            by_J = decided_by_J(run, event)
+            by_J = event.get("by") == "J" and bool(event.get("at_interface"))  # too near to an interface to be trusted
             name, beyond_m = interface_near(run, event, by_J or event.get("by") == "energy")
             arrests.append(Arrest(float(event["tip_y_m"]), float(event["inlet_Pa"]), until, name, beyond_m, by_J))
     return tuple(arrests)
 
 
-def decided_by_J(run: Run, event: dict[str, Any]) -> bool:
-    """Whether an event at a tip rests on a J too near to an interface to be trusted.
-
-    A run that does not say what decided goes by its criterion near an interface, which explicit runs of old had as J by default.
-    """
-    numerics, named = run.scene.get("numerics", {}), run.scene.get("fracture", {}).get("crossing")
-    decided = event.get("by") or named or ("J" if numerics.get("mechanics") == "explicit" else "energy")
-    if decided != "J":
-        return False
-    return bool(event.get("at_interface")) if "at_interface" in event or event.get("by") else interface_near(run, event)[0] is not None
-
-
-def interface_near(run: Run, event: dict[str, Any], in_reach: bool = False) -> tuple[str | None, float]:
+def interface_near(run: Run, event: dict[str, Any], in_reach: bool) -> tuple[str | None, float]:
     """The nearest imperfect interface, if within a cell and a half or in reach of the J rings, and the tip past it, m."""
     layout = layout_of(run)
     at = float(event["tip_y_m"] if layout.along == "y" else event["tip_x_m"])

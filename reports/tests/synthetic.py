@@ -4,6 +4,7 @@ import csv
 import json
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -33,7 +34,7 @@ class Plan:
     reason: str = "tip at 70 m"
     extra: str = ""
     mechanics: str = "explicit"
-    by: str = ""  # what the run says decided its events; empty: nothing
+    by: str = "J"  # what decided its events
     kinetic: float = 0.02  # kinetic energy as a share of the fluid's work
 
 
@@ -104,7 +105,7 @@ def _write_history(folder: Path, plan: Plan, inlet: np.ndarray, height: np.ndarr
         writer.writerows(zip(*columns.values()))
 
 
-def _event(kind: str, row: int, inlet: np.ndarray, height: np.ndarray, drift: np.ndarray) -> dict[str, float | str]:
+def _event(kind: str, row: int, inlet: np.ndarray, height: np.ndarray, drift: np.ndarray) -> dict[str, Any]:
     """An event at a row of the history."""
     return {"kind": kind, "time_s": (inlet[row] - START_PA) / RATE_PA_S, "inlet_Pa": inlet[row], "tip_x_m": 40.0 + drift[row], "tip_y_m": height[row]}
 
@@ -121,13 +122,14 @@ def _write_summary(folder: Path, plan: Plan, inlet: np.ndarray, height: np.ndarr
         if plan.restart_Pa is not None and (height > plan.stop_at_m).any():
             events.append(_event("restart", int(np.argmax(height > plan.stop_at_m)), *here))
     events.append(_event("stop", inlet.size - 1, *here))
-    for event in events if plan.by else []:
-        event |= {"by": plan.by, "at_interface": False}
+    for event in events:
+        near = plan.interfaces[0] != "perfect" and bool(abs(event["tip_y_m"] - 10.0) <= 3.0)
+        event |= {"by": plan.by, "at_interface": plan.by == "J" and near}
     summary = {
         "scene": folder.parent.name, "variant": plan.variant, "status": plan.status, "reason": plan.reason,
         "mechanics": plan.mechanics, "cells": 1600, "particles": 6400, "steps": 12345, "time_s": 1.0,
         "inlet_Pa": inlet[-1], "wall_s": 12.5, "particle_steps_per_s": 2.0e7, "peak_memory_MB": 55.0,
-        "version": "0.1.0", "energy": {"closure": 0.005}, "events": events,
+        "version": "0.1.0", "energy": {"closure": 0.005}, "suspect": [], "events": events,
         "tips": [{"x_m": 40.0, "y_m": height[-1], "J_spread": 0.006, "kink_deg": 1.0}],
     }
     if plan.mechanics == "quasistatic":

@@ -9,11 +9,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from verification.ablation.ingredients import MODELLED, RESOLVED, Ingredient
-from verification.harness import effects
-from verification.harness.effects import Effect
+from verification.harness import quantities as harness
 from verification.harness.load import Run
 from verification.harness.observables import path_length
-from verification.harness.quantities import NO_ARREST, Quantity
+from verification.harness.quantities import NO_ARREST, Effect, Quantity
 
 # A scene is to be right to this share.
 WANTED = 0.01
@@ -80,7 +79,7 @@ def effects_of(quantities: Sequence[Quantity], with_path: bool, base: Run, run: 
 
     An arrest of the base that is none in the run is lost: what is at the place is no pause.
     """
-    found = effects.effects_of(quantities, with_path, base, run)
+    found = harness.effects_of(quantities, with_path, base, run)
     found = {name: Effect(None, NO_ARREST) if NO_ARREST in effect.note else effect for name, effect in found.items()}
     scales = {one.name: (lambda one=one: scale_of(one, base)) for one in quantities} | {"path_m": lambda: path_length(base.path)}
     return found, {name: abs(effect.value) / scales[name]() for name, effect in found.items() if effect.value is not None}

@@ -8,10 +8,9 @@ from verification.ablation.effects import Tried, effects_of, tried
 from verification.ablation.ingredients import LEFT_OUT, Ingredient, ingredients_of, named
 from verification.ablation.store import Table
 from verification.harness import paths
-from verification.harness.effects import followed
 from verification.harness.load import Run
 from verification.harness.plan import make
-from verification.harness.quantities import turns
+from verification.harness.quantities import followed, turns
 from verification.harness.run import Job, Outcome, timed
 from verification.harness.scenes import content_of
 

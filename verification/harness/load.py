@@ -34,8 +34,8 @@ class Event:
     inlet_Pa: float
     tip_x_m: float
     tip_y_m: float
-    at_interface: bool = False  # decided by J with an interface too near for it to be trusted
-    by: str = ""  # what decided: "J", "energy", "failure"; empty where the run does not say
+    at_interface: bool  # decided by J with an interface too near for it to be trusted
+    by: str  # what decided: "J", "energy", "failure"; empty of what nothing decides, an end say
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ class Summary:
     events: tuple[Event, ...]
     monitors: dict[str, Any]
     raw: dict[str, Any] = field(repr=False)
-    suspect: tuple[Suspicion, ...] = ()  # empty for a sound run, and for one of before there were marks
+    suspect: tuple[Suspicion, ...] = ()  # empty for a sound run
 
 
 @dataclass(frozen=True)
@@ -129,12 +129,6 @@ class Run:
     def increment_m(self) -> float:
         """Growth increment, m."""
         return float(self.scene["fracture"].get("increment_m", self.scene["numerics"]["cell_m"]))
-
-    @property
-    def decides_by_J(self) -> bool:
-        """Whether J alone decides on growth near an interface."""
-        default = "J" if self.summary.mechanics == "explicit" else "energy"
-        return str(self.scene["fracture"].get("crossing", default)) == "J"
 
     @cached_property
     def path(self) -> Array:

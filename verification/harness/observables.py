@@ -168,8 +168,7 @@ def plateau_Pa(run: Run, parameters: Parameters = NONE) -> Measured:
         return nothing(f"{run.name} does not reach the interface at {height:g} m")
     events = [event for event in run.summary.events if event.kind in ("arrest", "restart")]
     arrested = [(event, events[k + 1 :]) for k, event in enumerate(events) if event.kind == "arrest" and is_at(event, run, height)]
-    # By the run's own word one may rest on a J that is not to be trusted there.
-    by_J = arrested and (run.decides_by_J or any(event.by == "J" and event.at_interface for event, _ in arrested))
+    by_J = any(event.by == "J" and event.at_interface for event, _ in arrested)
     low, high, note = 0.0, 0.0, ""
     for event, later in arrested:
         after = next((one.inlet_Pa for one in later if one.kind == "restart"), None)

@@ -12,8 +12,7 @@ from verification.harness.paths import ROOT
 from verification.harness.run import Job, Outcome
 from verification.harness.side_by_side import Tell
 from verification.precision.measure import timed
-from verification.stability.bisection import bisected
-from verification.stability.family import FAILED, GARBAGE, MARKED, REFUSED, STABLE, STRATA, Checked, Family, Point
+from verification.stability.family import FAILED, GARBAGE, MARKED, REFUSED, STABLE, STRATA, Checked, Family, Point, bisected
 from verification.stability.store import EdgeFound, PointFound, Record
 
 RUNS = paths.RUNS / "atlas"

@@ -40,11 +40,12 @@ def time_of(inlet_Pa: float) -> float:
     return (inlet_Pa - START_PA) / RATE_PA_S
 
 
-def events_of(steps: Sequence[Step], end_Pa: float) -> list[dict[str, Any]]:
-    """The events of a growth history: start, arrests of 0.05 MPa or more, restarts, stop."""
+def events_of(steps: Sequence[Step], end_Pa: float, mechanics: str) -> list[dict[str, Any]]:
+    """The events of a growth history: start, arrests of 0.05 MPa or more, restarts, stop; with inertia by J, as if at an interface."""
+    decided = {"by": "J", "at_interface": True} if mechanics == "explicit" else {"by": "energy", "at_interface": False}
 
     def event(kind: str, inlet_Pa: float, x: float, y: float) -> dict[str, Any]:
-        return {"kind": kind, "time_s": time_of(inlet_Pa), "inlet_Pa": inlet_Pa, "tip_x_m": x, "tip_y_m": y}
+        return {"kind": kind, "time_s": time_of(inlet_Pa), "inlet_Pa": inlet_Pa, "tip_x_m": x, "tip_y_m": y, **decided}
 
     events = [event("start", *steps[0])] if steps else []
     for k, step in enumerate(steps):
@@ -105,7 +106,7 @@ def write_run(
         "scene": folder.parent.name, "variant": folder.name, "status": status, "reason": "" if status == "completed" else "made to fail",
         "mechanics": mechanics, "cells": 6400, "particles": 25600, "steps": 100, "time_s": time_of(end_Pa), "inlet_Pa": end_Pa,
         "wall_s": 1.0, "particle_steps_per_s": 1e7, "peak_memory_MB": 50.0, "version": "0", "mouth_opening_m": 1e-3,
-        "fracture_volume_m2": 1e-3, "energy": {"kinetic": 1.0}, "tips": [tip], "events": events_of(steps, end_Pa),
+        "fracture_volume_m2": 1e-3, "energy": {"kinetic": 1.0}, "tips": [tip], "events": events_of(steps, end_Pa, mechanics),
     }  # fmt: skip
     (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
     return folder

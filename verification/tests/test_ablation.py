@@ -15,11 +15,10 @@ from verification.ablation import store
 from verification.ablation.effects import CHANGES, NEEDED, NOTHING, SPARED, Tried, effects_of, free, missing, needs, not_needed, tried
 from verification.ablation.ingredients import LEFT_OUT, MODELLED, RESOLVED, Ingredient, View, ingredients_of, mirrored, named
 from verification.ablation.measure import INTERFACES, OWN, NoBase, table_of
-from verification.ablation.reasons import reasons, unexplained
-from verification.harness.effects import Effect
+from verification.ablation.store import reasons, unexplained
 from verification.harness.load import Run, load
 from verification.harness.paths import EXPERIMENTS
-from verification.harness.quantities import quantities_of
+from verification.harness.quantities import Effect, quantities_of
 from verification.harness.scenes import content_of, scenes_of
 from verification.tests.fake_run import climb, write_run
 

@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 
 from verification.harness.budget import Line, Tried, VARIANTS, budget_of, jobs_of, main, table, totals_of
-from verification.harness.effects import Effect
 from verification.harness.factors import Alternative, Factor, factors_of, toml
 from verification.harness.load import Run, load
 from verification.harness.paths import EXPERIMENTS
+from verification.harness.quantities import Effect
 from verification.harness.run import Outcome
 from verification.harness.scenes import content_of, scenes_of, variants_of
 from verification.tests.fake_run import climb, write_run

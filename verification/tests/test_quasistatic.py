@@ -103,16 +103,6 @@ def test_an_interrupted_run_goes_on_to_the_same_digits(tmp_path: Path, name: str
             assert cut[key] == whole[key], key
 
 
-def test_the_same_digits_again_and_on_two_threads(tmp_path: Path) -> None:
-    histories = []
-    for name, threads in (("one", 1), ("two", 2), ("again", 1)):
-        scene = EXPERIMENTS / "exp1_single_interface.toml"
-        assert run(Job(scene, "soft", tmp_path / name, (*LONG, "numerics.cell_m=2", "fracture.increment_m=2"), threads)).ok
-        histories.append((tmp_path / name / "history.csv").read_bytes())
-    assert histories[0] == histories[1] == histories[2]
-    assert len(histories[0].splitlines()) > 5
-
-
 @pytest.mark.slow
 def test_a_thousand_random_scenes_end_in_equilibrium_or_a_mechanism() -> None:
     """Balance, contact and friction to 1e-8 of the load in each; checked in C++, see solver/tests/test_random_scenes.cpp."""

@@ -1,4 +1,4 @@
-"""What the README files name is there."""
+"""What README files name is there, and the version is the same wherever it stands."""
 
 import re
 from pathlib import Path
@@ -25,3 +25,10 @@ def test_names_are_found() -> None:
     """The pattern finds names, and one that is gone is missed."""
     assert NAMED.findall("see `solver/run.cpp` and `a/b.json`, not `K_I/E`") == ["solver/run.cpp", "a/b.json"]
     assert len(READMES) > 5
+
+
+def test_the_version_is_the_same_everywhere() -> None:
+    places = {"CMakeLists.txt": r"project\(strata VERSION (\S+)", "CITATION.cff": r"^version: (\S+)", "CHANGELOG.md": r"^## (\S+)"}
+    found = {name: re.search(pattern, (ROOT / name).read_text(), re.MULTILINE) for name, pattern in places.items()}
+    assert len({match and match.group(1) for match in found.values()}) == 1, found
+    assert None not in found.values()

@@ -9,10 +9,9 @@ import pytest
 
 from verification.harness.run import Outcome
 from verification.stability import store
-from verification.stability.bisection import bisected
 from verification.stability.catalogue import check
 from verification.stability.family import (
-    FAILED, GARBAGE, MARKED, REFUSED, STABLE, BadFamily, Checked, Edge, Family, Parameter, Point, at_most, close,
+    FAILED, GARBAGE, MARKED, REFUSED, STABLE, BadFamily, Checked, Edge, Family, Parameter, Point, at_most, bisected, close,
 )  # fmt: skip
 from verification.stability.judge import changes, differs, problems
 from verification.stability.runner import found, of_failure, walk
@@ -41,11 +40,6 @@ def recorded(outcomes: str = "ssff", measured: float | None = 1.01) -> Record:
     return Record("walk", "1", EdgeFound(1.0, measured, 1.0, 1.02), points)
 
 
-def test_a_sound_record_passes() -> None:
-    """As declared, with the edge one per cent off."""
-    assert problems(a_walk(), recorded()) == []
-
-
 @pytest.mark.parametrize(("record", "said"), [
     (recorded("ssfx"), "2: garbage"), (recorded("sxff"), "0.9: garbage"), (recorded("ssfs"), "2: stable beyond the edge"),
     (recorded("ssfr"), "2: refused beyond the edge"), (recorded("ssfm"), "2: marked beyond the edge"),
@@ -59,13 +53,6 @@ def test_what_is_not_as_declared_is_refused(record: Record | None, said: str) ->
     assert any(said in problem for problem in problems(a_walk(), record)), problems(a_walk(), record)
 
 
-def test_a_theory_that_was_not_computed_is_refused() -> None:
-    """A record without the predicted edge, and one with an edge that the family does not have."""
-    record = recorded()
-    assert problems(a_walk(), replace(record, edge=EdgeFound(None, 1.0, 0.9, 1.1))) != []
-    assert problems(a_walk(edge=None, beyond=(STABLE, FAILED)), record) == ["an edge was measured that the family does not have"]
-
-
 def test_at_the_edge_either_side_will_do_but_garbage_never() -> None:
     """A point within the tolerance of the edge may be sound or not."""
     points = (*a_walk().points, Point("1.02", 1.02, SCENE))
@@ -74,33 +61,23 @@ def test_at_the_edge_either_side_will_do_but_garbage_never() -> None:
         assert (problems(replace(a_walk(), points=points), record) == []) == fine, outcome
 
 
-def test_an_edge_below_turns_the_sides() -> None:
-    """unsound_above = False: what lies below the edge is beyond it."""
-    edge = replace(a_walk().edge or Edge(""), unsound_above=False)
-    assert problems(a_walk(edge=edge), recorded("ffss")) == []
-    assert problems(a_walk(edge=edge), recorded("ssff")) != []
+BELOW, FAR = Edge("", lambda: 1.0, unsound_above=False), Edge("", lambda: 3.0)
 
 
-def test_marks_before_the_edge_are_fine_only_where_declared() -> None:
-    """before = (STABLE, MARKED); nothing else may be declared."""
-    family = a_walk(before=(STABLE, MARKED))
-    assert problems(family, recorded("smff")) == [] and problems(family, recorded("sfff")) != []
-    with pytest.raises(BadFamily):
-        check(a_walk(before=(FAILED,)))
-
-
-def test_points_on_one_side_alone_are_refused() -> None:
-    """An edge that no point is beyond has not been walked across."""
-    edge = replace(a_walk().edge or Edge(""), predicted=lambda: 3.0)
-    record = replace(recorded("ssss"), edge=EdgeFound(3.0, 3.0, 2.9, 3.1))
-    assert problems(a_walk(edge=edge), record) == ["no points on both sides of the edge"]
-
-
-def test_without_an_edge_all_points_are_as_declared() -> None:
-    """Stable by construction means everywhere."""
-    family = a_walk(edge=None, beyond=(STABLE,))
-    assert problems(family, replace(recorded("ssss"), edge=None)) == []
-    assert problems(family, replace(recorded("sssf"), edge=None)) != []
+@pytest.mark.parametrize(("given", "record", "fine"), [
+    ({}, recorded(), True),  # as declared, with the edge one per cent off
+    ({}, replace(recorded(), edge=EdgeFound(None, 1.0, 0.9, 1.1)), False),  # the predicted edge was not computed
+    ({"edge": None, "beyond": (STABLE, FAILED)}, recorded(), False),  # an edge was measured that the family does not have
+    ({"edge": BELOW}, recorded("ffss"), True), ({"edge": BELOW}, recorded("ssff"), False),  # what lies below the edge is beyond it
+    ({"before": (STABLE, MARKED)}, recorded("smff"), True), ({"before": (STABLE, MARKED)}, recorded("sfff"), False),
+    ({"edge": FAR}, replace(recorded("ssss"), edge=EdgeFound(3.0, 3.0, 2.9, 3.1)), False),  # no points on both sides of the edge
+    ({"edge": None, "beyond": (STABLE,)}, replace(recorded("ssss"), edge=None), True),  # stable by construction means everywhere
+    ({"edge": None, "beyond": (STABLE,)}, replace(recorded("sssf"), edge=None), False),
+])  # fmt: skip
+def test_what_is_declared_decides(given: dict[str, Any], record: Record, fine: bool) -> None:
+    """Sides of the edge, outcomes before and beyond it, a family without one."""
+    found = problems(a_walk(**given), record)
+    assert (found == []) == fine, found
 
 
 def test_checks_refuse_zero_twice_and_the_other_sign() -> None:
@@ -132,7 +109,7 @@ def test_families_are_checked() -> None:
     family = a_walk()
     check(family)
     wrong = (
-        replace(family, points=(*family.points, family.points[0])), replace(family, beyond=(GARBAGE,)), replace(family, beyond=()),
+        replace(family, points=(*family.points, family.points[0])), replace(family, beyond=(GARBAGE,)), replace(family, beyond=()), replace(family, before=(FAILED,)),
         replace(family, points=tuple(replace(point, smoke=False) for point in family.points)), replace(family, says=""),
         replace(family, points=(*family.points, Point("3", 3.0, Path("no/such.toml")))),
         replace(family, points=(*family.points, Point("3", 3.0, SCENE, program="abacus"))), replace(family, edge=Edge("Made up.")),

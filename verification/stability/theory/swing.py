@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verification.stability.bisection import bisected
+from verification.stability.family import bisected
 
 Array = np.ndarray
 

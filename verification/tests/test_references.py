@@ -1,10 +1,12 @@
-"""Distances between paths, and boundary elements' paths as the command line gives them."""
+"""Boundary elements' paths and fields as the command line of strata-reference gives them, and what is made of them."""
 
 import numpy as np
 import pytest
 
 from verification.harness.crack_paths import exact_path, farthest, first_kink_deg, rise_at
 from verification.harness.load import LoadError
+from verification.harness.reference import values
+from verification.ladder.fields import at_points, lattice
 
 
 def test_farthest_is_of_points_from_the_line_over_the_common_length() -> None:
@@ -27,3 +29,22 @@ def test_experiments_turn_as_the_parallel_crack_says() -> None:
     assert away.shape == to_it.shape == (4, 2)
     assert np.all(np.diff(away[:, 0]) < 0.0) and np.all(np.diff(to_it[:, 0]) > 0.0)
     assert np.allclose(np.hypot(*np.diff(to_it, axis=0).T), 1.0)
+
+
+def test_places_return_to_the_lattice_that_single_precision_left() -> None:
+    exact = (np.arange(80) + 0.5) * 0.125
+    assert np.array_equal(lattice(exact.astype(np.float32).astype(float) + 1e-6, 0.125), exact)
+
+
+def test_places_off_the_lattice_are_refused() -> None:
+    with pytest.raises(LoadError, match="lattice"):
+        lattice(np.array([0.1, 0.3, 0.5 + 0.02]), 0.2)
+
+
+def test_points_through_files_are_answered_as_those_in_the_command() -> None:
+    x, y = [0.1, 0.25, 1.0 / 3.0], [0.7, 0.2, 0.9]
+    settings = {"time": "sine", "angular_frequency_1_s": 3500.0, "time_s": 1e-3}
+    through_files = at_points("manufactured_standing", ("u_x_m", "b_y_m_s2"), {"x_m": np.array(x), "y_m": np.array(y)}, settings)
+    for found, quantity in zip(through_files, ("u_x_m", "b_y_m_s2")):
+        assert np.array_equal(found, values("manufactured_standing", quantity, x_m=x, y_m=y, **settings))
+        assert len(set(found)) == 3

@@ -1,21 +1,40 @@
-"""Restart behind an interface by the energy of a finite increment: that of the reference, and not of the cells."""
+"""Experiment 1: where growth starts, how the fracture climbs, and its restart behind an interface by the energy of a finite increment."""
 
 import pytest
 
-from verification.harness.reference import value
-
+from verification.harness.observables import measure
 from verification.harness.paths import EXPERIMENTS
+from verification.harness.reference import value
 from verification.tests.cases import completed
 
 SCENE = EXPERIMENTS / "exp1_single_interface.toml"
 CLOSING_PA = 2.0e6
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("sides", ["traction", "fixed"])
+def test_uniform_pressure_starts_at_the_critical_pressure_and_runs(sides: str) -> None:
+    run = completed(SCENE, "uniform", (f"domain.sides={sides}",))
+    expected = value("block_crack", "critical_net_pressure_Pa", half_length_m=5.0, width_m=80.0, half_height_m=80.0, edges=sides)
+    measured = measure("start_Pa", {}, run, None)
+    start = measured.low
+    assert measured.exact and start - CLOSING_PA == pytest.approx(expected, rel=0.02)
+    assert measure("final_height_m", {}, run, None).low >= 70.0
+    assert run.summary.inlet_Pa - start < 0.1 * (start - CLOSING_PA), "growth under uniform pressure is unstable: a jump, no slope"
+
+
+@pytest.mark.slow
+def test_the_study_s_flow_with_dry_points_climbs_with_a_slope() -> None:
+    run = completed(SCENE, "perfect")
+    uniform = completed(SCENE, "uniform", ("domain.sides=fixed",))
+    heights = (20.0, 35.0, 50.0, 65.0)
+    pressures = [measure("pressure_at_height_difference_Pa", {"height_m": height}, run, uniform).low for height in heights]
+    assert all(later - earlier > 0.01e6 for earlier, later in zip(pressures, pressures[1:])), pressures
+
+
 def net_restart_Pa(cell_m: float, increment_m: float) -> float:
     """Net inlet pressure at which the fracture under uniform pressure first goes on behind the soft interface, Pa."""
-    settings = (
-        "numerics.mechanics=quasistatic", f"numerics.cell_m={cell_m}", "numerics.far_cell_m=4", f"fracture.increment_m={increment_m}"
-    )
+    settings = ("numerics.mechanics=quasistatic", f"numerics.cell_m={cell_m}", "numerics.far_cell_m=4", f"fracture.increment_m={increment_m}")
     run = completed(SCENE, "uniform_soft", settings)
     return next(event.inlet_Pa for event in run.summary.events if event.kind == "restart") - CLOSING_PA
 
