@@ -1,7 +1,5 @@
 """Writes run folders that look like the solver's, from made-up curves: what the page's tests read."""
 
-import csv
-import json
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -10,6 +8,7 @@ import h5py
 import numpy as np
 
 from verification.harness.claim_data import (NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, Case, CaseResult, ClaimResult, Reading, write_claims)
+from verification.tests.fake_run import write_files
 
 RATE_PA_S = 0.35e6
 START_PA = 2.0e6
@@ -73,8 +72,6 @@ def height_at(plan: Plan, inlet_Pa: np.ndarray) -> np.ndarray:
 def write_run(root: Path, number: int, plan: Plan) -> Path:
     """One run's folder with all its files."""
     folder = root / plan.mechanics / STEMS[number] / plan.variant
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "scene.toml").write_text(scene_text(number, plan), encoding="utf-8")
     inlet = np.linspace(START_PA, 4.0e6, 120)
     height = height_at(plan, inlet)
     end = int(np.argmax(height >= 70.0)) if (height >= 70.0).any() else inlet.size - 1
@@ -82,14 +79,13 @@ def write_run(root: Path, number: int, plan: Plan) -> Path:
         end = inlet.size // 4
     inlet, height = inlet[: end + 1], height[: end + 1]
     drift = plan.drift_m * ((height - 5.0) / 65.0) ** 2
-    _write_history(folder, plan, inlet, height, drift)
-    _write_summary(folder, plan, inlet, height, drift)
+    write_files(folder, scene_text(number, plan), _history(plan, inlet, height, drift), _summary(folder, plan, inlet, height, drift))
     _write_fields(folder, inlet, height, plan)
     return folder
 
 
-def _write_history(folder: Path, plan: Plan, inlet: np.ndarray, height: np.ndarray, drift: np.ndarray) -> None:
-    """history.csv with the ledger's columns, and in quasi-static the energy released and the fluid's balance."""
+def _history(plan: Plan, inlet: np.ndarray, height: np.ndarray, drift: np.ndarray) -> dict[str, np.ndarray]:
+    """The history with the ledger's columns, and in quasi-static the energy released and the fluid's balance."""
     work = 1e3 * (height - 5.0) ** 1.5
     columns = {
         "time_s": (inlet - START_PA) / RATE_PA_S, "inlet_Pa": inlet, "tip_x_m": 40.0 + drift, "tip_y_m": height,
@@ -99,10 +95,7 @@ def _write_history(folder: Path, plan: Plan, inlet: np.ndarray, height: np.ndarr
     }
     if plan.mechanics == "quasistatic":
         columns |= {"G_N_m": np.full_like(inlet, 204.0), "G_by_J_N_m": np.full_like(inlet, 200.0), "fluid_volume_balance": np.full_like(inlet, 1e-11)}
-    with (folder / "history.csv").open("w", encoding="utf-8", newline="") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(columns)
-        writer.writerows(zip(*columns.values()))
+    return columns
 
 
 def _event(kind: str, row: int, inlet: np.ndarray, height: np.ndarray, drift: np.ndarray) -> dict[str, Any]:
@@ -110,8 +103,8 @@ def _event(kind: str, row: int, inlet: np.ndarray, height: np.ndarray, drift: np
     return {"kind": kind, "time_s": (inlet[row] - START_PA) / RATE_PA_S, "inlet_Pa": inlet[row], "tip_x_m": 40.0 + drift[row], "tip_y_m": height[row]}
 
 
-def _write_summary(folder: Path, plan: Plan, inlet: np.ndarray, height: np.ndarray, drift: np.ndarray) -> None:
-    """summary.json with the events that the curve has."""
+def _summary(folder: Path, plan: Plan, inlet: np.ndarray, height: np.ndarray, drift: np.ndarray) -> dict[str, Any]:
+    """The summary with the events that the curve has."""
     here = (inlet, height, drift)
     events = []
     if (height > 5.0).any():
@@ -127,14 +120,12 @@ def _write_summary(folder: Path, plan: Plan, inlet: np.ndarray, height: np.ndarr
         event |= {"by": plan.by, "at_interface": plan.by == "J" and near}
     summary = {
         "scene": folder.parent.name, "variant": plan.variant, "status": plan.status, "reason": plan.reason,
-        "mechanics": plan.mechanics, "cells": 1600, "particles": 6400, "steps": 12345, "time_s": 1.0,
-        "inlet_Pa": inlet[-1], "wall_s": 12.5, "particle_steps_per_s": 2.0e7, "peak_memory_MB": 55.0,
-        "version": "0.1.0", "energy": {"closure": 0.005}, "suspect": [], "events": events,
+        "mechanics": plan.mechanics, "inlet_Pa": inlet[-1], "energy": {"closure": 0.005}, "suspect": [], "events": events,
         "tips": [{"x_m": 40.0, "y_m": height[-1], "J_spread": 0.006, "kink_deg": 1.0}],
     }
     if plan.mechanics == "quasistatic":
         summary["monitors"] = {"volume_balance": 3e-11, "contact_residual": 2e-12, "mirror": True}
-    (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    return summary
 
 
 def _write_fields(folder: Path, inlet: np.ndarray, height: np.ndarray, plan: Plan) -> None:

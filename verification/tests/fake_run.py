@@ -1,17 +1,22 @@
 """Writes run folders as the contract describes them, so that the harness can be tested without the solver."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
 
-COLUMNS = (
-    "time_s", "inlet_Pa", "tip_x_m", "tip_y_m", "height_m", "J_N_m", "K_I_Pa_sqrt_m", "K_II_Pa_sqrt_m", "mouth_opening_m",
-    "fracture_volume_m2", "kinetic_J", "strain_J", "interface_strain_J", "friction_J", "failure_J",
-)  # fmt: skip
+# Columns of the history that say nothing, and what a summary says of the run itself.
+CONSTANT = {
+    "J_N_m": 201.0, "K_I_Pa_sqrt_m": 1.4e6, "K_II_Pa_sqrt_m": 0.0, "mouth_opening_m": 1e-3, "fracture_volume_m2": 1e-3,
+    "kinetic_J": 1.0, "strain_J": 10.0, "interface_strain_J": 0.0,
+}  # fmt: skip
+OF_THE_RUN = {
+    "cells": 6400, "particles": 25600, "steps": 100, "time_s": 1.0, "wall_s": 1.0, "particle_steps_per_s": 1e7, "peak_memory_MB": 50.0, "version": "0",
+    "mouth_opening_m": 1e-3, "fracture_volume_m2": 1e-3,
+}  # fmt: skip
 
 SCENE = """
 title = "made up"
@@ -58,15 +63,25 @@ def events_of(steps: Sequence[Step], end_Pa: float, mechanics: str) -> list[dict
     return [*events, event("stop", end_Pa, *last)]
 
 
-def write_history(folder: Path, steps: Sequence[Step], end_Pa: float, friction_J: float) -> None:
-    """Write history.csv: the start, a row a step, the end; energy in interfaces grows with the steps."""
+def write_files(folder: Path, scene: str, columns: Mapping[str, Iterable[float]], summary: Mapping[str, Any]) -> None:
+    """Write scene, history and summary of a run."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "scene.toml").write_text(scene, encoding="utf-8")
+    lines = [",".join(columns), *(",".join(map(str, row)) for row in zip(*columns.values()))]
+    (folder / "history.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    (folder / "summary.json").write_text(json.dumps({**OF_THE_RUN, **summary}), encoding="utf-8")
+
+
+def history_of(steps: Sequence[Step], end_Pa: float, friction_J: float) -> dict[str, Sequence[float]]:
+    """The columns of a history: the start, a row a step, the end; energy in interfaces grows with the steps."""
     rows = [(START_PA, 40.0, 5.0, 0.0)]
     rows += [(p, x, y, friction_J * (k + 1) / len(steps)) for k, (p, x, y) in enumerate(steps)]
     rows.append((end_Pa, *rows[-1][1:]))
-    lines = [",".join(COLUMNS)]
-    for p, x, y, spent in rows:
-        lines.append(",".join(str(v) for v in (time_of(p), p, x, y, y, 201.0, 1.4e6, 0.0, 1e-3, 1e-3, 1.0, 10.0, 0.0, 0.5 * spent, 0.5 * spent)))
-    (folder / "history.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    inlet, x, y, spent = zip(*rows)
+    return {
+        "time_s": [time_of(p) for p in inlet], "inlet_Pa": inlet, "tip_x_m": x, "tip_y_m": y, "height_m": y,
+        **{name: [value] * len(rows) for name, value in CONSTANT.items()}, **{name: [0.5 * one for one in spent] for name in ("friction_J", "failure_J")},
+    }  # fmt: skip
 
 
 def write_result(folder: Path, failed_m: Sequence[tuple[float, float]]) -> None:
@@ -83,32 +98,22 @@ def write_result(folder: Path, failed_m: Sequence[tuple[float, float]]) -> None:
 
 
 def write_run(
-    folder: Path,
-    steps: Sequence[Step],
-    end_Pa: float = 3.0e6,
-    layers: str = '[{rock = "stiff", thickness_m = 10.0}, {rock = "stiff", thickness_m = 70.0}]',
-    along: str = "y",
-    status: str = "completed",
-    friction_J: float = 0.0,
-    failed_m: Sequence[tuple[float, float]] = (),
-    mechanics: str = "explicit",
+    folder: Path, steps: Sequence[Step], end_Pa: float = 3.0e6,
+    layers: str = '[{rock = "stiff", thickness_m = 10.0}, {rock = "stiff", thickness_m = 70.0}]', along: str = "y", status: str = "completed",
+    friction_J: float = 0.0, failed_m: Sequence[tuple[float, float]] = (), mechanics: str = "explicit",
 ) -> Path:
     """Write a whole run folder from its growth steps."""
-    folder.mkdir(parents=True, exist_ok=True)
     interfaces = "[" + ", ".join(['"weak"'] * (layers.count("{") - 1)) + "]"
-    scene = SCENE.format(along=along, layers=layers, interfaces=interfaces, mechanics=mechanics)
-    (folder / "scene.toml").write_text(scene, encoding="utf-8")
-    write_history(folder, steps, end_Pa, friction_J)
-    write_result(folder, failed_m)
     x, y = steps[-1][1:] if steps else (40.0, 5.0)
     tip = {"x_m": x, "y_m": y, "K_I_Pa_sqrt_m": 1.4e6, "K_II_Pa_sqrt_m": None, "J_N_m": 201.0, "J_spread": 0.004, "kink_deg": 0.0}
     summary = {
         "scene": folder.parent.name, "variant": folder.name, "status": status, "reason": "" if status == "completed" else "made to fail",
-        "mechanics": mechanics, "cells": 6400, "particles": 25600, "steps": 100, "time_s": time_of(end_Pa), "inlet_Pa": end_Pa,
-        "wall_s": 1.0, "particle_steps_per_s": 1e7, "peak_memory_MB": 50.0, "version": "0", "mouth_opening_m": 1e-3,
-        "fracture_volume_m2": 1e-3, "energy": {"kinetic": 1.0}, "tips": [tip], "events": events_of(steps, end_Pa, mechanics),
+        "mechanics": mechanics, "time_s": time_of(end_Pa), "inlet_Pa": end_Pa, "energy": {"kinetic": 1.0}, "tips": [tip],
+        "events": events_of(steps, end_Pa, mechanics),
     }  # fmt: skip
-    (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    scene = SCENE.format(along=along, layers=layers, interfaces=interfaces, mechanics=mechanics)
+    write_files(folder, scene, history_of(steps, end_Pa, friction_J), summary)
+    write_result(folder, failed_m)
     return folder
 
 
