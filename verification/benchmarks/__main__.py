@@ -14,9 +14,7 @@ from verification.benchmarks import kernels, runs
 from verification.benchmarks.figure import Figure
 from verification.benchmarks.judge import BAD, SLOWER, Line, as_plain, compare, marks
 from verification.benchmarks.machine import Load, busy_processors, this_build, this_machine
-from verification.benchmarks.records import (
-    BadRecord, OtherMachine, Record, append, as_json, broken, last_record, why_not_recorded,
-)  # fmt: skip
+from verification.benchmarks.records import BadRecord, OtherMachine, Record, append, as_json, broken, last_record, why_not_recorded
 from verification.benchmarks.table import report
 from verification.harness.paths import RUNS
 
@@ -25,9 +23,7 @@ REPETITIONS = 5
 OK, WORSE, WRONG_USE, NOT_RECORDED = 0, 1, 2, 4
 
 # What --quick takes of the kernels: the marks on speed, and one of every kind of event.
-QUICK_KERNELS = re.compile(
-    r"step/\w+/\w+/flip/\w+/points4/cells80/|stage/|growth/explicit|contact/.*cells80|flow/.*cells80|write/"
-)
+QUICK_KERNELS = re.compile(r"step/\w+/\w+/flip/\w+/points4/cells80/|stage/|growth/explicit|contact/.*cells80|flow/.*cells80|write/")
 
 
 def parse(arguments: Sequence[str] | None) -> argparse.Namespace:

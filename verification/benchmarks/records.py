@@ -89,8 +89,7 @@ def check_machine(here: Machine, there: Machine) -> None:
 
 def broken(record: Record) -> list[str]:
     """Names of what is no figure; experiments that do not come to their end in time are a finding and not broken."""
-    return [figure.name for figure in record.figures
-            if figure.wrong() and not (figure.problem and figure.name.startswith("experiments/"))]  # fmt: skip
+    return [figure.name for figure in record.figures if figure.wrong() and not (figure.problem and figure.name.startswith("experiments/"))]
 
 
 def why_not_recorded(record: Record) -> list[str]:

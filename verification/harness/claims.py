@@ -161,9 +161,7 @@ def readings_of(
 # --- claims
 
 
-def evaluate(
-    claim: dict[str, Any], experiment: str, runs: Runs, choices: Sequence[Choice] = (), experiments: Path = EXPERIMENTS
-) -> ClaimResult:
+def evaluate(claim: dict[str, Any], experiment: str, runs: Runs, choices: Sequence[Choice] = (), experiments: Path = EXPERIMENTS) -> ClaimResult:
     """Evaluate one claim of a scene."""
     where = f"{experiment}, claim {claim.get('id')}"
     for key in ("id", "text", "observable", "case", "why"):

@@ -121,6 +121,4 @@ Keys = Callable[[float], tuple[str, ...]]  # the further scene keys of a size of
 
 def cell_levels(*cells_m: float, settings: tuple[str, ...] = (), variant: str = "", of: Iterable[Keys] = ()) -> tuple[Level, ...]:
     """Levels of cell sizes (m), coarse to fine, all with the same further settings, and with those that each size asks for."""
-    return tuple(
-        Level(f"{h:g} m", h, (f"numerics.cell_m={h!r}", *settings, *(key for keys in of for key in keys(h))), variant) for h in cells_m
-    )
+    return tuple(Level(f"{h:g} m", h, (f"numerics.cell_m={h!r}", *settings, *(key for keys in of for key in keys(h))), variant) for h in cells_m)

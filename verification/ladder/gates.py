@@ -113,12 +113,7 @@ def write(family: str, gates: Gates, folder: Path | None = None) -> None:
 
 def keys_of(families: Families, family: str) -> list[Key]:
     """The keys that a family's gates should have, in its order."""
-    return [
-        (case.name, quantity.name, level.label)
-        for case in families.get(family, ())
-        for quantity in case.quantities
-        for level in case.levels
-    ]
+    return [(case.name, quantity.name, level.label) for case in families.get(family, ()) for quantity in case.quantities for level in case.levels]
 
 
 def stale(families: Families, folder: Path | None = None) -> list[str]:

@@ -13,9 +13,7 @@ MIDDLE_M = 16.0  # of the scenes' block
 
 AT_REST = ("numerics.mechanics=quasistatic", "stop.time_s=0")
 # The same crack settled by damping, near twice the slowest mode that matters.
-SETTLING = (
-    "numerics.mechanics=explicit", "numerics.kinematics=total", "numerics.damping_1_s=40", "stop.time_s=0.8", "output.fields_every_s=0.8",
-)  # fmt: skip
+SETTLING = ("numerics.mechanics=explicit", "numerics.kinematics=total", "numerics.damping_1_s=40", "stop.time_s=0.8", "output.fields_every_s=0.8")
 
 
 def upright(x_m: float, top_m: float, length_m: float = 2.0 * HALF_LENGTH_M) -> str:

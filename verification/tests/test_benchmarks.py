@@ -11,9 +11,7 @@ import pytest
 from verification.benchmarks import kernels, machine, runs
 from verification.benchmarks.__main__ import NOT_RECORDED, OK, WORSE, WRONG_USE, main
 from verification.benchmarks.figure import CORE, MEMORY, NONE, Figure, exponent
-from verification.benchmarks.judge import (
-    BROKEN, FASTER, GONE, NEW, SAME, SLOWER, UNJUDGED, Mark, best_crack, compare, compare_figure, marks, sizes,
-)  # fmt: skip
+from verification.benchmarks.judge import BROKEN, FASTER, GONE, NEW, SAME, SLOWER, UNJUDGED, Mark, best_crack, compare, compare_figure, marks, sizes
 from verification.benchmarks.machine import Build, Load, Machine
 from verification.benchmarks.records import (
     BadRecord, OtherMachine, Record, append, as_json, file_of, from_json, last_record, load_records, why_not_recorded,
@@ -29,8 +27,7 @@ BLOCK = "step/updated/bspline2/flip/fast/points4/cells80"
 def a_figure(name: str = f"{BLOCK}/threads1", seconds: float = 1e-8, **more: Any) -> Figure:
     """A cost of so many seconds in five repetitions that differ by a few per cent."""
     values = tuple(float(f"{seconds * factor:.5g}") for factor in (1.0, 1.02, 0.99, 1.01, 1.0))
-    made = Figure(name, "particle-step", values, peak_flop_s=(50e9,) * 5, stream_B_s=(40e9,) * 5,
-                  about={"flop_a_unit": 340.0, "particles": 25600.0})  # fmt: skip
+    made = Figure(name, "particle-step", values, peak_flop_s=(50e9,) * 5, stream_B_s=(40e9,) * 5, about={"flop_a_unit": 340.0, "particles": 25600.0})
     return replace(made, **more)
 
 
@@ -54,8 +51,7 @@ def an_entry(name: str, real_time: float, **more: Any) -> dict[str, Any]:
 def test_a_cost_is_taken_relative_to_the_rate_beside_each_repetition() -> None:
     """A machine that is half as fast in some repetitions changes the cost and not the calibrated cost."""
     even = a_figure(peak_flop_s=(50e9,) * 5)
-    uneven = replace(even, values=tuple(v * f for v, f in zip(even.values, (1, 2, 2, 2, 1))),
-                     peak_flop_s=tuple(50e9 / f for f in (1, 2, 2, 2, 1)))  # fmt: skip
+    uneven = replace(even, values=tuple(v * f for v, f in zip(even.values, (1, 2, 2, 2, 1))), peak_flop_s=tuple(50e9 / f for f in (1, 2, 2, 2, 1)))
     assert uneven.median > 1.9 * even.median
     assert uneven.calibrated == pytest.approx(even.calibrated, rel=1e-12) == pytest.approx(500.0, rel=0.01)
     assert replace(even, bound=MEMORY).calibrated == pytest.approx(400.0, rel=0.01)

@@ -9,9 +9,7 @@ from typing import Any
 import pytest
 
 from verification.harness.choices import Choice
-from verification.harness.claim_data import (
-    NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, read_claims, write_claims,
-)  # fmt: skip
+from verification.harness.claim_data import NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, read_claims, write_claims
 from verification.harness.claims import BadClaim, Runs, case_of, claims_of, evaluate, evaluate_all, evaluate_each, record_finer
 from verification.harness.paths import EXPERIMENTS
 from verification.tests.fake_run import climb, write_run
@@ -254,9 +252,7 @@ def test_cells_of_half_the_size_have_verdicts_of_their_own_run_or_recorded(tmp_p
     folder, runs = tmp_path / "scenes", tmp_path / "runs"
     folder.mkdir()
     case = "{variant = 'weak', interface = 1, at_least = 5e4}"
-    (folder / "exp.toml").write_text(
-        f"[variants.weak]\n[[claim]]\nid = 'x'\ntext = 't'\nwhy = 'w'\nobservable = 'plateau_Pa'\ncase = [{case}]\n"
-    )
+    (folder / "exp.toml").write_text(f"[variants.weak]\n[[claim]]\nid = 'x'\ntext = 't'\nwhy = 'w'\nobservable = 'plateau_Pa'\ncase = [{case}]\n")
     write(runs / "quasistatic", "weak", 0.0, mechanics="quasistatic")
     write(runs / "set" / "0.5m" / "quasistatic", "weak", 0.2, mechanics="quasistatic")
     at_1_m, at_half = evaluate_each(folder, runs)

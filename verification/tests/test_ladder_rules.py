@@ -33,8 +33,7 @@ def a_row(error: float, size: float = 1.0, order: float | None = None, no_order:
 def ladder_of(*errors: float, no_order: str = "") -> list[Row]:
     """Rows of one quantity on cells halved from level to level, with their orders."""
     rows = [a_row(error, 1.0 / 2**k, no_order=no_order) for k, error in enumerate(errors)]
-    return [replace(row, order=order_of(before.error, row.error, 2.0) if before else None)
-            for before, row in zip([None, *rows], rows)]  # fmt: skip
+    return [replace(row, order=order_of(before.error, row.error, 2.0) if before else None) for before, row in zip([None, *rows], rows)]
 
 
 def gated(rows: list[Row]) -> dict[str, gates.Gates]:

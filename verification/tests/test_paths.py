@@ -15,15 +15,10 @@ from verification.tests.cases import completed
 SCENES = ("exp5_parallel_interface", "exp6_stress_reversal")
 
 # At rest: uniform pressure held, no growth, damped at twice the block's slowest mode.
-AT_REST = (
-    "fluid.law=uniform", "fluid.inlet={start_Pa=2.3e6, rate_Pa_s=0}", "fracture.growth=none", "numerics.damping_1_s=80", "stop.time_s=0.5",
-)  # fmt: skip
+AT_REST = ("fluid.law=uniform", "fluid.inlet={start_Pa=2.3e6, rate_Pa_s=0}", "fracture.growth=none", "numerics.damping_1_s=80", "stop.time_s=0.5")
 
 # The first metres of growth only. At 0.5 m the ramp starts later and rises faster: a shorter run to the same first turn.
-FIRST_METRES = {
-    1.0: ("stop.inlet_Pa=2.55e6",),
-    0.5: ("stop.inlet_Pa=2.55e6", "fluid.inlet={start_Pa=2.15e6, rate_Pa_s=0.7e6}"),
-}
+FIRST_METRES = {1.0: ("stop.inlet_Pa=2.55e6",), 0.5: ("stop.inlet_Pa=2.55e6", "fluid.inlet={start_Pa=2.15e6, rate_Pa_s=0.7e6}")}
 
 
 def reference_kink_deg(scene: Path) -> float:

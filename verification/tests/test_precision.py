@@ -11,9 +11,7 @@ from verification.harness.paths import ANALYTIC
 from verification.ladder.case import Level, Sample
 from verification.precision import measure, store
 from verification.precision.__main__ import main
-from verification.precision.judge import (
-    Panel, advice, cheapest, choice_for, judged, nearest, panel_of, pareto, run_at,
-)  # fmt: skip
+from verification.precision.judge import Panel, advice, cheapest, choice_for, judged, nearest, panel_of, pareto, run_at
 from verification.precision.problem import ELEMENTS, STRATA, BadProblem, Method, Problem, Setting, Wanted, checked
 from verification.precision.problems import PROBLEMS
 from verification.precision.store import FAILED, OK, REFUSED, Found, Point, Sheet
@@ -67,9 +65,7 @@ def test_the_front_is_what_nothing_beats() -> None:
 
 
 def test_the_table_takes_the_cheapest_within_and_says_where_there_is_none() -> None:
-    one = panel((method("a", 1.0, 0.5), method("b", 1.0)), [
-        point("a", 1.0, 0.04, 1.0), point("a", 0.5, 0.009, 9.0), point("b", 1.0, -0.008, 3.0),
-    ])  # fmt: skip
+    one = panel((method("a", 1.0, 0.5), method("b", 1.0)), [point("a", 1.0, 0.04, 1.0), point("a", 0.5, 0.009, 9.0), point("b", 1.0, -0.008, 3.0)])
     (row,) = advice([one])
     assert [dot and (dot.method.name, dot.level) for dot in row.choices] == [("a", "1 m"), ("b", "1 m"), None]
     assert row.best is not None and row.best.method.name == "b"
@@ -198,10 +194,7 @@ def test_sheets_are_read_as_they_were_written(tmp_path: Path) -> None:
 def test_problems_are_as_the_chart_relies_on() -> None:
     assert len({one.name for problem in PROBLEMS for one in problem.wanted}) == sum(len(problem.wanted) for problem in PROBLEMS)
     good = Problem("p", "", (wanted(),), (method("a", 1.0),))
-    for bad in (
-        replace(good, methods=(method("a", 1.0), method("a", 2.0))),
-        replace(good, methods=(method("a", 1.0, 2.0),)),
-    ):
+    for bad in (replace(good, methods=(method("a", 1.0), method("a", 2.0))), replace(good, methods=(method("a", 1.0, 2.0),))):
         with pytest.raises(BadProblem):
             checked((bad,))
 

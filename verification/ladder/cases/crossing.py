@@ -215,8 +215,7 @@ def crossing(increment_m: float, cells_m: tuple[float, ...], E_GPa: float = 10.0
 def loaded(ratio: float) -> Case:
     """Rocks of a ratio of moduli under the loaded state."""
     own = levels("loaded", (1.0, 0.5), rock_above(10.0 * ratio), far=1.0)
-    return case(f"loaded_{ratio:g}", f"springs between rocks whose moduli are 1 to {ratio:g}, loaded: what they carry",
-                own, CARRIES, smoke=2)  # fmt: skip
+    return case(f"loaded_{ratio:g}", f"springs between rocks whose moduli are 1 to {ratio:g}, loaded: what they carry", own, CARRIES, smoke=2)
 
 
 CASES = (

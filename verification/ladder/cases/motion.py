@@ -275,10 +275,7 @@ def sinking(run: Run, at: Fields) -> Array:
     return -rho_of(run) * G / M * (height * at["Y"] - 0.5 * at["Y"] ** 2)
 
 
-SINKING = (
-    field("u_y_m", "m", sinking, ""),
-    field("s_yy_Pa", "Pa", lambda run, at: -rho_of(run) * G * (size_m(run)[1] - at["Y"]), ""),
-)
+SINKING = (field("u_y_m", "m", sinking, ""), field("s_yy_Pa", "Pa", lambda run, at: -rho_of(run) * G * (size_m(run)[1] - at["Y"]), ""))
 
 
 def own_weight(mechanics: str, shape: str) -> Case:

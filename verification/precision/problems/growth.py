@@ -11,9 +11,7 @@ from verification.harness.paths import ANALYTIC, EXPERIMENTS
 from verification.harness.reference import settings_of, value
 from verification.ladder.case import Array, Level, Sample
 from verification.ladder.cases import kgd, paths
-from verification.precision.methods import (
-    FAR, MOVING, RESTING, STILL, Base, Curve, endless, methods, with_inertia, without_inertia,
-)  # fmt: skip
+from verification.precision.methods import FAR, MOVING, RESTING, STILL, Base, Curve, endless, methods, with_inertia, without_inertia
 from verification.precision.problem import ELEMENTS, Answer, Method, Problem, Setting, Wanted
 
 SHIPPED = ("ex_total_graded", "1 m"), ("ex_total", "1 m")  # what the scenes of Experiments 1 and 6 ask for
@@ -188,6 +186,4 @@ def kgd_problem(variant: str, solution: str, words: str) -> Problem:
     return Problem(f"kgd_{variant}", f"A fracture fed at 1e-4 m^2/s for 100 s, {words}", (course,), kgd_methods(variant), about_s=45.0)
 
 
-PROBLEMS = (
-    CROSSING, PATH, kgd_problem("toughness", kgd.TOUGHNESS, "toughness number 13.6"), kgd_problem("viscosity", kgd.VISCOSITY, "no toughness"),
-)  # fmt: skip
+PROBLEMS = (CROSSING, PATH, kgd_problem("toughness", kgd.TOUGHNESS, "toughness number 13.6"), kgd_problem("viscosity", kgd.VISCOSITY, "no toughness"))

@@ -8,9 +8,7 @@ from verification.harness.given import given, last, path_key, rock
 from verification.harness.load import LoadError, Run
 from verification.harness.paths import ANALYTIC
 from verification.stability.cracks import AT_REST, CRACK, MIDDLE_M, farthest_off, griffith_K, layers_setting, parted, upright
-from verification.stability.family import (
-    MARKED, REFUSED, STABLE, Checked, Family, Parameter, at_most, at_values, close, tip_is_near, walked,
-)  # fmt: skip
+from verification.stability.family import MARKED, REFUSED, STABLE, Checked, Family, Parameter, at_most, at_values, close, tip_is_near, walked
 
 SECTION = "Fractures that cross interfaces, corners, edges"
 CROSSING_M = 13.0  # half length of these cracks: at 20 degrees their tips are 4.4 cells from the interface

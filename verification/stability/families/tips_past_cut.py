@@ -8,9 +8,7 @@ from verification.harness.given import net_Pa
 from verification.harness.load import LoadError, Run
 from verification.harness.reference import value
 from verification.ladder.cases.crossing import LINE_M, SCENE, block, critical_Pa, cut, fracture_setting, fresh_m
-from verification.stability.family import (
-    MARKED, STABLE, At, Checked, Edge, Family, Parameter, at_most, at_values, close, tip_is_near, walked,
-)  # fmt: skip
+from verification.stability.family import MARKED, STABLE, At, Checked, Edge, Family, Parameter, at_most, at_values, close, tip_is_near, walked
 
 CELL_M = 1.0  # of the scene
 PLACES = (-2.0, -1.5, -1.0, -0.5, -0.25, -0.05, 0.0, 0.05, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0)  # cells beyond the interface
