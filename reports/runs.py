@@ -14,6 +14,7 @@ import h5py
 import numpy as np
 
 from reports.words import number
+from verification.harness.load import columns_of
 from verification.harness.scenes import MECHANICS, STUDY_VARIANTS, mechanics_of, scenes_of, variants_of
 
 Arrays = dict[str, np.ndarray]
@@ -131,16 +132,7 @@ def _columns(text: str) -> Arrays:
     rows = [row for row in csv.reader(text.splitlines()) if row]
     if not rows:
         raise ValueError("empty")
-    whole = [row for row in rows[1:] if len(row) == len(rows[0])]
-    return {name.strip(): np.array([_float(row[column]) for row in whole]) for column, name in enumerate(rows[0])}
-
-
-def _float(text: str) -> float:
-    """A cell of the history as a number, NaN where it is none."""
-    try:
-        return float(text)
-    except ValueError:
-        return float("nan")
+    return columns_of(rows[0], [row for row in rows[1:] if len(row) == len(rows[0])])
 
 
 _READERS: tuple[tuple[str, str, Callable[[str], Any]], ...] = (

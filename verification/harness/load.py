@@ -160,6 +160,18 @@ def read_summary(path: Path) -> Summary:
         raise LoadError(f"{path}: {error}") from error
 
 
+def columns_of(header: list[str], rows: list[list[str]]) -> dict[str, Array]:
+    """The columns of a table by its header's names, NaN where a cell is no number."""
+
+    def cell(text: str) -> float:
+        try:
+            return float(text)
+        except ValueError:
+            return math.nan
+
+    return {name.strip(): np.array([cell(row[k]) for row in rows]) for k, name in enumerate(header)}
+
+
 def read_history(path: Path) -> dict[str, Array]:
     """Read history.csv: a column a key, NaN where a cell is no number."""
     try:
@@ -172,14 +184,7 @@ def read_history(path: Path) -> dict[str, Array]:
     ragged = next((n for n, row in enumerate(rows[1:], 2) if len(row) != len(rows[0])), None)
     if ragged is not None:
         raise LoadError(f"{path}:{ragged}: not as many cells as the header names")
-
-    def cell(text: str) -> float:
-        try:
-            return float(text)
-        except ValueError:
-            return math.nan
-
-    return {name.strip(): np.array([cell(row[k]) for row in rows[1:]]) for k, name in enumerate(rows[0])}
+    return columns_of(rows[0], rows[1:])
 
 
 def load(folder: Path) -> Run:

@@ -4,6 +4,7 @@ import csv
 import hashlib
 import json
 import subprocess
+import time
 from pathlib import Path
 from typing import Any
 
@@ -65,3 +66,9 @@ def summary_in(folder: Path, scene: str | Path, *settings: str) -> dict[str, Any
     done = run_in(folder, scene, *settings)
     assert done.returncode == 0, done.stderr
     return summary_of(folder / "X")
+
+
+def wait_for(file: Path) -> None:
+    """Wait until a file is there."""
+    while not file.exists():
+        time.sleep(0.005)

@@ -4,7 +4,6 @@ import json
 import os
 import signal
 import threading
-import time
 from dataclasses import asdict
 from pathlib import Path
 
@@ -18,6 +17,7 @@ from verification.harness.paths import EXPERIMENTS
 from verification.harness.plan import expected_s
 from verification.harness.run import Outcome, load_outcome
 from verification.harness.scenes import MECHANICS, content_of, mechanics_of, scene_of, scenes_of, variants_of
+from verification.tests.cases import wait_for
 from verification.tests.fake_run import climb, write_run
 
 SCENE = """
@@ -166,12 +166,6 @@ def test_an_interrupt_ends_the_campaign_and_a_second_call_goes_on(campaign: Path
     scene.write_text(scene.read_text().replace("variants.stuck", "variants.other"))
     assert make(campaign) == 0
     assert sorted(calls(campaign)[before:]) == sorted({*left, "other"})
-
-
-def wait_for(file: Path) -> None:
-    """Wait until a file is there."""
-    while not file.exists():
-        time.sleep(0.005)
 
 
 def test_what_takes_longest_is_known_before_anything_was_run(tmp_path: Path) -> None:

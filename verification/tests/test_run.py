@@ -9,6 +9,7 @@ import pytest
 
 from verification.harness import run as harness
 from verification.harness.run import Job, Outcome, key_of, load_outcome, run
+from verification.tests.cases import wait_for
 
 SCENE = """
 title = "a"
@@ -103,12 +104,6 @@ def interrupted(job: Job, solver: Path) -> Outcome:
     stop = threading.Event()
     threading.Thread(target=lambda: (wait_for(job.out / "scene.toml"), stop.set())).start()
     return run(job, solver, stop=stop)
-
-
-def wait_for(file: Path) -> None:
-    """Wait until a file is there."""
-    while not file.exists():
-        time.sleep(0.005)
 
 
 def test_an_interrupted_run_ends_at_once_and_goes_on(tmp_path: Path, solver: Path, scene: Path) -> None:

@@ -11,7 +11,6 @@ from verification.tests.cases import completed
 
 SCENE = ANALYTIC / "three_layers.toml"
 SHALE_E_PRIME_PA = 10.0e9 / 0.96
-NUMBERS = ("K_I_Pa_sqrt_m", "K_II_Pa_sqrt_m", "J_N_m", "J_spread", "kink_deg")
 
 
 @pytest.mark.parametrize("cell_m", [1.0, 0.5])
