@@ -12,7 +12,7 @@ from reports.figures import Figure, defects_of, front_of, make, write_page
 from reports.shown import Shown
 from reports.words import NONE, general, minus, span
 from verification.stability import store
-from verification.stability.catalogue import families
+from verification.stability.families import families
 from verification.stability.family import FAILED, GARBAGE, MARKED, OUTCOMES, REFUSED, STABLE, Family
 from verification.stability.judge import problems
 from verification.stability.store import EdgeFound, PointFound, Record

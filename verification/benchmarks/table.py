@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from verification.benchmarks.figure import Figure
 from verification.benchmarks.judge import BAD, BAND, NEW, Line, Mark
 from verification.benchmarks.records import Record
-from verification.harness.table import aligned
+from verification.harness.command import aligned
 
 STEP = "particle-step"
 

@@ -12,9 +12,8 @@ from pathlib import Path
 
 from verification.faults.kill import KILLED, Tally, campaign
 from verification.harness import store
-from verification.harness.command import command
+from verification.harness.command import aligned, command
 from verification.harness.paths import solver
-from verification.harness.table import aligned
 
 RECORD = Path(__file__).parent / "records" / "kills.json"
 

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from verification.harness import store
 from verification.harness.choose import beginnings
-from verification.harness.command import command
+from verification.harness.command import aligned, command
 from verification.harness.factors import Factor, factors_of
 from verification.harness.paths import EXPERIMENTS, RUNS, need_solver
 from verification.harness.plan import Made, affordable, make_all
@@ -23,7 +23,6 @@ from verification.harness.quantities import Effect, effects_of, followed, turns
 from verification.harness.refine import REFINE_RUNS, job_of, value_words
 from verification.harness.run import Job
 from verification.harness.scenes import MECHANICS, chosen, content_of, mechanics_of, scene_of, scenes_of
-from verification.harness.table import aligned
 
 BUDGET_RUNS = RUNS / "budget"
 

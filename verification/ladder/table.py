@@ -6,7 +6,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from verification.harness import store
-from verification.harness.table import aligned, count, number
+from verification.harness.command import aligned, count, number
 from verification.ladder.catalogue import Families, about
 from verification.ladder.judge import Tally
 from verification.ladder.measure import Row

@@ -16,7 +16,7 @@ from verification.harness.command import command
 from verification.harness.paths import solver
 from verification.harness.side_by_side import say
 from verification.stability import store
-from verification.stability.catalogue import families
+from verification.stability.families import families
 from verification.stability.family import Family
 from verification.stability.judge import changes, headline, problems
 from verification.stability.runner import RUNS, walk

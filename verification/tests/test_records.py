@@ -9,8 +9,7 @@ import pytest
 
 from verification.harness import store
 from verification.harness.choose import beginnings, choose, claimed, folder_name, twice
-from verification.harness.command import command
-from verification.harness.table import aligned, count, number
+from verification.harness.command import aligned, command, count, number
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import pytest
 
 from verification.harness.paths import solver
 from verification.stability import store
-from verification.stability.catalogue import families
+from verification.stability.families import families
 from verification.stability.family import words
 from verification.stability.judge import changes, problems, side
 from verification.stability.runner import walk

@@ -9,7 +9,7 @@ import pytest
 
 from verification.harness.run import Outcome
 from verification.stability import store
-from verification.stability.catalogue import check
+from verification.stability.families import check
 from verification.stability.family import (
     FAILED, GARBAGE, MARKED, REFUSED, STABLE, BadFamily, Checked, Edge, Family, Parameter, Point, at_most, bisected, close,
 )  # fmt: skip
