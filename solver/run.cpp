@@ -289,7 +289,7 @@ int fail_at_start(const Scene& scene, const RunFolder& folder, const NumericalFa
   record.wall_s = seconds_since(start);
   fmt::print(stderr, "{}\n", record.reason);
   try {
-    atomic_write(folder.summary(), summary_json(scene, State{}, record));
+    atomic_write(folder.summary(), summary_json(scene, State(), record));
   } catch (const OutputFailure& also) {
     fmt::print(stderr, "{}\n", also.what());
   }
