@@ -9,8 +9,7 @@
 #include "interfaces/failure.hpp"
 #include "interfaces/tip_ties.hpp"
 #include "quasistatic/loaded_stress.hpp"
-#include "scene/path_geometry.hpp"
-#include "scene/points_across.hpp"
+#include "scene/derived.hpp"
 #include "state/body_force.hpp"
 #include "state/rebuild.hpp"
 

@@ -12,10 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "output/run_folder.hpp"
 #include "output/summary.hpp"
 #include "run.hpp"
 #include "scene/keys.hpp"
-#include "scene/spelling.hpp"
+#include "scene/messages.hpp"
 #include "scene/toml_reader.hpp"
 
 namespace {
@@ -124,6 +125,9 @@ int main(int argc, char** argv) {
   keep_freed_memory();
   try {
     return parse_and_do(argc, argv);
+  } catch (const strata::OutputFailure& failure) {
+    fmt::print(stderr, "{}\n", failure.what());
+    return bad_input;
   } catch (const std::bad_alloc&) {
     fmt::print(
         stderr,

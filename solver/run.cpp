@@ -18,14 +18,11 @@
 #include "force_balance.hpp"
 #include "initialise.hpp"
 #include "interfaces/monitors.hpp"
-#include "output/changed_scene.hpp"
-#include "output/closing_lines.hpp"
-#include "output/progress.hpp"
 #include "output/recorder.hpp"
-#include "output/summary.hpp"
+#include "output/terminal.hpp"
 #include "quasistatic/load_steps.hpp"
 #include "quasistatic/resting_rock.hpp"
-#include "scene/run_size.hpp"
+#include "scene/derived.hpp"
 #include "scene/toml_reader.hpp"
 
 namespace strata {
@@ -62,10 +59,6 @@ double seconds_since(Clock::time_point start) {
 
 bool is_quasistatic(const Scene& scene) {
   return scene.numerics.mechanics == Numerics::Mechanics::quasistatic;
-}
-
-double output_interval(const Scene& scene) {
-  return scene.output.fields_every_s.value_or(expected_duration(scene).value_or(1.0) / 50.0);
 }
 
 // Why the run is over, or nothing.
@@ -135,12 +128,7 @@ void output(Run& run) {
 
 // How far a step without inertia may go (s): to the next output, or to the end.
 double next_stop(const Run& run) {
-  const double end = run.scene.stop.time_s.value_or(HUGE_VAL);
-  const Fluid& fluid = run.scene.fluid;
-  const double full = run.scene.stop.inlet_Pa && fluid.rate_Pa_s > 0.0
-                          ? (*run.scene.stop.inlet_Pa - fluid.start_Pa) / fluid.rate_Pa_s
-                          : HUGE_VAL;
-  return std::min({run.next_output(), end, full});
+  return std::min(run.next_output(), expected_duration(run.scene).value_or(HUGE_VAL));
 }
 
 // Whether the step of inertia that begins ends at an output or with the run, so that a row of the history follows.
@@ -157,12 +145,6 @@ bool row_follows(const Run& run) {
 // Whether all interfaces carry what they can: until then a state is neither written nor the last.
 bool settled(const Run& run) {
   return !run.statics || !failure_due(*run.statics);
-}
-
-// Steps after each of which a state is as a resumed run finds it.
-std::int64_t steps_between_sound_states(const Run& run) {
-  if (run.statics) return steps_between_copies;
-  return run.scene.numerics.kinematics == Numerics::Kinematics::total ? steps_between_bases : steps_between_rebuilds;
 }
 
 // One step and what it leaves to write: fields at output times, a row of the history after growth.
@@ -192,7 +174,9 @@ void save_good_state(Run& run) {
 
 // Keeps the state where it is as a resumed run finds it.
 void keep_if_sound(Run& run) {
-  if (run.state.step % steps_between_sound_states(run) != 0 || run.state.step <= run.good.state.step) return;
+  const bool total = run.scene.numerics.kinematics == Numerics::Kinematics::total;
+  const std::int64_t steps = run.statics ? steps_between_copies : total ? steps_between_bases : steps_between_rebuilds;
+  if (run.state.step % steps != 0 || run.state.step <= run.good.state.step) return;
   run.good = {run.state, run.recorder.mark()};
   if (run.statics) restart_quasistatic(run.scene, run.rocks, run.state, *run.statics);  // as a resumed run starts
   run.weigh = growth_weighing(run.scene, run.rocks);
@@ -251,7 +235,7 @@ int run_to_end(Run& run, const RunFolder& folder, const RunOptions& options, Run
   record.particle_steps = run.particle_steps;
   if (exit == interrupted) return exit;
   run.recorder.finish();
-  write_summary(folder.summary(), run.scene, run.state, record);
+  atomic_write(folder.summary(), summary_json(run.scene, run.state, record));
   return exit;
 }
 
@@ -278,7 +262,7 @@ std::string after_output_failure(const OutputFailure& failure, const Run& run, c
 
 int run_from(Run run, const RunFolder& folder, const RunOptions& options) {
   run.saved_step = run.state.step;
-  run.interval = output_interval(run.scene);
+  run.interval = run.scene.output.fields_every_s.value_or(expected_duration(run.scene).value_or(1.0) / 50.0);
   run.weigh = growth_weighing(run.scene, run.rocks);
   RunRecord record = make_record(run.scene);
   int exit = done;
@@ -305,8 +289,7 @@ int fail_at_start(const Scene& scene, const RunFolder& folder, const NumericalFa
   record.wall_s = seconds_since(start);
   fmt::print(stderr, "{}\n", record.reason);
   try {
-    const State none;
-    write_summary(folder.summary(), scene, none, record);
+    atomic_write(folder.summary(), summary_json(scene, State(), record));
   } catch (const OutputFailure& also) {
     fmt::print(stderr, "{}\n", also.what());
   }
@@ -345,25 +328,48 @@ void set_up(const Scene& scene, const RunOptions& options) {
   for (const int signal : {SIGXFSZ, SIGPIPE}) std::signal(signal, SIG_IGN);
 }
 
-int run_in(const Scene& scene, const RunOptions& options, bool replace, Clock::time_point start) {
+// From a checkpoint or, without one, from the initial state.
+int run_on(const Scene& scene, const RunFolder& folder, const RunOptions& options, Clock::time_point start,
+           Recorder& recorder, std::optional<Checkpoint> from) {
   const std::vector<Elasticity> rocks = make_elasticities(scene);
-  const RunFolder folder = clear_run_folder(options.out, replace);
-  atomic_write(folder.scene(), scene.resolved_toml);
-  Recorder recorder(folder);
   try {
-    Checkpoint begin{initialise(scene, rocks), recorder.mark()};
-    return run_from({scene, rocks, recorder, start, std::move(begin)}, folder, options);
+    if (from) {
+      restore(scene, from->state);
+    } else {
+      from = Checkpoint{initialise(scene, rocks), recorder.mark()};
+    }
+    return run_from({scene, rocks, recorder, start, std::move(*from)}, folder, options);
   } catch (const NumericalFailure& failure) {
     return fail_at_start(scene, folder, failure, start);
   }
 }
 
-int resume_in(const RunFolder& folder, const RunOptions& options, Clock::time_point start) {
+int run_anew(const Scene& scene, const RunOptions& options, const std::filesystem::path& path, bool replace,
+             Clock::time_point start) {
+  const RunFolder folder = clear_run_folder(path, replace);
+  atomic_write(folder.scene(), scene.resolved_toml);
+  Recorder recorder(folder);
+  return run_on(scene, folder, options, start, recorder, std::nullopt);
+}
+
+}  // namespace
+
+int run_scene(const Scene& scene, const RunOptions& options) {
+  const Clock::time_point start = Clock::now();
+  set_up(scene, options);
+  const Descriptor lock = make_run_folder(options.out);
+  if (!options.quiet)
+    fmt::print(stderr, "{:.2g} points, {:.2g} GB by estimate\n", points_of(scene), 1e-9 * memory_need(scene));
+  return run_anew(scene, options, options.out, options.replace, start);
+}
+
+int resume_run(const std::filesystem::path& dir, const RunOptions& options) {
+  const Clock::time_point start = Clock::now();
+  const Descriptor lock = lock_folder(dir);
+  const RunFolder folder{dir};
   const ReadResult read = read_scene(folder.scene(), "", {});
-  if (!read.scene) {
-    for (const std::string& error : read.errors) fmt::print(stderr, "{}\n", error);
-    return bad_input;
-  }
+  for (const std::string& error : read.errors) fmt::print(stderr, "{}\n", error);
+  if (!read.scene) return bad_input;
   const Scene& scene = *read.scene;
   require_unchanged_scene(folder, scene);
   if (std::filesystem::exists(folder.summary())) {
@@ -372,8 +378,8 @@ int resume_in(const RunFolder& folder, const RunOptions& options, Clock::time_po
   }
   const std::string begun_by = made_with(folder.result()).version;
   if (!begun_by.empty() && begun_by != version()) {
-    fmt::print(stderr, "{}: begun by strata {}, goes on with {}, whose digits may differ\n", folder.path.string(),
-               begun_by, version());
+    fmt::print(stderr, "{}: begun by strata {}, goes on with {}, whose digits may differ\n", dir.string(), begun_by,
+               version());
   }
   set_up(scene, options);
   std::optional<Checkpoint> checkpoint;
@@ -385,49 +391,9 @@ int resume_in(const RunFolder& folder, const RunOptions& options, Clock::time_po
     throw;
   } catch (const std::runtime_error& error) {  // nothing to go on from, or files that hold less than it says
     fmt::print(stderr, "{} The run starts anew.\n", error.what());
-    RunOptions same = options;
-    same.out = folder.path;
-    return run_in(scene, same, true, start);
+    return run_anew(scene, options, dir, true, start);
   }
-  const std::vector<Elasticity> rocks = make_elasticities(scene);
-  try {
-    restore(scene, checkpoint->state);
-  } catch (const NumericalFailure& failure) {
-    return fail_at_start(scene, folder, failure, start);
-  }
-  return run_from({scene, rocks, *recorder, start, std::move(*checkpoint)}, folder, options);
-}
-
-// The exit status of what is done in a folder, which may fail.
-template <class Work>
-int saying_failures(Work work) {
-  try {
-    return work();
-  } catch (const OutputFailure& failure) {
-    fmt::print(stderr, "{}\n", failure.what());
-    return bad_input;
-  }
-}
-
-}  // namespace
-
-int run_scene(const Scene& scene, const RunOptions& options) {
-  const Clock::time_point start = Clock::now();
-  set_up(scene, options);
-  return saying_failures([&] {
-    const FolderLock lock = make_run_folder(options.out);
-    if (!options.quiet)
-      fmt::print(stderr, "{:.2g} points, {:.2g} GB by estimate\n", points_of(scene), 1e-9 * memory_need(scene));
-    return run_in(scene, options, options.replace, start);
-  });
-}
-
-int resume_run(const std::filesystem::path& dir, const RunOptions& options) {
-  const Clock::time_point start = Clock::now();
-  return saying_failures([&] {
-    const FolderLock lock(dir);
-    return resume_in(RunFolder{dir}, options, start);
-  });
+  return run_on(scene, folder, options, start, *recorder, std::move(checkpoint));
 }
 
 }  // namespace strata

@@ -9,7 +9,7 @@
 #include "fracture/criterion.hpp"
 #include "fracture/j_integral.hpp"
 #include "fracture/tip_rings.hpp"
-#include "scene/path_geometry.hpp"
+#include "scene/derived.hpp"
 #include "state/rebuild.hpp"
 
 namespace strata {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/run_size.hpp"
+#include "scene/derived.hpp"
 #include "scene/toml_reader.hpp"
 
 namespace {

@@ -2,13 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
-#include "output/run_folder.hpp"
+#include "output/result_hdf5.hpp"
+#include "scene/messages.hpp"
+#include "scene/toml_reader.hpp"
 
 namespace strata {
 
@@ -27,11 +32,33 @@ concept Is = std::is_same_v<std::remove_const_t<T>, Plain>;
 
 // What belongs to each structure, for saving and loading alike. A structured binding has to name every member, so that
 // a new one cannot be left out by oversight: the compiler asks for it here. Then raise format_version.
-template <class Archive>
-void fields(Archive& ar, Is<Grid> auto& grid) {
-  auto& [nx, ny, h, x_knots, y_knots] = grid;
-  ar(nx, ny, h, x_knots, y_knots);
-}
+#define STRATA_SAVED(Type, ...)                       \
+  template <class Archive>                            \
+  void fields(Archive& archive, Is<Type> auto& all) { \
+    auto& [__VA_ARGS__] = all;                        \
+    archive(__VA_ARGS__);                             \
+  }
+STRATA_SAVED(Grid, nx, ny, h, x_knots, y_knots)
+STRATA_SAVED(SurfacePoint, x, n, A, arc, w, u, reaction, in_situ, bonded, P, slip, column, sides, split, failed_s)
+STRATA_SAVED(Surface, kind, bit, law, vertices, points)
+STRATA_SAVED(FluidLine, P, inlet, inlet_Pa, w_rate)
+STRATA_SAVED(ReynoldsLine, length, P, phi, content, w, w_rate, rates_known, inlet, inlet_Pa)
+STRATA_SAVED(FluidBalance, stored_at_start, injected, stored, largest)
+STRATA_SAVED(TipTie, node, plus, minus, stiffness, s)
+STRATA_SAVED(Tip, at_back, growing, stopped_by, K_I, K_II, J, J_spread, ring_m, kink, turn, closed, near, crossed,
+             no_length, last_growth_s, last_growth_Pa, due_s, runs_until_s, G_trial, G, G_by_J, criterion, grew_by,
+             has_grown, arrested, reached)
+STRATA_SAVED(Event, kind, time_s, inlet_Pa, tip_x_m, tip_y_m, at_interface, by)
+STRATA_SAVED(Monitors, largest_courant, largest_penetration, contact_sweeps, contact_unconverged,
+             largest_particle_velocity, contact_residual, volume_balance, mirror, largest_open_J, largest_made_J,
+             largest_strain_J, largest_kinetic_J, expected_x, expected_y, largest_drift, largest_momentum,
+             force_balance, largest_imbalance, delivered_m2, growths, growths_apart, growth_unweighed, J_spread_sum,
+             largest_J_spread, contact_left, largest_contact_Pa, largest_tension_Pa, largest_strain, largest_rotation,
+             largest_jump, net_at_start_Pa, largest_net_Pa, flow_growths, flow_fall_Pa, flow_fall, largest_flow_fall,
+             floor_share, floor_share_sum)
+STRATA_SAVED(HistoryMark, rows, bytes)
+STRATA_SAVED(OutputMark, history, outputs)
+#undef STRATA_SAVED
 
 template <class Archive>
 void fields(Archive& ar, Is<Particles> auto& particles) {
@@ -40,77 +67,9 @@ void fields(Archive& ar, Is<Particles> auto& particles) {
 }
 
 template <class Archive>
-void fields(Archive& ar, Is<SurfacePoint> auto& point) {
-  auto& [x, n, A, arc, w, u, reaction, in_situ, bonded, P, slip, column, sides, split, failed_s] = point;
-  ar(x, n, A, arc, w, u, reaction, in_situ, bonded, P, slip, column, sides, split, failed_s);
-}
-
-template <class Archive>
-void fields(Archive& ar, Is<Surface> auto& surface) {
-  auto& [kind, bit, law, vertices, points] = surface;
-  ar(kind, bit, law, vertices, points);
-}
-
-template <class Archive>
-void fields(Archive& ar, Is<FluidLine> auto& fluid) {
-  auto& [P, inlet, inlet_Pa, w_rate] = fluid;
-  ar(P, inlet, inlet_Pa, w_rate);
-}
-
-template <class Archive>
-void fields(Archive& ar, Is<ReynoldsLine> auto& line) {
-  auto& [length, P, phi, content, w, w_rate, rates_known, inlet, inlet_Pa] = line;
-  ar(length, P, phi, content, w, w_rate, rates_known, inlet, inlet_Pa);
-}
-
-template <class Archive>
-void fields(Archive& ar, Is<FluidBalance> auto& balance) {
-  auto& [stored_at_start, injected, stored, largest] = balance;
-  ar(stored_at_start, injected, stored, largest);
-}
-
-template <class Archive>
-void fields(Archive& ar, Is<TipTie> auto& tie) {
-  auto& [node, plus, minus, stiffness, s] = tie;
-  ar(node, plus, minus, stiffness, s);
-}
-
-template <class Archive>
-void fields(Archive& ar, Is<Tip> auto& tip) {
-  auto& [at_back, growing, stopped_by, K_I, K_II, J, J_spread, ring_m, kink, turn, closed, near, crossed, no_length,
-         last_growth_s, last_growth_Pa, due_s, runs_until_s, G_trial, G, G_by_J, criterion, grew_by, has_grown,
-         arrested, reached] = tip;
-  ar(at_back, growing, stopped_by, K_I, K_II, J, J_spread, ring_m, kink, turn, closed, near, crossed, no_length,
-     last_growth_s, last_growth_Pa, due_s, runs_until_s, G_trial, G, G_by_J, criterion, grew_by, has_grown, arrested,
-     reached);
-}
-
-template <class Archive>
-void fields(Archive& ar, Is<Event> auto& event) {
-  auto& [kind, time_s, inlet_Pa, tip_x_m, tip_y_m, at_interface, by] = event;
-  ar(kind, time_s, inlet_Pa, tip_x_m, tip_y_m, at_interface, by);
-}
-
-template <class Archive>
 void fields(Archive& ar, Is<Ledger> auto& ledger) {
   for (const auto& energy : ledger_energies) ar(ledger.*energy.value);
   ar(ledger.largest);
-}
-
-template <class Archive>
-void fields(Archive& ar, Is<Monitors> auto& monitors) {
-  auto& [largest_courant, largest_penetration, contact_sweeps, contact_unconverged, largest_particle_velocity,
-         contact_residual, volume_balance, mirror, largest_open_J, largest_made_J, largest_strain_J, largest_kinetic_J,
-         expected_x, expected_y, largest_drift, largest_momentum, force_balance, largest_imbalance, delivered_m2,
-         growths, growths_apart, growth_unweighed, J_spread_sum, largest_J_spread, contact_left, largest_contact_Pa,
-         largest_tension_Pa, largest_strain, largest_rotation, largest_jump, net_at_start_Pa, largest_net_Pa,
-         flow_growths, flow_fall_Pa, flow_fall, largest_flow_fall, floor_share, floor_share_sum] = monitors;
-  ar(largest_courant, largest_penetration, contact_sweeps, contact_unconverged, largest_particle_velocity,
-     contact_residual, volume_balance, mirror, largest_open_J, largest_made_J, largest_strain_J, largest_kinetic_J,
-     expected_x, expected_y, largest_drift, largest_momentum, force_balance, largest_imbalance, delivered_m2, growths,
-     growths_apart, growth_unweighed, J_spread_sum, largest_J_spread, contact_left, largest_contact_Pa,
-     largest_tension_Pa, largest_strain, largest_rotation, largest_jump, net_at_start_Pa, largest_net_Pa, flow_growths,
-     flow_fall_Pa, flow_fall, largest_flow_fall, floor_share, floor_share_sum);
 }
 
 // All of the state but what rebuild_copies() derives of it.
@@ -119,12 +78,6 @@ void fields(Archive& ar, Is<State> auto& state) {
   ar(state.time, state.step, state.dt, state.grid, state.particles, state.surfaces, state.has_fracture, state.fluid);
   ar(state.reynolds, state.balance, state.tips, state.ties, state.events, state.ledger, state.monitors);
   ar(state.total.velocity);
-}
-
-template <class Archive>
-void fields(Archive& ar, Is<OutputMark> auto& mark) {
-  auto& [history, outputs] = mark;
-  ar(history.rows, history.bytes, outputs);
 }
 
 // Where bytes go, and where they come from.
@@ -193,6 +146,45 @@ struct Archive {
   throw std::runtime_error(fmt::format("{}: {}", file.string(), reason));
 }
 
+using Lines = std::map<std::string, std::string>;  // "stop.tip_y_m" and its value
+
+// A resolved scene by its keys; a list that has several lines counts as one value.
+Lines lines_of(std::string_view text) {
+  Lines lines;
+  std::string table, key;
+  while (!text.empty()) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    const std::size_t equals = line.find(" = ");
+    if (line.starts_with('[')) {
+      table = std::string(line.substr(1, line.find(']') - 1)) + '.';
+    } else if (equals != std::string_view::npos && !line.starts_with(' ')) {
+      key = table + std::string(line.substr(0, equals));
+      lines[key] += line.substr(equals + 3);
+    } else {
+      lines[key] += line;
+    }
+  }
+  return lines;
+}
+
+std::string value_of(const Lines& lines, const std::string& key) {
+  const auto found = lines.find(key);
+  return found == lines.end() ? "left out" : shortened(found->second, 60);
+}
+
+// "stop.tip_y_m = 20.0 (12.0 in the run)" of each key that differs.
+std::vector<std::string> changes(const Lines& run, const Lines& now) {
+  Lines all = run;
+  all.insert(now.begin(), now.end());
+  std::vector<std::string> texts;
+  for (const auto& [key, value] : all) {
+    if (run.contains(key) && now.contains(key) && run.at(key) == now.at(key)) continue;
+    texts.push_back(fmt::format("{} = {} ({} in the run)", key, value_of(now, key), value_of(run, key)));
+  }
+  return texts;
+}
+
 }  // namespace
 
 std::uint64_t scene_hash(const Scene& scene) {
@@ -238,6 +230,21 @@ Checkpoint load_checkpoint(const std::filesystem::path& file, const Scene& scene
     refuse(file, "is torn: it ends too early");
   }
   return checkpoint;
+}
+
+void require_unchanged_scene(const RunFolder& folder, const Scene& scene) {
+  const std::string of_run = made_with(folder.result()).scene;
+  if (of_run.empty()) return;  // nothing was computed
+  // Read as scene.toml is: another version may know more keys.
+  const ReadResult read = read_scene_text(of_run, folder.scene().string(), "", {});
+  const std::string before = read.scene ? read.scene->resolved_toml : of_run;
+  if (before == scene.resolved_toml) return;
+  throw OutputFailure(
+      fmt::format("{0}: was changed after the run began: {1}. The run belongs to the scene as it was. Put that back, "
+                  "or run the changed scene anew: `strata run {0} --out DIR`, or `strata run {0} --out {2} --replace` "
+                  "in the place of this run.",
+                  folder.scene().string(), fmt::join(changes(lines_of(before), lines_of(scene.resolved_toml)), ", "),
+                  folder.path.string()));
 }
 
 }  // namespace strata

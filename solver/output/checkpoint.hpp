@@ -1,10 +1,12 @@
-// A checkpoint: the state of a run to the last digit, and how far its output had come.
+// A checkpoint: the state of a run to the last digit, and how far its output had come; and whether the scene in its
+// folder is still the run's.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 
 #include "output/history.hpp"
+#include "output/run_folder.hpp"
 #include "scene/scene.hpp"
 #include "state/state.hpp"
 
@@ -31,5 +33,9 @@ void save_checkpoint(const std::filesystem::path& file, const Scene& scene, cons
 /// Reads a checkpoint back to the same digits. Throws std::runtime_error, saying which, where `file` is missing, is no
 /// checkpoint, is of another format or torn, OutputFailure where it is of another scene.
 Checkpoint load_checkpoint(const std::filesystem::path& file, const Scene& scene);
+
+/// Throws OutputFailure, with the keys that differ and what to do, where result.h5 says that the run was made with
+/// another scene than `scene`, which its scene.toml holds now; comments and order do not count.
+void require_unchanged_scene(const RunFolder& folder, const Scene& scene);
 
 }  // namespace strata

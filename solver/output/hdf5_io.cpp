@@ -4,7 +4,6 @@
 #include <hdf5.h>
 
 #include <algorithm>
-#include <optional>
 #include <stdexcept>
 #include <type_traits>
 
@@ -51,40 +50,8 @@ Handle text_type() {
   return type;
 }
 
-Handle open_dataset(Id parent, const std::string& name) {
-  return {checked(H5Dopen2(parent, name.c_str(), H5P_DEFAULT), name, "be opened"), H5Dclose};
-}
-
-// Makes a data set of n elements that does not record when: files of equal runs are equal. Where it has chunks their
-// length is given; one that is to be packed by a level of deflate has, and so has one whose length may change.
-Handle make_dataset(Id parent, const std::string& name, hid_t type, hsize_t n, std::optional<hsize_t> chunk,
-                    bool packed) {
-  const Handle properties(checked(H5Pcreate(H5P_DATASET_CREATE), name, "be set up"), H5Pclose);
-  H5Pset_obj_track_times(properties.id(), false);
-  if (chunk) checked(H5Pset_chunk(properties.id(), 1, &*chunk), name, "be chunked");
-  if (packed) {
-    checked(H5Pset_shuffle(properties.id()), name, "be shuffled");
-    checked(H5Pset_deflate(properties.id(), 1), name, "be compressed");
-  }
-  const hsize_t most = chunk && !packed ? H5S_UNLIMITED : n;
-  const Handle space(checked(H5Screate_simple(1, &n, &most), name, "be set up"), H5Sclose);
-  return {checked(H5Dcreate2(parent, name.c_str(), type, space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT), name,
-                  "be made"),
-          H5Dclose};
-}
-
-// The element type on disc is that in memory.
-template <class T>
-void write_dataset(Id parent, const std::string& name, hid_t type, std::span<const T> values, const std::string& unit,
-                   Storage storage) {
-  const bool packed = storage == Storage::packed && !values.empty();
-  constexpr std::size_t longest = std::size_t{1} << 18U;  // of a chunk: one for most fields
-  const auto chunk = packed ? std::optional<hsize_t>(std::min(values.size(), longest)) : std::nullopt;
-  {
-    const Handle set = make_dataset(parent, name, type, values.size(), chunk, packed);
-    checked(H5Dwrite(set.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), name, "be written");
-  }
-  set_attribute(parent, name, "unit", unit);
+void remove_link(Id parent, const std::string& name) {
+  if (exists(parent, name)) checked(H5Ldelete(parent, name.c_str(), H5P_DEFAULT), name, "be replaced");
 }
 
 void put_attribute(Id parent, const std::string& name, const std::string& attribute, hid_t type, const void* value) {
@@ -114,16 +81,14 @@ Handle open_file(const std::filesystem::path& file) {
   return {checked(H5Fopen(file.c_str(), H5F_ACC_RDONLY, access.id()), file.string(), "be opened"), H5Fclose};
 }
 
-void write_file(const std::filesystem::path& file, bool anew, std::size_t room, const Change& change) {
+void write_file(const std::filesystem::path& file, std::size_t room, const Change& change) {
   // The library has the file in memory alone, so that what the disc refuses is said by the system.
   const Handle access = file_access();
   checked(H5Pset_fapl_core(access.id(), room, false), file.string(), "be made in memory");
   // Most fields are of one chunk: a tree of 64, as is the default, takes 2 kB of each.
   const Handle tree(checked(H5Pcreate(H5P_FILE_CREATE), "HDF5", "set up a file"), H5Pclose);
   H5Pset_istore_k(tree.id(), 1);
-  const Handle made(checked(anew ? H5Fcreate(file.c_str(), H5F_ACC_TRUNC, tree.id(), access.id())
-                                 : H5Fopen(file.c_str(), H5F_ACC_RDWR, access.id()),
-                            file.string(), "be opened"),
+  const Handle made(checked(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, tree.id(), access.id()), file.string(), "be opened"),
                     H5Fclose);
   change(made.id());
   checked(H5Fflush(made.id(), H5F_SCOPE_GLOBAL), file.string(), "be made");
@@ -178,44 +143,45 @@ void link_to_file(Id parent, const std::string& name, const std::string& file, c
 }
 
 void copy(Id from, const std::string& path, Id parent, const std::string& name) {
-  if (exists(parent, name)) checked(H5Ldelete(parent, name.c_str(), H5P_DEFAULT), name, "be replaced");
+  remove_link(parent, name);
   checked(H5Ocopy(from, path.c_str(), parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT), name, "be copied");
 }
 
-void write(Id parent, const std::string& name, std::span<const double> values, const std::string& unit) {
-  write_dataset(parent, name, H5T_NATIVE_DOUBLE, values, unit, Storage::plain);
-}
-
-void write(Id parent, const std::string& name, std::span<const float> values, const std::string& unit,
+template <class Number>
+void write(Id parent, const std::string& name, const std::vector<Number>& values, const std::string& unit,
            Storage storage) {
-  write_dataset(parent, name, H5T_NATIVE_FLOAT, values, unit, storage);
-}
-
-void write(Id parent, const std::string& name, std::span<const std::int32_t> values, const std::string& unit,
-           Storage storage) {
-  write_dataset(parent, name, H5T_NATIVE_INT32, values, unit, storage);
-}
-
-void rewrite(Id parent, const std::string& name, std::span<const double> values, const std::string& unit) {
-  if (!exists(parent, name)) {
-    const Handle made = make_dataset(parent, name, H5T_NATIVE_DOUBLE, 0, 512, false);
-    set_attribute(parent, name, "unit", unit);
-  }
-  const Handle set = open_dataset(parent, name);
+  const hid_t type = std::is_same_v<Number, double>  ? H5T_NATIVE_DOUBLE
+                     : std::is_same_v<Number, float> ? H5T_NATIVE_FLOAT
+                                                     : H5T_NATIVE_INT32;
   const hsize_t n = values.size();
-  checked(H5Dset_extent(set.id(), &n), name, "be resized");
-  checked(H5Dwrite(set.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), name, "be written");
+  remove_link(parent, name);
+  {
+    const Handle properties(checked(H5Pcreate(H5P_DATASET_CREATE), name, "be set up"), H5Pclose);
+    H5Pset_obj_track_times(properties.id(), false);  // files of equal runs are equal
+    if (storage == Storage::packed && n > 0) {
+      const hsize_t chunk = std::min(n, hsize_t{1} << 18U);  // one for most fields
+      checked(H5Pset_chunk(properties.id(), 1, &chunk), name, "be chunked");
+      checked(H5Pset_shuffle(properties.id()), name, "be shuffled");
+      checked(H5Pset_deflate(properties.id(), 1), name, "be compressed");
+    }
+    const Handle space(checked(H5Screate_simple(1, &n, nullptr), name, "be set up"), H5Sclose);
+    const Handle set(
+        checked(H5Dcreate2(parent, name.c_str(), type, space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT), name,
+                "be made"),
+        H5Dclose);
+    checked(H5Dwrite(set.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), name, "be written");
+  }
+  set_attribute(parent, name, "unit", unit);
 }
-
-std::size_t length(Id parent, const std::string& name) {
-  const Handle set = open_dataset(parent, name);
-  const Handle space(checked(H5Dget_space(set.id()), name, "be measured"), H5Sclose);
-  return static_cast<std::size_t>(checked(H5Sget_simple_extent_npoints(space.id()), name, "be measured"));
-}
+template void write(Id, const std::string&, const std::vector<double>&, const std::string&, Storage);
+template void write(Id, const std::string&, const std::vector<float>&, const std::string&, Storage);
+template void write(Id, const std::string&, const std::vector<std::int32_t>&, const std::string&, Storage);
 
 std::vector<double> read(Id parent, const std::string& name) {
-  std::vector<double> values(length(parent, name));
-  const Handle set = open_dataset(parent, name);
+  const Handle set(checked(H5Dopen2(parent, name.c_str(), H5P_DEFAULT), name, "be opened"), H5Dclose);
+  const Handle space(checked(H5Dget_space(set.id()), name, "be measured"), H5Sclose);
+  std::vector<double> values(
+      static_cast<std::size_t>(checked(H5Sget_simple_extent_npoints(space.id()), name, "be measured")));
   checked(H5Dread(set.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), name, "be read");
   return values;
 }

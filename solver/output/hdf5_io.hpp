@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -37,9 +36,9 @@ Handle open_file(const std::filesystem::path& file);
 
 using Change = std::function<void(Id root)>;
 
-/// Makes `file`, or changes it where it is not to be made `anew`, in memory (room: about what it takes, bytes) and
-/// writes it in one piece. Throws OutputFailure, with the file as it was, where it cannot be written.
-void write_file(const std::filesystem::path& file, bool anew, std::size_t room, const Change& change);
+/// Makes `file` in memory (room: about what it takes, bytes) and writes it in one piece. Throws OutputFailure, with
+/// what was there as it was, where it cannot be written.
+void write_file(const std::filesystem::path& file, std::size_t room, const Change& change);
 
 /// Changes `file` where it lies, for files that are too large for memory: a process that is killed meanwhile leaves it
 /// torn. What is written must have its room on the disc already.
@@ -63,18 +62,14 @@ void copy(Id from, const std::string& path, Id parent, const std::string& name);
 // How numbers are stored: as they are, or shuffled and deflated by the library's filters.
 enum class Storage { plain, packed };
 
-/// Writes a new 1-D data set with its attribute `unit`.
-void write(Id parent, const std::string& name, std::span<const double> values, const std::string& unit);
-void write(Id parent, const std::string& name, std::span<const float> values, const std::string& unit, Storage storage);
-void write(Id parent, const std::string& name, std::span<const std::int32_t> values, const std::string& unit,
+/// Writes a 1-D data set of double, float or std::int32_t, on disc as in memory, with its attribute `unit`, in place of
+/// what has that name.
+template <class Number>
+void write(Id parent, const std::string& name, const std::vector<Number>& values, const std::string& unit,
            Storage storage = Storage::plain);
 
-/// Writes a 1-D data set that may have another length the next time, made where it is missing.
-void rewrite(Id parent, const std::string& name, std::span<const double> values, const std::string& unit);
-
-/// Values of a 1-D data set, converted to double, and its length.
+/// Values of a 1-D data set, converted to double.
 std::vector<double> read(Id parent, const std::string& name);
-std::size_t length(Id parent, const std::string& name);
 
 /// Attributes of a group or data set `name` below `parent` ("." is parent itself), written over where they exist.
 void set_attribute(Id parent, const std::string& name, const std::string& attribute, double value);

@@ -8,75 +8,80 @@
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <system_error>
 
 #include "output/run_folder.hpp"
-#include "output/tip_numbers.hpp"
 
 namespace strata {
 
-namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-// What a row is made of.
-struct Told {
+struct RowSource {
   const State& state;
   const Tip* tip;  // the leading one, or none
   Vec2 x;          // where it is
   TipNumbers numbers;
-
-  template <class Value>
-  double of_tip(Value value) const {
-    return tip != nullptr ? static_cast<double>(value(*tip)) : nan;
-  }
 };
 
-struct Column {
-  HistoryColumn shown;
-  std::function<double(const Told&)> value;
+namespace {
+
+// What is too near to a tip, and what its rings then cross.
+struct Words {
+  const char* name;
+  const char* crossed;
 };
+constexpr Words words_of(Obstacle what) {
+  constexpr Words words[] = {
+      {"", ""},
+      {"interface", "an interface whose faces have come apart"},
+      {"rock border", "another rock"},
+      {"symmetry line", "the symmetry line"},
+      {"edge", "an edge of the block"},
+      {"fracture", "another part of the fracture"},
+  };
+  return words[static_cast<std::size_t>(what)];
+}
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // Those that the first versions had come first, so that files of all can be laid side by side.
-std::vector<Column> make_columns() {
-  std::vector<Column> all{
-      {{"time_s", "s"}, [](const Told& t) { return t.state.time; }},
-      {{"inlet_Pa", "Pa"}, [](const Told& t) { return t.state.has_fracture ? t.state.fluid.inlet_Pa : 0.0; }},
-      {{"tip_x_m", "m"}, [](const Told& t) { return t.x.x(); }},
-      {{"tip_y_m", "m"}, [](const Told& t) { return t.x.y(); }},
-      {{"height_m", "m"}, [](const Told& t) { return t.x.y(); }},  // above y = 0, the symmetry line
-      {{"J_N_m", "N/m"}, [](const Told& t) { return t.numbers.J_N_m; }},
-      {{"K_I_Pa_sqrt_m", "Pa m^0.5"}, [](const Told& t) { return t.numbers.K_I_Pa_sqrt_m; }},
-      {{"K_II_Pa_sqrt_m", "Pa m^0.5"}, [](const Told& t) { return t.numbers.K_II_Pa_sqrt_m; }},
-      {{"mouth_opening_m", "m"}, [](const Told& t) { return mouth_opening(t.state); }},
-      {{"fracture_volume_m2", "m^2"}, [](const Told& t) { return fracture_volume(t.state); }},
+std::vector<HistoryColumn> make_columns() {
+  using From = const RowSource&;
+  const auto of_tip = [](auto value) {
+    return [value](From of) { return of.tip != nullptr ? static_cast<double>(std::invoke(value, *of.tip)) : nan; };
+  };
+  std::vector<HistoryColumn> all{
+      {"time_s", "s", [](From of) { return of.state.time; }},
+      {"inlet_Pa", "Pa", [](From of) { return of.state.has_fracture ? of.state.fluid.inlet_Pa : 0.0; }},
+      {"tip_x_m", "m", [](From of) { return of.x.x(); }},
+      {"tip_y_m", "m", [](From of) { return of.x.y(); }},
+      {"height_m", "m", [](From of) { return of.x.y(); }},  // above y = 0, the symmetry line
+      {"J_N_m", "N/m", [](From of) { return of.numbers.J_N_m; }},
+      {"K_I_Pa_sqrt_m", "Pa m^0.5", [](From of) { return of.numbers.K_I_Pa_sqrt_m; }},
+      {"K_II_Pa_sqrt_m", "Pa m^0.5", [](From of) { return of.numbers.K_II_Pa_sqrt_m; }},
+      {"mouth_opening_m", "m", [](From of) { return mouth_opening(of.state); }},
+      {"fracture_volume_m2", "m^2", [](From of) { return fracture_volume(of.state); }},
   };
   const auto add_energies = [&](bool first) {
     for (const auto& energy : ledger_energies) {
       if (first == (energy.value == &Ledger::body_work || energy.value == &Ledger::initial_kinetic)) continue;
-      all.push_back({{energy.name + std::string("_J"), "J/m"},
-                     [value = energy.value](const Told& t) { return t.state.ledger.*value; }});
+      all.push_back(
+          {energy.name + std::string("_J"), "J/m", [value = energy.value](From of) { return of.state.ledger.*value; }});
     }
   };
   add_energies(true);
-  for (const Column& column : std::initializer_list<Column>{
-           {{"energy_closure", "1"}, [](const Told& t) { return t.state.ledger.closure(); }},
-           {{"J_spread", "1"}, [](const Told& t) { return t.numbers.J_spread; }},
-           {{"kink_deg", "deg"}, [](const Told& t) { return t.numbers.kink_deg; }},
-           {{"at_interface", "1"}, [](const Told& t) { return t.of_tip(at_interface); }},
-           {{"ring_m", "m"}, [](const Told& t) { return t.of_tip([](const Tip& tip) { return tip.ring_m; }); }},
-           {{"G_N_m", "N/m"}, [](const Told& t) { return t.of_tip([](const Tip& tip) { return tip.G; }); }},
-           {{"G_by_J_N_m", "N/m"}, [](const Told& t) { return t.of_tip([](const Tip& tip) { return tip.G_by_J; }); }},
-           {{"fluid_volume_balance", "1"}, [](const Told& t) { return t.state.monitors.volume_balance; }}})
-    all.push_back(column);
+  all.insert(all.end(), {
+                            {"energy_closure", "1", [](From of) { return of.state.ledger.closure(); }},
+                            {"J_spread", "1", [](From of) { return of.numbers.J_spread; }},
+                            {"kink_deg", "deg", [](From of) { return of.numbers.kink_deg; }},
+                            {"at_interface", "1", of_tip(at_interface)},
+                            {"ring_m", "m", of_tip(&Tip::ring_m)},
+                            {"G_N_m", "N/m", of_tip(&Tip::G)},
+                            {"G_by_J_N_m", "N/m", of_tip(&Tip::G_by_J)},
+                            {"fluid_volume_balance", "1", [](From of) { return of.state.monitors.volume_balance; }},
+                        });
   add_energies(false);
-  all.push_back({{"near", "1"}, [](const Told& t) { return t.of_tip([](const Tip& tip) { return tip.near; }); }});
-  return all;
-}
-
-const std::vector<Column>& columns() {
-  static const std::vector<Column> all = make_columns();
+  all.push_back({"near", "1", of_tip(&Tip::near)});
   return all;
 }
 
@@ -100,7 +105,7 @@ std::string text_of(const HistoryRow& row) {
 bool parse_row(std::string_view line, HistoryRow& row) {
   const char* at = line.data();
   const char* const end = at + line.size();
-  row.resize(columns().size());
+  row.resize(history_columns().size());
   for (double& value : row) {
     const auto [rest, error] = std::from_chars(at, end, value);
     const bool last = &value == &row.back();
@@ -138,13 +143,35 @@ std::string first_bytes(const std::filesystem::path& file, std::uint64_t bytes) 
 
 }  // namespace
 
-std::span<const HistoryColumn> history_columns() {
-  static const std::vector<HistoryColumn> shown = [] {
-    std::vector<HistoryColumn> list;
-    for (const Column& column : columns()) list.push_back(column.shown);
-    return list;
-  }();
-  return shown;
+const std::vector<HistoryColumn>& history_columns() {
+  static const std::vector<HistoryColumn> all = make_columns();
+  return all;
+}
+
+const char* name_of(Obstacle what) {
+  return words_of(what).name;
+}
+
+TipNumbers tip_numbers(const Scene& scene, const Tip& tip) {
+  TipNumbers told{tip.K_I, tip.K_II, tip.J, tip.J_spread, tip.kink * (180.0 / std::numbers::pi), ""};
+  const bool shut = tip.closed && tip.J == 0.0;  // whatever is near
+  if (tip.crossed && !shut) {
+    told = {nan, nan, nan, nan, nan, std::string("the rings on which J and K are measured cross ")};
+    told.reason += words_of(tip.near).crossed;
+    if (tip.no_length)
+      told.reason = "the tip stands on an interface whose faces have come apart: it has no length in the rock ahead";
+  } else if (tip.closed) {
+    told.kink_deg = nan;
+    told.reason = "the tip is closed: it has no direction to open into";
+  } else if (tip.near == Obstacle::interface) {
+    told.J_N_m = told.J_spread = nan;
+    told.reason = "the rings on which J is measured reach over an interface whose faces have come apart";
+  } else if (tip.J < 0.0 && scene.numerics.mechanics == Numerics::Mechanics::quasistatic) {
+    told.J_N_m = told.J_spread = nan;
+    told.reason =
+        "J comes out below 0, which no tip at rest has: cells are too coarse for what the pressure does there";
+  }
+  return told;
 }
 
 const Tip* leading_tip(const State& state) {
@@ -177,10 +204,10 @@ double fracture_volume(const State& state) {
 HistoryRow history_row(const Scene& scene, const State& state) {
   const Tip* tip = leading_tip(state);
   if (state.has_fracture && tip == nullptr) throw std::logic_error("history_row: the fracture has no tip");
-  const Told told{state, tip, tip ? tip_position(state, *tip) : Vec2{nan, nan},
-                  tip ? tip_numbers(scene, *tip) : TipNumbers{nan, nan, nan, nan, nan, ""}};
+  const RowSource source{state, tip, tip ? tip_position(state, *tip) : Vec2{nan, nan},
+                         tip ? tip_numbers(scene, *tip) : TipNumbers{nan, nan, nan, nan, nan, ""}};
   HistoryRow row;
-  for (const Column& column : columns()) row.push_back(column.value(told));
+  for (const HistoryColumn& column : history_columns()) row.push_back(column.value(source));
   return row;
 }
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <span>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,17 +12,34 @@
 
 namespace strata {
 
-// A column's name, which ends in its unit, and the unit apart.
+struct RowSource;  // what a row is made of
+
+// A column's name, which ends in its unit, the unit apart, and where its values come from.
 struct HistoryColumn {
   std::string name;
   const char* unit;
+  std::function<double(const RowSource&)> value;
 };
 
 /// The columns in the order of history.csv; throws nothing but std::bad_alloc.
-std::span<const HistoryColumn> history_columns();
+const std::vector<HistoryColumn>& history_columns();
+
+// J, K and kink of a tip; not-a-number where there is no such number, and then why.
+struct TipNumbers {
+  double K_I_Pa_sqrt_m, K_II_Pa_sqrt_m, J_N_m, J_spread, kink_deg;
+  std::string reason;  // why some are none, a sentence; empty where all are there
+};
+
+/// The numbers of a tip. Where its rings cross an obstacle J and K are none (but for a tip whose faces touch and do not
+/// slide: 0), nor is the kink of a closed tip, nor a J below zero without inertia. Throws nothing but std::bad_alloc.
+TipNumbers tip_numbers(const Scene& scene, const Tip& tip);
+
+/// What is too near to a tip, in a word or two: "interface", "rock border", "symmetry line", "edge", "fracture"; ""
+/// where nothing. Throws nothing.
+const char* name_of(Obstacle what);
 
 // A row: a value of each column. The tip is the leading one, with the largest y; its numbers are nan where they are
-// none (tip_numbers.hpp), and so is what belongs to a tip where there is no fracture (opening, volume and inlet
+// none (tip_numbers()), and so is what belongs to a tip where there is no fracture (opening, volume and inlet
 // pressure are 0 then). Energies are per metre of thickness, as in Ledger.
 using HistoryRow = std::vector<double>;
 

@@ -31,19 +31,31 @@ Vec2 tangent(const SurfacePoint& s) {
   return {s.n.y(), -s.n.x()};
 }
 
-template <class Value>
-std::vector<double> collect(const std::vector<SurfacePoint>& points, Value value) {
-  std::vector<double> values;
-  values.reserve(points.size());
-  for (const SurfacePoint& s : points) values.push_back(value(s));
-  return values;
-}
+// A number at each point of a surface.
+struct PointField {
+  const char* name;
+  const char* unit;
+  double (*value)(const SurfacePoint& s);
+};
+constexpr PointField places[] = {
+    {"x_m", "m", [](const SurfacePoint& s) { return s.x.x() + s.u.x(); }},
+    {"y_m", "m", [](const SurfacePoint& s) { return s.x.y() + s.u.y(); }},
+    {"opening_m", "m", [](const SurfacePoint& s) { return s.opening(); }},
+    {"slip_m", "m", [](const SurfacePoint& s) { return s.w.dot(tangent(s)); }},
+};
+constexpr PointField arc[] = {{"arc_m", "m", [](const SurfacePoint& s) { return s.arc; }}};
+constexpr PointField reactions[] = {
+    {"reaction_n_Pa", "Pa", [](const SurfacePoint& s) { return s.reaction.dot(s.n); }},
+    {"reaction_t_Pa", "Pa", [](const SurfacePoint& s) { return s.reaction.dot(tangent(s)); }},
+    {"failed_s", "s", [](const SurfacePoint& s) { return s.failed_s; }},
+};
 
-void write_places(hdf5::Id group, const std::vector<SurfacePoint>& points) {
-  hdf5::write(group, "x_m", collect(points, [](const SurfacePoint& s) { return s.x.x() + s.u.x(); }), "m");
-  hdf5::write(group, "y_m", collect(points, [](const SurfacePoint& s) { return s.x.y() + s.u.y(); }), "m");
-  hdf5::write(group, "opening_m", collect(points, [](const SurfacePoint& s) { return s.opening(); }), "m");
-  hdf5::write(group, "slip_m", collect(points, [](const SurfacePoint& s) { return s.w.dot(tangent(s)); }), "m");
+void write_points(hdf5::Id group, const std::vector<SurfacePoint>& points, std::span<const PointField> fields) {
+  std::vector<double> values(points.size());
+  for (const auto& [name, unit, value] : fields) {
+    std::ranges::transform(points, values.begin(), value);
+    hdf5::write(group, name, values, unit);
+  }
 }
 
 void write_fracture(hdf5::Id group, const Scene& scene, const State& state) {
@@ -54,14 +66,15 @@ void write_fracture(hdf5::Id group, const Scene& scene, const State& state) {
   }
   hdf5::set_attribute(group, ".", "time_s", state.time);
   hdf5::set_attribute(group, ".", "inlet_Pa", state.fluid.inlet_Pa);
-  write_places(group, vertices);
-  const auto permeability = [&](const SurfacePoint& s) {
-    const double w = std::max(s.opening(), scene.fluid.minimum_opening_m);
-    return w * w / 12.0;  // between parallel plates
-  };
-  hdf5::write(group, "arc_m", collect(vertices, [](const SurfacePoint& s) { return s.arc; }), "m");
+  write_points(group, vertices, places);
+  write_points(group, vertices, arc);
   hdf5::write(group, "pressure_Pa", state.fluid.P, "Pa");
-  hdf5::write(group, "permeability_m2", collect(vertices, permeability), "m^2");
+  std::vector<double> permeability;
+  for (const SurfacePoint& s : vertices) {
+    const double w = std::max(s.opening(), scene.fluid.minimum_opening_m);
+    permeability.push_back(w * w / 12.0);  // between parallel plates
+  }
+  hdf5::write(group, "permeability_m2", permeability, "m^2");
 }
 
 // Number in the scene of the interface that a surface is: the nearest one, since those that never act may have none.
@@ -79,15 +92,11 @@ std::size_t interface_of(const Scene& scene, const Surface& surface) {
 void write_interface(hdf5::Id group, const Scene& scene, const Surface& surface) {
   hdf5::set_attribute(group, ".", "law", scene.laws.at(surface.law).name);
   hdf5::set_attribute(group, ".", "at_m", scene.strata.interfaces[interface_of(scene, surface)].at_m);
-  const std::vector<SurfacePoint>& points = surface.points;
-  write_places(group, points);
-  const auto along = [](const SurfacePoint& s) { return s.reaction.dot(tangent(s)); };
-  hdf5::write(group, "reaction_n_Pa", collect(points, [](const SurfacePoint& s) { return s.reaction.dot(s.n); }), "Pa");
-  hdf5::write(group, "reaction_t_Pa", collect(points, along), "Pa");
+  write_points(group, surface.points, places);
+  write_points(group, surface.points, reactions);
   std::vector<std::int32_t> split;
-  for (const SurfacePoint& s : points) split.push_back(s.split ? 1 : 0);
+  for (const SurfacePoint& s : surface.points) split.push_back(s.split ? 1 : 0);
   hdf5::write(group, "split", split, "1");
-  hdf5::write(group, "failed_s", collect(points, [](const SurfacePoint& s) { return s.failed_s; }), "s");
 }
 
 // Particles in the order of their ids, of which there is one each below next_id and some may be gone.
@@ -101,43 +110,37 @@ std::vector<std::size_t> by_id(const Particles& particles) {
 
 // Deflate shortens places, areas, labels and fields of one value much. The low bytes of others are noise, over which
 // its search takes as long as small runs do and of which it leaves three quarters.
-template <class Values>
-void write_field(hdf5::Id group, const std::string& name, const Values& values, const std::string& unit) {
+template <class Number>
+void write_field(hdf5::Id group, const std::vector<std::size_t>& order, const std::string& name, const char* unit,
+                 const auto& value_of) {
+  std::vector<Number> field;
+  field.reserve(order.size());
+  for (const std::size_t p : order) field.push_back(static_cast<Number>(value_of(p)));
   const bool packed = name == "id" || name == "rock" || name == "volume_m2" || name == "x_m" || name == "y_m" ||
-                      std::ranges::adjacent_find(values, std::not_equal_to{}) == values.end();
-  hdf5::write(group, name, values, unit, packed ? hdf5::Storage::packed : hdf5::Storage::plain);
+                      std::ranges::adjacent_find(field, std::not_equal_to{}) == field.end();
+  hdf5::write(group, name, field, unit, packed ? hdf5::Storage::packed : hdf5::Storage::plain);
 }
 
 void write_particles(hdf5::Id group, const Scene& scene, const State& state) {
-  const Particles& particles = state.particles;
+  const Particles& of = state.particles;
   const std::vector<Elasticity> rocks = make_elasticities(scene);
-  const std::vector<std::size_t> order = by_id(particles);
-  std::vector<float> field(order.size());
-  const auto put = [&](const char* name, const char* unit, auto value) {
-    std::transform(order.begin(), order.end(), field.begin(), [&](auto p) { return static_cast<float>(value(p)); });
-    write_field(group, name, field, unit);
-  };
-  const auto put_array = [&](const char* name, const char* unit, const SpreadArray& values) {
-    put(name, unit, [&](std::size_t p) { return values[p]; });
-  };
-  std::vector<std::int32_t> label(order.size());
-  const auto put_label = [&](const char* name, const auto& values) {
-    std::transform(order.begin(), order.end(), label.begin(), [&](auto p) { return values[p]; });
-    write_field(group, name, label, "1");
+  const std::vector<std::size_t> order = by_id(of);
+  const auto put = [&](const char* name, const char* unit, const auto& value_of) {
+    write_field<float>(group, order, name, unit, value_of);
   };
   const double moved = scene.numerics.keeps_places() ? 1.0 : 0.0;  // positions are where the rock now is
-  put("x_m", "m", [&](std::size_t p) { return particles.x[p] + moved * particles.u_x[p]; });
-  put("y_m", "m", [&](std::size_t p) { return particles.y[p] + moved * particles.u_y[p]; });
-  put_array("u_x_m", "m", particles.u_x);
-  put_array("u_y_m", "m", particles.u_y);
-  put_array("v_x_m_s", "m/s", particles.v_x);
-  put_array("v_y_m_s", "m/s", particles.v_y);
-  put_array("volume_m2", "m^2", particles.V);
-  put("s_xx_Pa", "Pa", [&](std::size_t p) { return total_stress(rocks, particles, p).xx; });
-  put("s_yy_Pa", "Pa", [&](std::size_t p) { return total_stress(rocks, particles, p).yy; });
-  put("s_xy_Pa", "Pa", [&](std::size_t p) { return total_stress(rocks, particles, p).xy; });
-  put_label("id", particles.id);
-  put_label("rock", particles.rock);
+  put("x_m", "m", [&](std::size_t p) { return of.x[p] + moved * of.u_x[p]; });
+  put("y_m", "m", [&](std::size_t p) { return of.y[p] + moved * of.u_y[p]; });
+  put("u_x_m", "m", [&](std::size_t p) { return of.u_x[p]; });
+  put("u_y_m", "m", [&](std::size_t p) { return of.u_y[p]; });
+  put("v_x_m_s", "m/s", [&](std::size_t p) { return of.v_x[p]; });
+  put("v_y_m_s", "m/s", [&](std::size_t p) { return of.v_y[p]; });
+  put("volume_m2", "m^2", [&](std::size_t p) { return of.V[p]; });
+  put("s_xx_Pa", "Pa", [&](std::size_t p) { return total_stress(rocks, of, p).xx; });
+  put("s_yy_Pa", "Pa", [&](std::size_t p) { return total_stress(rocks, of, p).yy; });
+  put("s_xy_Pa", "Pa", [&](std::size_t p) { return total_stress(rocks, of, p).xy; });
+  write_field<std::int32_t>(group, order, "id", "1", [&](std::size_t p) { return of.id[p]; });
+  write_field<std::int32_t>(group, order, "rock", "1", [&](std::size_t p) { return of.rock[p]; });
   hdf5::set_attribute(group, ".", "time_s", state.time);
 }
 
@@ -149,13 +152,6 @@ void write_fields(hdf5::Id root, const Scene& scene, const State& state) {
     const std::string name = fmt::format("interfaces/{}", interface_of(scene, surface));
     write_interface(hdf5::group(root, name).id(), scene, surface);
   }
-}
-
-template <class Outputs>
-std::vector<double> times_of(const Outputs& outputs) {
-  std::vector<double> times;
-  for (const auto& output : outputs) times.push_back(output.time_s);
-  return times;
 }
 
 // What the library refuses where a file is written is a failure of the output.
@@ -174,11 +170,6 @@ void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directory(folder, error);
   if (error) throw OutputFailure(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
-}
-
-void set_made_with(hdf5::Id root, const MadeWith& made) {
-  hdf5::set_attribute(root, ".", "scene", made.scene);
-  hdf5::set_attribute(root, ".", "version", made.version);
 }
 
 std::string grid_of(const std::string& name, const std::string& topology, std::size_t n, const std::string& group,
@@ -230,13 +221,13 @@ MadeWith made_with(const std::filesystem::path& file) {
 }
 
 ResultFile::ResultFile(const std::filesystem::path& file) : file_(file) {
-  hdf5::write_file(file, true, index_room, [&](hdf5::Id root) { start_index(root); });
+  write_index();
   write_xdmf();
   make_folder(fields_of(file));
 }
 
 ResultFile::ResultFile(const std::filesystem::path& file, std::size_t outputs) : file_(file), synced_(outputs) {
-  const MadeWith made = made_with(file);
+  if (outputs > 0) made_ = made_with(file);
   {
     const hdf5::Handle result = hdf5::open_file(file);
     const std::vector<double> times = hdf5::read(result.id(), "times");
@@ -248,9 +239,9 @@ ResultFile::ResultFile(const std::filesystem::path& file, std::size_t outputs) :
     for (std::size_t k = 0; k < outputs; ++k) {
       const auto path = [&](std::size_t kind) { return std::string(kinds[kind]) + '/' + number_of(k); };
       const auto there = [&](std::size_t kind) { return hdf5::exists(result.id(), path(kind)); };
-      const auto count = [&](std::size_t kind) { return hdf5::length(result.id(), path(kind) + "/x_m"); };
+      const auto count = [&](std::size_t kind) { return hdf5::read(result.id(), path(kind) + "/x_m").size(); };
       if (!std::filesystem::exists(fields_at(k))) {  // they were gathered already
-        hdf5::write_file(fields_at(k), true, index_room, [&](hdf5::Id root) {
+        hdf5::write_file(fields_at(k), index_room, [&](hdf5::Id root) {
           for (std::size_t kind = 0; kind < std::size(kinds); ++kind) {
             if (there(kind)) hdf5::copy(result.id(), path(kind), root, kinds[kind]);
           }
@@ -260,11 +251,7 @@ ResultFile::ResultFile(const std::filesystem::path& file, std::size_t outputs) :
       outputs_.push_back({times[k], count(0), there(1) ? count(1) : 0, there(2)});
     }
   }
-  hdf5::write_file(file, true, index_room, [&](hdf5::Id root) {
-    start_index(root);
-    for (std::size_t k = 0; k < outputs; ++k) link_fields(root, k, outputs_[k]);
-    if (outputs > 0) set_made_with(root, made);
-  });
+  write_index();
   write_xdmf();
 }
 
@@ -273,18 +260,19 @@ void ResultFile::write_output(const Scene& scene, const State& state) {
   constexpr std::size_t of_particle = 12 * sizeof(float);
   const bool interfaces =
       std::ranges::any_of(state.surfaces, [](const Surface& s) { return s.kind == Surface::Kind::interface; });
-  std::vector<Output> outputs = outputs_;
-  outputs.push_back({state.time, particles, state.has_fracture ? state.fracture().vertices.size() : 0, interfaces});
-  require_written([&] {
-    hdf5::write_file(fields_at(k), true, index_room + of_particle * particles,
-                     [&](hdf5::Id root) { write_fields(root, scene, state); });
-    hdf5::write_file(file_, false, index_room, [&](hdf5::Id root) {
-      if (k == 0) set_made_with(root, {scene.resolved_toml, version()});
-      link_fields(root, k, outputs[k]);
-      hdf5::rewrite(root, "times", times_of(outputs), "s");
+  if (k == 0) made_ = {scene.resolved_toml, version()};
+  outputs_.push_back({state.time, particles, state.has_fracture ? state.fracture().vertices.size() : 0, interfaces});
+  try {
+    require_written([&] {
+      hdf5::open_file(file_);  // throws where it is gone or torn
+      hdf5::write_file(fields_at(k), index_room + of_particle * particles,
+                       [&](hdf5::Id root) { write_fields(root, scene, state); });
+      write_index();
     });
-  });
-  outputs_ = std::move(outputs);
+  } catch (...) {
+    outputs_.pop_back();
+    throw;
+  }
   write_xdmf();
 }
 
@@ -294,7 +282,7 @@ void ResultFile::sync() {
 }
 
 void ResultFile::finish(const std::vector<HistoryRow>& rows) {
-  const std::span<const HistoryColumn> columns = history_columns();
+  const std::vector<HistoryColumn>& columns = history_columns();
   const auto gather = [&](hdf5::Id root) {
     for (std::size_t k = 0; k < outputs_.size(); ++k) {
       const hdf5::Handle fields = hdf5::open_file(fields_at(k));
@@ -305,7 +293,7 @@ void ResultFile::finish(const std::vector<HistoryRow>& rows) {
     std::vector<double> values(rows.size());
     for (std::size_t c = 0; c < columns.size(); ++c) {
       std::ranges::transform(rows, values.begin(), [&](const HistoryRow& row) { return row[c]; });
-      hdf5::rewrite(history.id(), columns[c].name, values, columns[c].unit);
+      hdf5::write(history.id(), columns[c].name, values, columns[c].unit);
     }
   };
   require_written([&] {
@@ -325,19 +313,25 @@ std::filesystem::path ResultFile::fields_at(std::size_t output) const {
   return fields_of(file_) / (number_of(output) + ".h5");
 }
 
-void ResultFile::start_index(hdf5::Id root) const {
-  hdf5::rewrite(root, "times", times_of(outputs_), "s");
-  hdf5::group(root, "history");
-  for (const char* kind : kinds) hdf5::group(root, kind);
-}
-
-void ResultFile::link_fields(hdf5::Id root, std::size_t number, const Output& output) const {
-  const std::string file = fields_of(file_.filename()) / (number_of(number) + ".h5");
-  const bool there[] = {true, output.vertices > 0, output.interfaces};
-  for (std::size_t k = 0; k < std::size(kinds); ++k) {
-    if (!there[k]) continue;
-    hdf5::link_to_file(hdf5::group(root, kinds[k]).id(), number_of(number), file, std::string("/") + kinds[k]);
-  }
+void ResultFile::write_index() const {
+  hdf5::write_file(file_, index_room, [&](hdf5::Id root) {
+    if (!made_.scene.empty()) {
+      hdf5::set_attribute(root, ".", "scene", made_.scene);
+      hdf5::set_attribute(root, ".", "version", made_.version);
+    }
+    std::vector<double> times;
+    for (const Output& output : outputs_) times.push_back(output.time_s);
+    hdf5::write(root, "times", times, "s");
+    hdf5::group(root, "history");
+    for (std::size_t kind = 0; kind < std::size(kinds); ++kind) {
+      const hdf5::Handle group = hdf5::group(root, kinds[kind]);
+      for (std::size_t k = 0; k < outputs_.size(); ++k) {
+        const bool there[] = {true, outputs_[k].vertices > 0, outputs_[k].interfaces};
+        const std::string file = fields_of(file_.filename()) / (number_of(k) + ".h5");
+        if (there[kind]) hdf5::link_to_file(group.id(), number_of(k), file, std::string("/") + kinds[kind]);
+      }
+    }
+  });
 }
 
 void ResultFile::write_xdmf() const {

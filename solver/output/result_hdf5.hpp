@@ -78,10 +78,10 @@ class ResultFile {
     bool interfaces = false;
   };
   std::filesystem::path fields_at(std::size_t output) const;
-  void start_index(hdf5::Id root) const;
-  void link_fields(hdf5::Id root, std::size_t number, const Output& output) const;
+  void write_index() const;
   void write_xdmf() const;
   std::filesystem::path file_;
+  MadeWith made_;
   std::vector<Output> outputs_;
   std::size_t synced_ = 0;  // output times that are on the disc for certain
 };

@@ -13,7 +13,7 @@
 #include <iterator>
 #include <system_error>
 
-#include "scene/spelling.hpp"
+#include "scene/messages.hpp"
 
 namespace strata {
 
@@ -22,20 +22,6 @@ namespace {
 [[noreturn]] void fail(const std::filesystem::path& file, const char* doing, int error) {
   throw OutputFailure(fmt::format("{}: cannot {}: {}", file.string(), doing, std::generic_category().message(error)));
 }
-
-class Descriptor {
- public:
-  Descriptor(const std::filesystem::path& file, int flags) : descriptor_(::open(file.c_str(), flags, 0644)) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-  }
-  int get() const { return descriptor_; }
-
- private:
-  int descriptor_;
-};
 
 std::filesystem::path with_ending(std::filesystem::path file, const char* ending) {
   return file += ending;
@@ -54,26 +40,28 @@ void remove_file(const std::filesystem::path& file) {
 
 }  // namespace
 
-FolderLock::FolderLock(const std::filesystem::path& folder)
-    : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  if (descriptor_ < 0) fail(folder, "be opened", errno);
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
-  ::close(descriptor_);
+Descriptor::Descriptor(const std::filesystem::path& file, int flags)
+    : descriptor_(::open(file.c_str(), flags | O_CLOEXEC, 0644)) {}
+
+Descriptor::~Descriptor() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+Descriptor lock_folder(const std::filesystem::path& folder) {
+  Descriptor lock(folder, O_RDONLY | O_DIRECTORY);
+  if (lock.get() < 0) fail(folder, "be opened", errno);
+  if (::flock(lock.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return lock;
   throw OutputFailure(fmt::format(
       "{}: in use by a run that is going on. Wait for its end, stop it, or name another folder.", folder.string()));
 }
 
-FolderLock::~FolderLock() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-FolderLock make_run_folder(const std::filesystem::path& path) {
+Descriptor make_run_folder(const std::filesystem::path& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);
   if (error)
     throw OutputFailure(fmt::format("{}: cannot be made: {}", shortened(path.string(), 1000), error.message()));
   if (!std::filesystem::is_directory(path)) throw OutputFailure(fmt::format("{}: is not a folder", path.string()));
-  return FolderLock(path);
+  return lock_folder(path);
 }
 
 RunFolder clear_run_folder(const std::filesystem::path& path, bool replace) {
@@ -81,10 +69,10 @@ RunFolder clear_run_folder(const std::filesystem::path& path, bool replace) {
   for (const auto& file : files_of(folder)) {
     std::error_code error;
     if (!replace && std::filesystem::exists(file, error)) {
-      throw OutputFailure(fmt::format(
-          "{0}: holds a run already. `strata resume {0}` goes on with it or leaves it as it is where it has "
-          "ended; --replace runs the scene anew in its place; --out names another folder.",
-          path.string()));
+      throw OutputFailure(
+          fmt::format("{0}: holds a run already. `strata resume {0}` goes on with it or leaves it as it is where it "
+                      "has ended; --replace runs the scene anew in its place; --out names another folder.",
+                      path.string()));
     }
   }
   for (const auto& file : files_of(folder)) {
@@ -109,7 +97,7 @@ void write_beside(const std::filesystem::path& file, Sync sync,
   if (sync == Sync::no) return;
   // The new name is safe once its folder is; a file system that cannot sync a folder does so on its own.
   const auto parent = file.parent_path();
-  const Descriptor folder(parent.empty() ? std::filesystem::path(".") : parent, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const Descriptor folder(parent.empty() ? std::filesystem::path(".") : parent, O_RDONLY | O_DIRECTORY);
   if (folder.get() >= 0) ::fsync(folder.get());
 }
 
@@ -118,7 +106,7 @@ void atomic_write(const std::filesystem::path& file, std::string_view text, Sync
 }
 
 void write_with_room(const std::filesystem::path& file, std::string_view text, std::uint64_t bytes) {
-  const Descriptor out(file, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC);
+  const Descriptor out(file, O_WRONLY | O_CREAT | O_TRUNC);
   if (out.get() < 0) fail(file, "be written", errno);
   while (!text.empty()) {
     const ssize_t written = ::write(out.get(), text.data(), text.size());
@@ -130,14 +118,13 @@ void write_with_room(const std::filesystem::path& file, std::string_view text, s
 }
 
 void append_at(const std::filesystem::path& file, std::uint64_t bytes, std::string_view text) {
-  const Descriptor out(file, O_WRONLY | O_APPEND | O_CLOEXEC);
+  const Descriptor out(file, O_WRONLY | O_APPEND);
   struct stat status {};
   if (out.get() < 0 || ::fstat(out.get(), &status) != 0) fail(file, "be written", errno);
   if (static_cast<std::uint64_t>(status.st_size) != bytes) {
-    throw OutputFailure(
-        fmt::format("{}: cannot be written: it has {} bytes and not the {} that were written; another "
-                    "program has changed it",
-                    file.string(), status.st_size, bytes));
+    throw OutputFailure(fmt::format(
+        "{}: cannot be written: it has {} bytes and not the {} that were written; another program has changed it",
+        file.string(), status.st_size, bytes));
   }
   ssize_t written = 0;
   do {
@@ -150,7 +137,7 @@ void append_at(const std::filesystem::path& file, std::uint64_t bytes, std::stri
 }
 
 void sync_file(const std::filesystem::path& file) {
-  const Descriptor out(file, O_WRONLY | O_CLOEXEC);
+  const Descriptor out(file, O_WRONLY);
   if (out.get() < 0 || ::fsync(out.get()) != 0) fail(file, "be synced", errno);
 }
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace strata {
 
@@ -31,26 +32,27 @@ struct RunFolder {
   std::filesystem::path checkpoint() const { return path / "checkpoint.bin"; }
 };
 
-// Held by the process that writes to a folder, and gone with it however it ends: a lock of the system on the folder
-// itself.
-class FolderLock {
+// An open file or folder of the system; -1 where it could not be opened.
+class Descriptor {
  public:
-  /// Throws OutputFailure where another process writes to the folder, or where it cannot be opened. On a file system
-  /// without locks nothing is locked.
-  explicit FolderLock(const std::filesystem::path& folder);
-  FolderLock(FolderLock&& other) noexcept : descriptor_(other.descriptor_) { other.descriptor_ = -1; }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-  FolderLock& operator=(FolderLock&&) = delete;
-  ~FolderLock();
+  Descriptor(const std::filesystem::path& file, int flags);
+  Descriptor(Descriptor&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+  Descriptor& operator=(Descriptor&&) = delete;
+  ~Descriptor();
+  int get() const { return descriptor_; }
 
  private:
   int descriptor_;
 };
 
+/// Locks a folder for the process that writes to it, until what is returned goes or the process ends: a lock of the
+/// system on the folder itself. Throws OutputFailure where another process writes to the folder, or where it cannot be
+/// opened. On a file system without locks nothing is locked.
+Descriptor lock_folder(const std::filesystem::path& folder);
+
 /// Makes the folder, with its parents, and locks it. Throws OutputFailure where it cannot be made, is not a folder or
 /// is in use.
-FolderLock make_run_folder(const std::filesystem::path& path);
+Descriptor make_run_folder(const std::filesystem::path& path);
 
 /// Makes way for a run in a folder that is locked: throws OutputFailure, saying what may be done, where it holds one,
 /// unless `replace`, which takes that one's files out of it. Other files stay, and scene.toml, which the new run's

@@ -6,9 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "output/history.hpp"
-#include "output/run_folder.hpp"
 #include "output/suspect.hpp"
-#include "output/tip_numbers.hpp"
 
 namespace strata {
 
@@ -95,12 +93,7 @@ Json suspect_json(const std::vector<Watched>& marks) {
   return list;
 }
 
-}  // namespace
-
-std::string version() {
-  return STRATA_VERSION;
-}
-
+// Largest memory this process has held (MB of 1e6 bytes), nan where the system does not tell.
 double peak_memory_MB() {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;) {
@@ -108,6 +101,12 @@ double peak_memory_MB() {
     if (word == "VmHWM:" && status >> kibibytes) return kibibytes * 1024.0 / 1e6;
   }
   return std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+std::string version() {
+  return STRATA_VERSION;
 }
 
 std::string summary_json(const Scene& scene, const State& state, const RunRecord& record) {
@@ -137,10 +136,6 @@ std::string summary_json(const Scene& scene, const State& state, const RunRecord
   summary["suspect"] = suspect_json(suspicions(scene, state));
   // The library writes numbers that are not finite as null; bytes that are no UTF-8 are replaced, not refused.
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
-}
-
-void write_summary(const std::filesystem::path& file, const Scene& scene, const State& state, const RunRecord& record) {
-  atomic_write(file, summary_json(scene, state, record));
 }
 
 }  // namespace strata

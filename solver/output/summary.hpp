@@ -1,7 +1,6 @@
 // summary.json: what a run came to.
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "scene/scene.hpp"
@@ -22,13 +21,7 @@ struct RunRecord {
 /// The version of strata, as in CMakeLists.txt; throws nothing.
 std::string version();
 
-/// Largest memory this process has held (MB of 1e6 bytes), nan where the system does not tell; throws nothing.
-double peak_memory_MB();
-
 /// The summary as JSON text; numbers that are not finite become null. Throws std::bad_alloc only.
 std::string summary_json(const Scene& scene, const State& state, const RunRecord& record);
-
-/// Writes the summary to `file` in one piece; throws std::runtime_error if it cannot be written.
-void write_summary(const std::filesystem::path& file, const Scene& scene, const State& state, const RunRecord& record);
 
 }  // namespace strata

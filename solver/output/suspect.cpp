@@ -6,9 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "output/history.hpp"
-#include "scene/plausible.hpp"
+#include "scene/derived.hpp"
 #include "state/elasticity.hpp"
 #include "state/round_off.hpp"
 
@@ -16,41 +17,53 @@ namespace strata {
 
 namespace {
 
-// A share a/b of sums of the same kind, of which `nothing` is round-off. With no more of a it marks nothing, whatever b
-// is; with no more of both it is 0.
-Watched share(const char* monitor, double a, double b, double nothing, std::optional<double> threshold,
-              const char* why) {
-  const bool little = std::abs(a) <= nothing;
-  if (little && std::abs(b) <= nothing) return {monitor, 0.0, threshold, why};
-  const double value = b != 0.0 ? a / b : std::numeric_limits<double>::infinity();
-  return {monitor, value, little ? std::nullopt : threshold, why};
-}
+// The figures of a run, told one after another.
+struct Watch {
+  const Scene& scene;
+  const State& state;
+  const Monitors& m = state.monitors;
+  const bool moves = scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics;
+  const RoundOff nothing = round_off(scene, state);
+  std::vector<Watched> out{};
+
+  void note(const char* monitor, double value, std::optional<double> threshold, std::string why) {
+    out.push_back({monitor, value, threshold, std::move(why)});
+  }
+
+  // A share a/b of sums of the same kind, of which `none` is round-off. With no more of a it marks nothing, whatever
+  // b is; with no more of both it is 0.
+  void share(const char* monitor, double a, double b, double none, std::optional<double> threshold, const char* why) {
+    const bool little = std::abs(a) <= none;
+    const double value = b != 0.0 ? a / b : std::numeric_limits<double>::infinity();
+    if (little && std::abs(b) <= none) return note(monitor, 0.0, threshold, why);
+    note(monitor, value, little ? std::nullopt : threshold, why);
+  }
+
+  void inputs(), energy(), motion(), fluid(), resolution(), growth(), failure(), crossing(), speed(), deformation(),
+      loading(), contact(), locking(), contrast();
+};
 
 // What a per cent of the energy stands for in results: K and openings go with its root, so half a per cent of them.
 constexpr double energy_threshold = 0.01;
 
-void watch_energy(const Scene& scene, const State& state, std::vector<Watched>& out) {
-  const Monitors& m = state.monitors;
-  const RoundOff nothing = round_off(scene, state);
-  const bool inertia = scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics;
+void Watch::energy() {
   double open = m.largest_open_J;
   note_largest(open, std::abs(state.ledger.open()));
-  out.push_back(share("energy_closure", open, state.ledger.largest, nothing.work, energy_threshold,
-                      "the energy ledger stayed open by more than 1 % of the largest energy exchanged"));
-  if (!inertia) return;
+  share("energy_closure", open, state.ledger.largest, nothing.work, energy_threshold,
+        "the energy ledger stayed open by more than 1 % of the largest energy exchanged");
+  if (!moves) return;
   // With a step beyond its limit modes grow that no work has fed, and contact that does not converge can feed them,
   // too; what the step and the transfer make shows as dissipation below zero.
-  out.push_back(
-      share("energy_made", m.largest_made_J, state.ledger.largest, nothing.work, energy_threshold,
-            "the time step and the transfer made more than 1 % of the largest energy exchanged out of nothing"));
+  share("energy_made", m.largest_made_J, state.ledger.largest, nothing.work, energy_threshold,
+        "the time step and the transfer made more than 1 % of the largest energy exchanged out of nothing");
   // Free vibration has as much of one energy as of the other, a suddenly loaded body less of the kinetic; more comes of
   // parts that fly. Below, inertia is the physics of unstable growth: a figure that tells how far from the quasi-static
   // answer a run may be, and no fault. Blocks that a scene itself throws or pulls are not judged.
   const bool thrown = scene.initial.velocity_m_s || scene.body.acceleration_m_s2;
   if (thrown && m.largest_strain_J == 0.0) return;
-  out.push_back(share("kinetic_share", m.largest_kinetic_J, m.largest_strain_J, nothing.energy,
-                      thrown ? std::nullopt : std::optional(1.0),
-                      "the largest kinetic energy exceeded the largest strain energy: parts of the block fly freely"));
+  share("kinetic_share", m.largest_kinetic_J, m.largest_strain_J, nothing.energy,
+        thrown ? std::nullopt : std::optional(1.0),
+        "the largest kinetic energy exceeded the largest strain energy: parts of the block fly freely");
 }
 
 // Share of the particles that are in another cell than they started in. Where they are now says enough: a motion that
@@ -66,29 +79,29 @@ double share_crossed(const State& state) {
   return p.size() > 0 ? static_cast<double>(crossed) / static_cast<double>(p.size()) : 0.0;
 }
 
-void watch_motion(const Scene& scene, const State& state, std::vector<Watched>& out) {
-  const Monitors& m = state.monitors;
-  const double limit = courant_limit(scene.numerics.shape);
-  if (scene.numerics.mechanics == Numerics::Mechanics::quasistatic) {
+void Watch::motion() {
+  if (!moves) {
     // What Newton's method on the pieces solves to (1e-9 of the load), with some room for round-off.
-    out.push_back({"contact_residual", m.contact_residual, 1e-8,
-                   "forces at surfaces were out of balance by more than 1e-8 of the load"});
-    out.push_back({"force_balance", m.force_balance, 1e-6,
-                   "forces at the nodes were out of balance by more than 1e-6 of the load"});
+    note("contact_residual", m.contact_residual, 1e-8,
+         "forces at surfaces were out of balance by more than 1e-8 of the load");
+    note("force_balance", m.force_balance, 1e-6,
+         "forces at the nodes were out of balance by more than 1e-6 of the load");
     return;
   }
-  out.push_back(
-      {"largest_courant", m.largest_courant, limit, "no block of such a shape is stable with so long a time step"});
+  // c_P dt/h beyond which no block of a shape is stable, whatever its edges, transfer and points: that of nodes which
+  // keep their velocities in a block whose edges are all held (verification/stability/theory/step_limit.py). Free edges
+  // and transfers lower it, to 0.48 at worst; what is made out of nothing then tells (energy_made), or ends the run.
+  const double limit = scene.numerics.shape == Numerics::Shape::bspline2 ? 1.71 : 1.04;
+  note("largest_courant", m.largest_courant, limit, "no block of such a shape is stable with so long a time step");
   // Gradients of hat functions jump between cells, and with them what a point's stress exerts (Steffen, Kirby & Berzins
   // 2008); one point is enough.
   if (scene.numerics.shape == Numerics::Shape::linear && scene.numerics.kinematics == Numerics::Kinematics::updated)
-    out.push_back({"cells_crossed", share_crossed(state), 0.0,
-                   "particles went into other cells under linear functions, whose gradients jump there: use bspline2"});
+    note("cells_crossed", share_crossed(state), 0.0,
+         "particles went into other cells under linear functions, whose gradients jump there: use bspline2");
   // Each step keeps momentum to round-off, 1e-16 of it; 1e6 steps that all erred to one side make 1e-10.
   if (!scene.domain.holds_x() || !scene.domain.holds_y())
-    out.push_back(share("momentum", m.largest_drift, m.largest_momentum, round_off(scene, state).momentum, 1e-8,
-                        "momentum along an axis that no edge holds is not what started the block and the body force "
-                        "gave"));
+    share("momentum", m.largest_drift, m.largest_momentum, nothing.momentum, 1e-8,
+          "momentum along an axis that no edge holds is not what started the block and the body force gave");
 }
 
 // What the pressure falls by in a cell between the inlet and where the fluid no longer parts the faces, over the
@@ -103,39 +116,36 @@ constexpr double fall_threshold = 0.6;
 constexpr double floor_threshold = 0.1;
 
 // Judged at growth; where nothing has grown what they are now is told.
-void watch_resolution(const Scene& scene, const Monitors& m, std::vector<Watched>& out) {
+void Watch::resolution() {
   if (scene.fluid.law == Fluid::Law::uniform) return;
   const std::int64_t growths = m.growths + m.growths_apart;
   const bool remembers = scene.fluid.law == Fluid::Law::paper || scene.fluid.rate_m2_s;
   const auto where_grown = [growths](double threshold) {
     return growths > 0 ? std::optional(threshold) : std::nullopt;
   };
-  out.push_back(
-      {"flow_fall", growths > 0 ? m.largest_flow_fall : m.flow_fall,
+  note("flow_fall", growths > 0 ? m.largest_flow_fall : m.flow_fall,
        remembers ? where_grown(fall_threshold) : std::nullopt,
-       "when the fracture grew, its pressure had fallen to the closing stress within a cell or two of the inlet, "
-       "which they do not resolve; use smaller cells, or a larger fluid.minimum_opening_m if closed faces conduct"});
-  out.push_back(
-      {"floor_share", growths > 0 ? m.floor_share_sum / static_cast<double>(growths) : m.floor_share,
+       "when the fracture grew, its pressure had fallen to the closing stress within a cell or two of the inlet, which "
+       "they do not resolve; use smaller cells, or a larger fluid.minimum_opening_m if closed faces conduct");
+  note("floor_share", growths > 0 ? m.floor_share_sum / static_cast<double>(growths) : m.floor_share,
        where_grown(floor_threshold),
-       "fluid.minimum_opening_m decides about more than a tenth of the inlet's net pressure, since fluid flows "
-       "where the fracture opens by less; lower it or use smaller cells until results no longer change"});
+       "fluid.minimum_opening_m decides about more than a tenth of the inlet's net pressure, since fluid flows where "
+       "the fracture opens by less; lower it or use smaller cells until results no longer change");
 }
 
-void watch_fluid(const Scene& scene, const State& state, std::vector<Watched>& out) {
-  const Monitors& m = state.monitors;
+void Watch::fluid() {
   if (!state.has_fracture) return;
-  watch_resolution(scene, m, out);
+  resolution();
   if (scene.fluid.law == Fluid::Law::reynolds) {
     double imbalance = m.largest_imbalance;
     note_largest(imbalance, std::abs(m.volume_balance));
-    out.push_back({"fluid_imbalance", imbalance, 1e-8, "more than 1e-8 of the fluid is missing or was made"});
+    note("fluid_imbalance", imbalance, 1e-8, "more than 1e-8 of the fluid is missing or was made");
   }
   // The study's law (3) has no dw/dt: the fracture takes what opening it needs whatever has come in. The figure says by
   // how much; no run of this law can do better, so it marks none.
   if (scene.fluid.law == Fluid::Law::paper) {
     const double opened = fracture_volume(state);
-    if (!(opened <= 0.0)) out.push_back({"fluid_imbalance", (opened - m.delivered_m2) / opened, std::nullopt, ""});
+    if (!(opened <= 0.0)) note("fluid_imbalance", (opened - m.delivered_m2) / opened, std::nullopt, "");
   }
 }
 
@@ -143,22 +153,20 @@ void watch_fluid(const Scene& scene, const State& state, std::vector<Watched>& o
 // 0.01 it is half a per cent of them, and rotated areas carry a per cent less. Points that move take up strain in their
 // present places, so that stretching is exact at any size, and Hooke's law is one of logarithmic strain; at a tenth
 // that differs by 5 % from one of strain. Their stress does not turn with them.
-void watch_deformation(const Scene& scene, const State& state, std::vector<Watched>& out) {
-  const Monitors& m = state.monitors;
+void Watch::deformation() {
   const bool keeps = scene.numerics.keeps_places();
   const std::string check = "; check rock.*.youngs_modulus_Pa and the pressures";
-  out.push_back({"largest_strain", m.largest_strain, keeps ? 0.01 : 0.1,
-                 (keeps ? "rock is strained by more than 1 %, but the equations are those of small strain"
-                        : "rock is strained by more than 10 %, where its law is no longer that of linear elasticity") +
-                     check});
-  out.push_back({"largest_rotation", m.largest_rotation, 0.01,
-                 "rock turns by more than 0.01 rad, but the equations are those of small rotations" + check});
+  note("largest_strain", m.largest_strain, keeps ? 0.01 : 0.1,
+       (keeps ? "rock is strained by more than 1 %, but the equations are those of small strain"
+              : "rock is strained by more than 10 %, where its law is no longer that of linear elasticity") +
+           check);
+  note("largest_rotation", m.largest_rotation, 0.01,
+       "rock turns by more than 0.01 rad, but the equations are those of small rotations" + check);
   if (!keeps) return;
   // From half a cell on a node of one face stands nearer to another node of the other face than to the one that it is
   // solved with.
-  out.push_back(
-      {"jump_share", m.largest_jump / state.grid.h, 0.5,
-       "faces open or slip by more than half a cell while they are solved as lying where they started" + check});
+  note("jump_share", m.largest_jump / state.grid.h, 0.5,
+       "faces open or slip by more than half a cell while they are solved as lying where they started" + check);
 }
 
 // What explicit runs take for granted: that the load is slow, so that its waves add little to what it does at rest. A
@@ -186,16 +194,13 @@ double left_of_start(const Scene& scene, double time) {
   return std::exp(-time * std::min(0.5 * d, 1.0 / answer));
 }
 
-void watch_loading(const Scene& scene, const State& state, std::vector<Watched>& out) {
-  const Monitors& m = state.monitors;
-  const bool slow_assumed = scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics && scene.fracture;
-  if (!slow_assumed || m.largest_net_Pa <= 0.0) return;  // a fracture that stays closed loads nothing
+void Watch::loading() {
+  if (!moves || !scene.fracture || m.largest_net_Pa <= 0.0) return;  // a fracture that stays closed loads nothing
   const double rise = std::abs(scene.fluid.rate_Pa_s) * answer_time(scene);
-  out.push_back(
-      {"loading_share", rise / m.largest_net_Pa, load_threshold,
-       "while a wave crosses the block, or its damped motion follows, the pressure rises by more than a tenth of "
-       "the largest net pressure: the load is not slow; lower fluid.inlet.rate_Pa_s, or check density_kg_m3 and "
-       "damping_1_s"});
+  note("loading_share", rise / m.largest_net_Pa, load_threshold,
+       "while a wave crosses the block, or its damped motion follows, the pressure rises by more than a tenth of the "
+       "largest net pressure: the load is not slow; lower fluid.inlet.rate_Pa_s, or check density_kg_m3 and "
+       "damping_1_s");
   // A pressure above the closing stress at time 0 comes at once and acts with up to twice its size. What damping has
   // left of that counts where the first tip grows, or else at the end.
   double until = state.time;
@@ -204,20 +209,19 @@ void watch_loading(const Scene& scene, const State& state, std::vector<Watched>&
   }
   // A run that ends before waves have crossed the block and come back, and grows nothing, is about these waves.
   const bool of_waves = scene.fracture->growth == Fracture::Growth::none && state.time < 2.0 * answer_time(scene);
-  out.push_back(
-      {"shock_share", m.net_at_start_Pa / m.largest_net_Pa * left_of_start(scene, until),
+  note("shock_share", m.net_at_start_Pa / m.largest_net_Pa * left_of_start(scene, until),
        of_waves ? std::nullopt : std::optional(load_threshold),
-       "the pressure at time 0 exceeds the closing stress, acts at once, and its waves have not been damped by "
-       "the first growth or the end: start at the closing stress, or use damping_1_s"});
+       "the pressure at time 0 exceeds the closing stress, acts at once, and its waves have not been damped by the "
+       "first growth or the end: start at the closing stress, or use damping_1_s");
 }
 
-void watch_inputs(const Scene& scene, std::vector<Watched>& out) {
+void Watch::inputs() {
   const std::vector<std::string> odd = implausible(scene);
-  out.push_back({"implausible_inputs", static_cast<double>(odd.size()), 0.0, fmt::format("{}", fmt::join(odd, "; "))});
+  note("implausible_inputs", static_cast<double>(odd.size()), 0.0, fmt::format("{}", fmt::join(odd, "; ")));
 }
 
 // What interfaces that have failed were judged on: one column of nodes is no mean of the traction beside a tip.
-void watch_failure(const Scene& scene, const State& state, std::vector<Watched>& out) {
+void Watch::failure() {
   double least = HUGE_VAL;  // cells
   for (const Surface& surface : state.surfaces) {
     if (surface.kind != Surface::Kind::interface || scene.laws[surface.law].kind != InterfaceLaw::Kind::weak) continue;
@@ -227,79 +231,72 @@ void watch_failure(const Scene& scene, const State& state, std::vector<Watched>&
   }
   if (least == HUGE_VAL) return;
   constexpr double resolved_cells = 2.0;  // with one, slip runs 19 m where it should run 23; with two, 22
-  out.push_back(
-      {"failure_length_unresolved", resolved_cells / least, 1.0,
-       "an interface has failed in part whose failure_length_m is less than two cells: where it stops is the cell's"});
+  note("failure_length_unresolved", resolved_cells / least, 1.0,
+       "an interface has failed in part whose failure_length_m is less than two cells: where it stops is the cell's");
 }
 
 // Energy over less than half a cell beyond an open interface: the new crack is not resolved. At 0.485 of a cell,
 // 1/2.06, the net pressure of a restart is 10 % low, at a quarter 50 % (atlas, cut_increments).
-void watch_crossing(const Scene& scene, const State& state, std::vector<Watched>& out) {
+void Watch::crossing() {
   const bool by_energy = std::ranges::any_of(state.events, [](const Event& e) { return e.by == "energy"; });
   if (!scene.fracture || !by_energy) return;
-  out.push_back({"crossing_increment_unresolved", state.grid.h / scene.fracture->crossing_increment(), 2.05,
-                 "energy decided about growth over less than half a cell: use smaller cells, or a larger "
-                 "fracture.crossing_increment_m"});
+  note("crossing_increment_unresolved", state.grid.h / scene.fracture->crossing_increment(), 2.05,
+       "energy decided about growth over less than half a cell: use smaller cells, or a larger "
+       "fracture.crossing_increment_m");
 }
 
 // New surface takes nothing from the motion: a tip in motion has that much too much, and runs as the cell lets it.
-void watch_speed(const Scene& scene, const State& state, std::vector<Watched>& out) {
-  if (scene.numerics.mechanics != Numerics::Mechanics::explicit_dynamics || state.ledger.fracture == 0.0) return;
-  out.push_back({"surface_energy_share", state.ledger.fracture / state.monitors.largest_kinetic_J, 0.1,
-                 "new surface took nothing of the motion's energy, where it needs more than a tenth of it: speeds of "
-                 "growth are no result"});
+void Watch::speed() {
+  if (!moves || state.ledger.fracture == 0.0) return;
+  note("surface_energy_share", state.ledger.fracture / state.monitors.largest_kinetic_J, 0.1,
+       "new surface took nothing of the motion's energy, where it needs more than a tenth of it: speeds of growth are "
+       "no result");
 }
 
-void watch_growth(const State& state, std::vector<Watched>& out) {
-  const Monitors& m = state.monitors;
-  out.push_back(
-      {"growth_unweighed", static_cast<double>(m.growth_unweighed), 0.0,
+void Watch::growth() {
+  note("growth_unweighed", static_cast<double>(m.growth_unweighed), 0.0,
        "energy should have decided about growth, but surfaces had cut off parts that nothing but inertia holds: K "
-       "decided"});
+       "decided");
   if (m.growths == 0) return;
   const auto n = static_cast<double>(m.growths);
   // A tenth of J is a twentieth of K, and of the pressure at which a tip grows.
-  out.push_back({"J_spread_mean", m.J_spread_sum / n, 0.1,
-                 "J differed between its rings by more than a tenth at growth, on average away from interfaces"});
-  out.push_back({"J_spread_largest", m.largest_J_spread, std::nullopt, ""});
+  note("J_spread_mean", m.J_spread_sum / n, 0.1,
+       "J differed between its rings by more than a tenth at growth, on average away from interfaces");
+  note("J_spread_largest", m.largest_J_spread, std::nullopt, "");
 }
 
-void watch_contact(const Scene& scene, const State& state, std::vector<Watched>& out) {
-  const Monitors& m = state.monitors;
-  const double nothing = round_off(scene, state).stress;
+void Watch::contact() {
   double stiffest = 0.0;  // E' (Pa)
   for (const Rock& rock : scene.rocks)
     stiffest = std::max(stiffest, rock.youngs_modulus_Pa / (1.0 - rock.poisson_ratio * rock.poisson_ratio));
   // By the laws' contact stiffness faces overlap by 1e-4 of what a cell deforms under the same pressure: a hundred
   // times as much is no longer the law's, and a per cent of what a cell does is where results would show it.
   const double overlap = m.largest_penetration * stiffest / state.grid.h;
-  out.push_back(share("penetration_share", overlap, m.largest_contact_Pa, nothing, 0.01,
-                      "closed faces overlapped by more than 1 % of what a cell deforms under the largest contact "
-                      "pressure"));
-  out.push_back(share("tension_share", m.largest_tension_Pa, m.largest_contact_Pa, nothing, 1e-9,
-                      "faces that carry no tension by their law carried some"));
-  if (scene.numerics.mechanics != Numerics::Mechanics::explicit_dynamics) return;
-  out.push_back({"contact_left", m.contact_left, 0.01,
-                 "a step's contact ran out of sweeps while a reaction still changed by more than 1 % of the largest"});
+  share("penetration_share", overlap, m.largest_contact_Pa, nothing.stress, 0.01,
+        "closed faces overlapped by more than 1 % of what a cell deforms under the largest contact pressure");
+  share("tension_share", m.largest_tension_Pa, m.largest_contact_Pa, nothing.stress, 1e-9,
+        "faces that carry no tension by their law carried some");
+  if (!moves) return;
+  note("contact_left", m.contact_left, 0.01,
+       "a step's contact ran out of sweeps while a reaction still changed by more than 1 % of the largest");
 }
 
 // Functions of low order lock where rock hardly changes its volume: a crack opens too little, by 2.9 % with hat
 // functions at nu = 0.45 (20 cells along it) and by 1.8 % with quadratic B-splines at 0.495 (10 cells). Told as the
 // ratio (lambda + mu)/mu = 1/(1 - 2 nu).
-void watch_locking(const Scene& scene, std::vector<Watched>& out) {
+void Watch::locking() {
   double most = 0.0;
   for (const Rock& rock : scene.rocks) most = std::max(most, 1.0 / (1.0 - 2.0 * rock.poisson_ratio));
   constexpr double spline_limit = 101.0, hat_limit = 10.1;  // nu = 0.495, 0.45
-  out.push_back({"incompressibility", most,
-                 scene.numerics.shape == Numerics::Shape::bspline2 ? spline_limit : hat_limit,
-                 "rock is so nearly incompressible that functions of this order lock: it is too stiff"});
+  note("incompressibility", most, scene.numerics.shape == Numerics::Shape::bspline2 ? spline_limit : hat_limit,
+       "rock is so nearly incompressible that functions of this order lock: it is too stiff");
 }
 
 // Quadratic B-splines carry the kink of strain at a bonded border of two rocks over three cells. What they miss there,
 // times the stiff rock's modulus, is stress: 2 % of a layer's mean at a contrast of 10 (4 cells a layer), of the size
 // of the stress itself beside the border at 100, where K_I of a crack 8 cells away is 1.3 % off. Hat functions kink on
 // grid lines.
-void watch_contrast(const Scene& scene, std::vector<Watched>& out) {
+void Watch::contrast() {
   if (scene.numerics.shape != Numerics::Shape::bspline2) return;
   double most = 1.0;
   for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
@@ -308,33 +305,20 @@ void watch_contrast(const Scene& scene, std::vector<Watched>& out) {
     const double b = scene.rocks[scene.strata.layers[k + 1].rock].youngs_modulus_Pa;
     most = std::max({most, a / b, b / a});
   }
-  out.push_back({"stiffness_contrast", most, 30.0,
-                 "rocks bonded to each other differ so much in stiffness that stresses within three cells of their "
-                 "border are of no worth"});
+  note("stiffness_contrast", most, 30.0,
+       "rocks bonded to each other differ so much in stiffness that stresses within three cells of their border are of "
+       "no worth");
 }
 
 }  // namespace
 
-double courant_limit(Numerics::Shape shape) {
-  return shape == Numerics::Shape::bspline2 ? 1.71 : 1.04;
-}
-
 std::vector<Watched> watched(const Scene& scene, const State& state) {
-  std::vector<Watched> out;
-  watch_inputs(scene, out);
-  watch_energy(scene, state, out);
-  watch_motion(scene, state, out);
-  watch_fluid(scene, state, out);
-  watch_growth(state, out);
-  watch_failure(scene, state, out);
-  watch_crossing(scene, state, out);
-  watch_speed(scene, state, out);
-  watch_deformation(scene, state, out);
-  watch_loading(scene, state, out);
-  watch_contact(scene, state, out);
-  watch_locking(scene, out);
-  watch_contrast(scene, out);
-  return out;
+  Watch watch{scene, state};
+  for (const auto part : {&Watch::inputs, &Watch::energy, &Watch::motion, &Watch::fluid, &Watch::growth,
+                          &Watch::failure, &Watch::crossing, &Watch::speed, &Watch::deformation, &Watch::loading,
+                          &Watch::contact, &Watch::locking, &Watch::contrast})
+    (watch.*part)();
+  return watch.out;
 }
 
 std::vector<Watched> suspicions(const Scene& scene, const State& state) {

@@ -27,9 +27,4 @@ std::vector<Watched> watched(const Scene& scene, const State& state);
 /// Those that mark it: above their threshold, or not finite.
 std::vector<Watched> suspicions(const Scene& scene, const State& state);
 
-/// c_P dt/h beyond which no block of a shape is stable, whatever its edges, transfer and points: that of nodes which
-/// keep their velocities in a block whose edges are all held (verification/stability/theory/step_limit.py). Free edges
-/// and transfers lower it, to 0.48 at worst; what is made out of nothing then tells (energy_made), or ends the run.
-double courant_limit(Numerics::Shape shape);
-
 }  // namespace strata

@@ -101,9 +101,9 @@ void check_required(const Entries& entries, Faults& faults) {
   }
   if (names_of(entries, rocks).empty()) require_one({}, "rock", "there is no rock. Give a table [rock.NAME].");
   if (fracture) {
-    require_one({"fluid.inlet.start_Pa", "fluid.inlet.rate_Pa_s", "fluid.inlet.rate_m2_s"}, "fluid.inlet",
-                "fluid.inlet is missing; a fracture needs it. Give inlet = {start_Pa = 2e6, rate_Pa_s = 0.35e6} in "
-                "[fluid].");
+    require_one(
+        {"fluid.inlet.start_Pa", "fluid.inlet.rate_Pa_s", "fluid.inlet.rate_m2_s"}, "fluid.inlet",
+        "fluid.inlet is missing; a fracture needs it. Give inlet = {start_Pa = 2e6, rate_Pa_s = 0.35e6} in [fluid].");
   }
   require_one({"stop.tip_y_m", "stop.inlet_Pa", "stop.time_s"}, "stop",
               "nothing ends the run. Give tip_y_m, inlet_Pa or time_s in [stop].");

@@ -8,8 +8,8 @@
 
 #include <toml++/toml.h>
 
-#include "scene/faults.hpp"
 #include "scene/keys.hpp"
+#include "scene/messages.hpp"
 
 namespace strata {
 

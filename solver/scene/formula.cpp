@@ -8,7 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "scene/spelling.hpp"
+#include "scene/messages.hpp"
 
 namespace strata {
 namespace {
@@ -49,8 +49,8 @@ std::string message_of(const mu::Parser::exception_type& error, const std::strin
   const int at = std::min(error.GetPos(), static_cast<int>(text.size())) + 1;
   if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN) {
     return fmt::format(
-        "there is no {} at character {}. A formula may use {}, pi, + - * / ^, a comparison ? : and "
-        "functions such as sin, exp, sqrt.{}",
+        "there is no {} at character {}. A formula may use {}, pi, + - * / ^, a comparison ? : and functions such as "
+        "sin, exp, sqrt.{}",
         error.GetToken(), at, fmt::join(variables, ", "), meant(error.GetToken(), variables));
   }
   if (error.GetCode() == mu::ecEXPRESSION_TOO_LONG)

@@ -104,8 +104,8 @@ std::vector<Key> rock_and_interface_keys() {
       number("interface.NAME.residual_friction", at<&Scene::laws, &InterfaceLaw::residual_friction>, "", not_negative,
              "Coulomb coefficient where it has failed.", "", "weak"),
       number("interface.NAME.failure_length_m", at<&Scene::laws, &InterfaceLaw::failure_length_m>, "m", positive,
-             "Length of bonded interface over which the mean traction decides whether it fails or slips; by "
-             "default fracture.increment_m, without a fracture numerics.cell_m.",
+             "Length of bonded interface over which the mean traction decides whether it fails or slips; by default "
+             "fracture.increment_m, without a fracture numerics.cell_m.",
              "", "weak or friction"),
       number("interface.NAME.normal_stiffness_Pa_m", at<&Scene::laws, &InterfaceLaw::normal_stiffness_Pa_m>, "Pa/m",
              not_negative, "Normal traction by opening, D_n.", "", "soft"),
@@ -121,10 +121,9 @@ std::vector<Key> rock_and_interface_keys() {
       number("strata.layers[].thickness_m", Way<double>{}, "m", positive,
              "Thickness; the last layer may leave it out and takes what remains.",
              "Layers are stacked upwards from the block's lower edge (along = \"x\": from its left)."),
-      other(
-          "strata.interfaces", at<&Scene::strata, &Strata::interfaces>,
-          "A name between each two layers, [interface.NAME] or perfect; each on a grid line or at mid-cell. Left out: "
-          "all perfect."),
+      other("strata.interfaces", at<&Scene::strata, &Strata::interfaces>,
+            "A name between each two layers, [interface.NAME] or perfect; each on a grid line or at mid-cell. Left "
+            "out: all perfect."),
   };
 }
 

@@ -12,8 +12,8 @@
 #include <variant>
 #include <vector>
 
+#include "scene/messages.hpp"
 #include "scene/scene.hpp"
-#include "scene/spelling.hpp"
 
 namespace strata {
 

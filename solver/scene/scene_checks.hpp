@@ -28,12 +28,9 @@ struct SceneChecks {
 };
 
 /// Adds to `faults` where cells do not divide the block, interfaces or particles do not fit the cells, the fracture
-/// does not lie in the block or meets itself, and where the run could not end; each with what to do. What depends on a
-/// value that is itself missing or of no use is left out. Throws nothing but std::bad_alloc.
+/// does not lie in the block or meets itself, where the run could not end, and where keys do not go together; each with
+/// what to do. What depends on a value that is itself missing or of no use is left out. Throws nothing but
+/// std::bad_alloc.
 void check_scene(const SceneChecks& checks);
-
-/// The part of it that concerns keys which do not go together: the ways to solve, the fluid's laws and inlets, and what
-/// a run may hold at most.
-void check_combinations(const SceneChecks& checks);
 
 }  // namespace strata

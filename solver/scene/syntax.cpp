@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "scene/spelling.hpp"
+#include "scene/messages.hpp"
 
 namespace strata {
 namespace {

@@ -9,7 +9,7 @@
 #include <toml++/toml.h>
 
 #include "scene/entries.hpp"
-#include "scene/faults.hpp"
+#include "scene/messages.hpp"
 
 namespace strata {
 

@@ -8,8 +8,8 @@
 #include <sstream>
 #include <utility>
 
+#include "scene/derived.hpp"
 #include "scene/entries.hpp"
-#include "scene/run_size.hpp"
 #include "scene/scene_checks.hpp"
 #include "scene/syntax.hpp"
 
@@ -62,14 +62,12 @@ std::vector<Variant> read_variants(const toml::table& root, const std::string& f
   for (const auto& [name, value] : *node->as_table()) {
     Variant variant{std::string(name.str()), where_of(origin, name.source()), {}};
     if (!is_folder_name(variant.name)) {
-      faults.add(variant.where,
-                 fmt::format("variants.\"{}\": a variant names a folder, so it is made of letters, digits, _ - + "
-                             "and a dot that is not the first, at most 100 of them.",
-                             variant.name));
+      faults.add(variant.where, fmt::format("variants.\"{}\": a variant names a folder, so it is made of letters, "
+                                            "digits, _ - + and a dot that is not the first, at most 100 of them.",
+                                            variant.name));
     } else if (!value.is_table()) {
       faults.add(variant.where,
-                 fmt::format("variants.{} = {} is not a table. Write [variants.{}] and below it the keys it "
-                             "replaces.",
+                 fmt::format("variants.{} = {} is not a table. Write [variants.{}] and below it the keys it replaces.",
                              variant.name, as_typed(value), variant.name));
     } else {
       flatten(*value.as_table(), "", origin, variant.entries, faults);

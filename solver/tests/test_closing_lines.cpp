@@ -1,10 +1,9 @@
-#include "output/closing_lines.hpp"
+#include "output/terminal.hpp"
 
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <sstream>
 
-#include "output/changed_scene.hpp"
 #include "output/recorder.hpp"
 #include "output_state.hpp"
 #include "scene_text.hpp"

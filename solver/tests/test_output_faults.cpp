@@ -202,7 +202,7 @@ TEST_CASE("a checkpoint that the disc refuses leaves the one before") {
 TEST_CASE("a folder that holds a run is refused unless it is to be replaced, which spares what is no run's") {
   const TemporaryFolder temporary;
   const auto path = temporary.path / "runs" / "exp1";
-  { const FolderLock lock = make_run_folder(path); }
+  { const Descriptor lock = make_run_folder(path); }
   const RunFolder folder = clear_run_folder(path, false);
   atomic_write(path / "notes.txt", "text");
   CHECK_NOTHROW(clear_run_folder(path, false));
@@ -230,9 +230,9 @@ TEST_CASE("a folder that holds a run is refused unless it is to be replaced, whi
 TEST_CASE("a folder has one writer, until that is gone") {
   const TemporaryFolder folder;
   {
-    const FolderLock lock(folder.path);
-    CHECK_THROWS_WITH(FolderLock(folder.path), Catch::Contains("in use by a run"));
+    const Descriptor lock = lock_folder(folder.path);
+    CHECK_THROWS_WITH(lock_folder(folder.path), Catch::Contains("in use by a run"));
   }
-  CHECK_NOTHROW(FolderLock(folder.path));
-  CHECK_THROWS_AS(FolderLock(folder.path / "none"), OutputFailure);
+  CHECK_NOTHROW(lock_folder(folder.path));
+  CHECK_THROWS_AS(lock_folder(folder.path / "none"), OutputFailure);
 }

@@ -95,7 +95,7 @@ TEST_CASE("large fields are packed without loss") {
       label[k] = static_cast<std::int32_t>(k);
     }
     for (const auto storage : {hdf5::Storage::plain, hdf5::Storage::packed}) {
-      hdf5::write_file(path, true, 1000, [&](hdf5::Id root) {
+      hdf5::write_file(path, 1000, [&](hdf5::Id root) {
         hdf5::write(root, "smooth", smooth, "Pa", storage);
         hdf5::write(root, "label", label, "1", storage);
       });
@@ -236,7 +236,7 @@ TEST_CASE("the .xdmf names data sets that exist, of the size they have") {
     const std::string path = text.substr(at + 11, text.find('<', at) - at - 11);
     INFO(path);
     const std::size_t dimensions = text.rfind("Dimensions=\"", at) + 12;
-    CHECK(hdf5::length(file.id(), path) == std::stoul(text.substr(dimensions)));
+    CHECK(hdf5::read(file.id(), path).size() == std::stoul(text.substr(dimensions)));
     ++items;
   }
   CHECK(items == 2 * (2 + 8 + 2 + 5));

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "output/history.hpp"
-#include "output/progress.hpp"
 #include "output/run_folder.hpp"
 #include "output/summary.hpp"
 #include "output/suspect.hpp"
+#include "output/terminal.hpp"
 #include "output_state.hpp"
 
 using namespace strata;
@@ -171,7 +171,7 @@ TEST_CASE("a file is written in one piece or not at all") {
   const TemporaryFolder folder;
   const auto file = folder.path / "summary.json";
   atomic_write(file, "old");
-  write_summary(file, made_scene(), made_state(), record);
+  atomic_write(file, summary_json(made_scene(), made_state(), record));
   CHECK(nlohmann::json::parse(content_of(file)).at("scene") == "exp1");
   const auto listing = std::filesystem::directory_iterator(folder.path);
   CHECK(std::distance(begin(listing), end(listing)) == 1);  // nothing is left beside it

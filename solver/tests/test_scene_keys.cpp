@@ -8,7 +8,7 @@
 #include <set>
 
 #include "scene/keys.hpp"
-#include "scene/spelling.hpp"
+#include "scene/messages.hpp"
 
 using namespace strata;
 

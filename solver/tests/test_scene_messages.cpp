@@ -1,5 +1,5 @@
 // What is said of values that are typed as people write them, and not as TOML or a key takes them.
-#include "scene/spelling.hpp"
+#include "scene/messages.hpp"
 #include "scene/syntax.hpp"
 #include "scene_text.hpp"
 

@@ -1,9 +1,7 @@
 #include "initialise.hpp"
+#include "scene/derived.hpp"
 #include "scene/graded_cells.hpp"
 #include "scene/keys.hpp"
-#include "scene/path_geometry.hpp"
-#include "scene/points_across.hpp"
-#include "scene/run_size.hpp"
 #include "scene_text.hpp"
 
 using namespace strata;

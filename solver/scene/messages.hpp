@@ -1,10 +1,13 @@
-// Texts of messages: which known word was meant by one that is not known, numbers, what is too long to be shown.
+// What is wrong with a scene, gathered so that all of it is reported in one pass, and texts of messages: which known
+// word was meant by one that is not known, numbers, what is too long to be shown.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace strata {
@@ -33,5 +36,45 @@ std::vector<std::string> split(std::string_view text, std::string_view separator
 
 /// The shortest text that reads back as the same double, and as a float in TOML. Throws nothing but std::bad_alloc.
 std::string number_text(double value);
+
+// A place in the input: "exp1.toml:14:1" or "--set key.path=value".
+struct Where {
+  std::string text;
+  unsigned line = 0;
+  unsigned column = 0;
+  int rank = 0;  // 0 the scene itself, 1 its variant, 2 --set
+};
+
+// Numbers in messages are those of TOML.
+template <class Value>
+const Value& shown(const Value& value) {
+  return value;
+}
+inline std::string shown(const double& value) {
+  return number_text(value);
+}
+template <class... Values>
+using Message = fmt::basic_format_string<char, decltype(shown(std::declval<const Values&>()))...>;
+
+struct Fault {
+  Where where;
+  std::string text;
+};
+
+struct Faults {
+  std::vector<Fault> list;
+
+  void add(const Where& where, std::string text) { list.push_back({where, std::move(text)}); }
+
+  template <class... Values>
+  requires(sizeof...(Values) > 0) void add(const Where& where, Message<Values...> text, const Values&... values) {
+    add(where, fmt::format(text, shown(values)...));
+  }
+};
+
+/// The faults as lines "where: what", in the order of the input and each once. Words of more than 100 bytes and texts
+/// of more than 1000 are shortened in the middle, control characters are written out. Throws nothing but
+/// std::bad_alloc.
+std::vector<std::string> as_lines(const Faults& faults);
 
 }  // namespace strata

@@ -1,11 +1,13 @@
-// What a run shows of itself while it works: a bar on a terminal, elsewhere a line now and then.
+// What a run shows of itself: while it works a bar on a terminal, elsewhere a line now and then; and when it has ended
+// the lines of a summary that is read at once.
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <string>
 
-#include "scene/scene.hpp"
-#include "state/state.hpp"
+#include "output/run_folder.hpp"
+#include "output/summary.hpp"
 
 namespace strata {
 
@@ -44,5 +46,14 @@ class Progress {
   Clock::time_point start_;
   Clock::time_point last_;
 };
+
+/// Five lines: how the run ended and why; start, arrests and restarts with pressure and height; its tips; the monitor
+/// that is nearest to its threshold, or all that mark the run; where the results are. Without a fracture the second and
+/// third are left out, without a state the fourth, too. folder: of the run. Throws nothing but std::bad_alloc.
+std::string closing_lines(const Scene& scene, const State& state, const RunRecord& record,
+                          const std::filesystem::path& folder);
+
+/// That the run has ended and is left as it is, and how it ended by its summary. Throws nothing but std::bad_alloc.
+std::string how_it_ended(const RunFolder& folder);
 
 }  // namespace strata
