@@ -47,8 +47,7 @@ void load_body(const Scene& scene, double time, const IntactBody& body, State& s
   load.intact = Eigen::VectorXd::Zero(body.unknowns());
   load.jumps = Eigen::VectorXd::Zero(condensed.size());
   for (const Bin& bin : state.bins) {
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
-         q += static_cast<std::size_t>(bin.stride)) {
+    for (const std::size_t q : bin) {
       const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
       for (std::size_t n = 0; n < 9; ++n) {
         const int node = state.copies.node_of_record[static_cast<std::size_t>(bin.record[n])];

@@ -20,8 +20,7 @@ template <class Shape>
 void set_particles(const std::vector<Vec2>& u, State& state) {
   Particles& p = state.particles;
   for (const Bin& bin : state.bins) {
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
-         q += static_cast<std::size_t>(bin.stride)) {
+    for (const std::size_t q : bin) {
       const Gradients g = gradients_of<Shape>(state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
       Vec2 u_p = Vec2::Zero(), d_x = Vec2::Zero(), d_y = Vec2::Zero();
       for (std::size_t n = 0; n < 9; ++n) {
@@ -46,8 +45,7 @@ void set_watched(const QuasistaticModel& model, const std::vector<Vec2>& u, Stat
     const Bin& bin = state.bins[model.watched[b]];
     std::array<Vec2, 9> u_i;
     for (std::size_t n = 0; n < 9; ++n) u_i[n] = u[static_cast<std::size_t>(model.reached[b][n])];
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
-         q += static_cast<std::size_t>(bin.stride)) {
+    for (const std::size_t q : bin) {
       const std::array<double, 18>& N = model.slopes[at++];
       Vec2 d_x = Vec2::Zero(), d_y = Vec2::Zero();
       for (std::size_t n = 0; n < 9; ++n) d_x += N[n] * u_i[n], d_y += N[9 + n] * u_i[n];
@@ -79,9 +77,7 @@ std::vector<std::size_t> watched_bins(const Scene& scene, const State& state, co
   for (std::size_t b = 0; b < state.bins.size(); ++b) {
     const Bin& bin = state.bins[b];
     bool watch = weighed(scene, state, bin);
-    for (auto q = static_cast<std::size_t>(bin.first); !watch && q < static_cast<std::size_t>(bin.last);
-         q += static_cast<std::size_t>(bin.stride))
-      watch = particle[q] != 0;
+    for (const std::size_t q : bin) watch = watch || particle[q] != 0;
     if (watch) watched.push_back(b);
   }
   return watched;
@@ -94,8 +90,7 @@ std::vector<std::array<double, 18>> slopes_at(const Scene& scene, const State& s
   const Particles& p = state.particles;
   for (const std::size_t b : bins) {
     const Bin& bin = state.bins[b];
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
-         q += static_cast<std::size_t>(bin.stride)) {
+    for (const std::size_t q : bin) {
       const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
       std::array<double, 18>& N = slopes.emplace_back();
       std::copy(g.N_x.begin(), g.N_x.end(), N.begin());
@@ -128,8 +123,7 @@ void weigh_copies(const Scene& scene, State& state) {
   const Particles& p = state.particles;
   for (const std::size_t b : state.cut_bins) {
     const Bin& bin = state.bins[b];
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
-         q += static_cast<std::size_t>(bin.stride)) {
+    for (const std::size_t q : bin) {
       const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
       for (std::size_t n = 0; n < 9; ++n) state.sums[static_cast<std::size_t>(bin.record[n])].m += g.N[n] * p.m[q];
     }
@@ -167,7 +161,7 @@ std::vector<std::array<int, 9>> reached_by(const State& state, const std::vector
 // Plastic slip of a place since friction's memory (m): the tangential jump less what the stick spring gives way.
 double plastic_slip(const ContactPlace& place, const LawAnswer& r, const Vec2& w) {
   if (r.dt_dn == 0.0) return 0.0;
-  return w.dot(tangent_of(place.n)) - place.w_t_start + (r.t - place.r_t_start) / place.k;
+  return w.dot(place.t()) - place.w_t_start + (r.t - place.r_t_start) / place.k;
 }
 
 }  // namespace
@@ -193,7 +187,7 @@ void update_equations(const Scene& scene, const std::vector<Elasticity>& rocks, 
   weigh_copies(scene, state);
   update_stencil_weights(scene, state);
   const bool halved = halve && mirror_symmetric(scene);
-  const bool same_body = model.body && model.body->points() == state.particles.size();
+  const bool same_body = model.body && model.body->points() == state.particles.next_id;  // a trial has some of them
   if (!same_body) {
     std::vector<int> order;
     if (model.body && model.body->halved() == halved) order = model.body->factor().order();
@@ -201,10 +195,7 @@ void update_equations(const Scene& scene, const std::vector<Elasticity>& rocks, 
     model.body = std::make_shared<const IntactBody>(scene, rocks, state, halved, std::move(order));
   }
   model.condensed = condense(scene, rocks, state, *model.body, same_body ? &model.condensed : nullptr);
-  model.places = contact_places(scene, rocks, state, model.condensed);
-  model.factor = TangentFactor{};
-  model.j.resize(0);
-  model.dw_dP.resize(0, 0);
+  forget_solution(scene, rocks, state, model);
 }
 
 void forget_solution(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
@@ -241,7 +232,7 @@ void set_fields(const Scene& scene, State& state, QuasistaticModel& model, const
     SurfacePoint& s = place.tie >= 0 ? state.ties[static_cast<std::size_t>(place.tie)].s
                                      : state.surfaces[place.surface].points[place.point];
     s.w = equilibrium.w[k];
-    s.reaction = r.n * place.n + r.t * tangent_of(place.n);
+    s.reaction = place.along(r.n, r.t);
   }
   const Eigen::VectorXd w = model.vertex_jumps * equilibrium.j;
   Eigen::Index row = 0;
@@ -253,13 +244,9 @@ void set_fields(const Scene& scene, State& state, QuasistaticModel& model, const
 void remember(State& state, QuasistaticModel& model, const Equilibrium& equilibrium) {
   for (std::size_t k = 0; k < model.places.size(); ++k) {
     ContactPlace& place = model.places[k];
-    const LawAnswer& r = equilibrium.answers[k];
-    if (place.tie < 0) {
-      SurfacePoint& s = state.surfaces[place.surface].points[place.point];
-      s.slip += std::abs(equilibrium.w[k].dot(tangent_of(place.n)) - place.w_t_start);
-    }
-    place.w_t_start = equilibrium.w[k].dot(tangent_of(place.n));
-    place.r_t_start = r.t;
+    const double w_t = equilibrium.w[k].dot(place.t());
+    if (place.tie < 0) state.surfaces[place.surface].points[place.point].slip += std::abs(w_t - place.w_t_start);
+    place.w_t_start = w_t, place.r_t_start = equilibrium.answers[k].t;
   }
 }
 
