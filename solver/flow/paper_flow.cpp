@@ -45,11 +45,9 @@ void diffuse(const Channel& channel, double mobility, Fluid::TimeRule rule, doub
     for (std::size_t k = 1; k < n; ++k) z[k] = P[k] + factor[k] * z[k - 1];
     z[n - 1] *= inverse[n - 1];
     for (std::size_t k = n - 1; k-- > 0;) z[k] = z[k] * inverse[k] + theta * after[k] * inverse[k] * z[k + 1];
-    double difference = 0.0;
-    for (std::size_t k = 0; k < n; ++k) {
-      P[k] -= before[k] * difference;
-      if (k + 1 < n) difference = z[k + 1] - z[k];
-      P[k] += after[k] * difference;
+    for (std::size_t k = 0; k + 1 < n; ++k) {
+      P[k] += after[k] * (z[k + 1] - z[k]);
+      P[k + 1] -= before[k + 1] * (z[k + 1] - z[k]);
     }
     P[inlet] = inlet_Pa(step);
   }

@@ -111,7 +111,9 @@ Eigen::VectorXd solve_on_pieces(const State& state, const Condensed& condensed, 
   for (std::size_t k = 0; k < places.size(); ++k) {
     const ContactPlace& place = places[k];
     const LawAnswer& r = answers[k];
-    add_force(place, net_load(state, place) + place.along(r.n_0, r.t_0) - tangent_matrix(place, r) * place.bonded, f);
+    add_force(place,
+              net_load(state, place) + r.n_0 * place.n + r.t_0 * place.t() - tangent_matrix(place, r) * place.bonded,
+              f);
   }
   return factor.solve(f);
 }
@@ -190,7 +192,7 @@ double slope(const State& state, const std::vector<ContactPlace>& places, const 
   for (std::size_t k = 0; k < places.size(); ++k) {
     const ContactPlace& place = places[k];
     const LawAnswer r = answer_at(state, place, w[k] + length * dw[k]);
-    const Vec2 traction = net_load(state, place) + place.along(r.n, r.t);
+    const Vec2 traction = net_load(state, place) + r.n * place.n + r.t * place.t();
     sum -= place.A * traction.dot(dw[k]);
   }
   return sum;

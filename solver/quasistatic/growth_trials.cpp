@@ -51,18 +51,19 @@ State beside_surfaces(const Scene& scene, State& state, const Tip& tip, double l
   Particles all = std::exchange(state.particles, {});
   static_cast<SavedState&>(beside) = state;
   state.particles = std::move(all);
-  const Particles& p = state.particles;
-  std::vector<char> kept(p.size(), scene.body.acceleration_m_s2 ? 1 : 0);
-  const auto keep = [&](const Bin& bin) {
-    for (const std::size_t q : bin) kept[q] = 1;
-  };
   const double reach = 2.0 * (extension(state.grid) + std::abs(length)) + 2.0 * state.grid.h;
   const Vec2 at = tip_position(state, tip);
-  for (const std::size_t b : state.cut_bins) keep(state.bins[b]);
-  for (const Bin& bin : state.bins) {
-    if ((Vec2{state.grid.x(bin.i), state.grid.y(bin.j)} - at).norm() < reach) keep(bin);
+  std::vector<std::size_t> kept;
+  auto cut = state.cut_bins.begin();
+  for (std::size_t b = 0; b < state.bins.size(); ++b) {
+    const Bin& bin = state.bins[b];
+    const bool is_cut = cut != state.cut_bins.end() && *cut == b;
+    if (is_cut) ++cut;
+    const bool near = (Vec2{state.grid.x(bin.i), state.grid.y(bin.j)} - at).norm() < reach;
+    if (!is_cut && !near && !scene.body.acceleration_m_s2) continue;
+    for (const std::size_t q : bin) kept.push_back(q);
   }
-  beside.particles = chosen(p, kept);
+  beside.particles = chosen(state.particles, kept);
   return beside;
 }
 

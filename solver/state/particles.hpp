@@ -54,14 +54,13 @@ void for_each_array(AnyParticles& p, Visit visit) {
   for_each_array_of(visit, p);
 }
 
-/// The particles that are kept (not 0), in their order. Throws nothing.
-inline Particles chosen(const Particles& p, const std::vector<char>& kept) {
+/// Some particles (by place, rising). Throws nothing.
+inline Particles chosen(const Particles& p, const std::vector<std::size_t>& places) {
   Particles out;
   out.next_id = p.next_id;
   const auto choose = [&](const auto& from, auto& to) {
-    for (std::size_t q = 0; q < kept.size(); ++q) {
-      if (kept[q] != 0) to.push_back(from[q]);
-    }
+    to.reserve(places.size());
+    for (const std::size_t q : places) to.push_back(from[q]);
   };
   for_each_array_of(choose, p, out);
   return out;
