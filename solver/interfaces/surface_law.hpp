@@ -64,9 +64,10 @@ Reaction react(const InterfaceLaw& law, double k, const FreeJump& w);
 /// The reaction nearest to r that a law allows whatever the jump: contact only pushes, friction is bounded.
 Reaction admissible(const InterfaceLaw& law, const Reaction& r);
 
-/// Coefficient of friction between split faces: that of sliding where a weak interface has failed.
+/// Coefficient of friction between split faces: that of sliding where a weak interface has failed; springs have none.
 inline double sliding_coefficient(const InterfaceLaw& law) {
-  return law.kind == InterfaceLaw::Kind::weak ? law.residual_friction : law.coefficient;
+  if (law.kind == InterfaceLaw::Kind::weak) return law.residual_friction;
+  return law.kind == InterfaceLaw::Kind::friction ? law.coefficient : 0.0;
 }
 
 /// The law of the fracture's own faces: contact without friction, or none at all (fracture.faces = "free"): a spring of

@@ -27,9 +27,7 @@ std::vector<std::uint64_t> fingerprints(const State& state) {
   for (const std::size_t b : state.cut_bins) {
     const Bin& bin = state.bins[b];
     std::uint64_t sum = 0;
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
-         q += static_cast<std::size_t>(bin.stride))
-      sum += fingerprint(state.particles, q);
+    for (const std::size_t q : bin) sum += fingerprint(state.particles, q);
     for (const int record : bin.record) prints[static_cast<std::size_t>(record)] += sum;
   }
   return prints;
@@ -170,8 +168,7 @@ std::vector<Entries> assemble_jumps(const Scene& scene, const std::vector<Elasti
     for (; b < cut.size() && state.bins[cut[b]].i == first.i && state.bins[cut[b]].j == first.j; ++b) {
       const Bin& bin = state.bins[cut[b]];
       any = any || touches_new(bin);
-      for (int q = bin.first; q < bin.last; q += bin.stride)
-        members.push_back({p.id[static_cast<std::size_t>(q)], static_cast<std::size_t>(q), &bin});
+      for (const std::size_t q : bin) members.push_back({p.id[q], q, &bin});
     }
     if (!any) continue;
     std::sort(members.begin(), members.end(), [](const Member& a, const Member& c) { return a.id < c.id; });
@@ -220,7 +217,9 @@ void condense_new(const IntactBody& body, const std::vector<int>& place, const N
       if (place[b] >= 0 && b < fresh[from]) continue;  // done with b among the dense ones
       const SparseVector& Y = out.columns[b]->Y;
       SideBySide::Row product = SideBySide::Row::Zero();
-      for (std::size_t e = 0; e < Y.index.size(); ++e) product += Y.value[e] * dense[Y.index[e]];
+      for (std::size_t e = 0; e < Y.index.size(); ++e) {
+        if (dense.holds(Y.index[e])) product += Y.value[e] * dense[Y.index[e]];
+      }
       for (std::size_t c = 0; c < count; ++c) {
         const auto i = static_cast<Eigen::Index>(fresh[from + c]), j = static_cast<Eigen::Index>(b);
         const auto f = static_cast<Eigen::Index>(from + c);
@@ -268,8 +267,7 @@ void remove_rigid_motion(const Scene& scene, const State& state, bool halved, st
   Vec2 mean = Vec2::Zero();
   double turn = 0.0, polar = 0.0, area = 0.0;
   for (const Bin& bin : state.bins) {
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
-         q += static_cast<std::size_t>(bin.stride)) {
+    for (const std::size_t q : bin) {
       const Vec2 x{p.x[q], p.y[q]};
       const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, x, p.half(q));
       Vec2 u_p = Vec2::Zero();

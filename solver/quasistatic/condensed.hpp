@@ -3,7 +3,7 @@
 // A copy c of a split node moves with u_c = u + j_c, where u is the motion that the uncut node would have and j_c a
 // jump of its own. With u as unknowns the stiffness of the cut block is that of the intact one, whatever is split, and
 // a jump adds a row: K_uj = G = sum_p V_p B^T C B over the particles that belong to the copy. Where surfaces carry all
-// loads the rows of u have none (see body_load.hpp for those of a body force), u = -K^-1 G j, and
+// loads the rows of u have none (see load_body() in model.cpp for those of a body force), u = -K^-1 G j, and
 //   S j = D^T t A,  S = K_jj - G^T K^-1 G = K_jj - Y^T Y,  Y = L^-1 P G.
 // The block is factored once; a fracture that grows, or an interface that fails, adds a few columns.
 #pragma once
@@ -32,7 +32,7 @@ struct JumpColumn {
   SparseVector Y;  // in rows of the factor
 };
 
-// The load of a body force at one time (see body_load.hpp).
+// The load of a body force at one time (see load_body()).
 struct BodyLoad {
   double time = 0.0;       // s
   Eigen::VectorXd intact;  // on the unknowns of the intact block (N/m); none where there is no body force
@@ -47,7 +47,7 @@ struct Condensed {
   std::vector<std::shared_ptr<const JumpColumn>> columns;  // one a jump unknown
   Eigen::MatrixXd S;                                       // N/m per metre of thickness
   TreeFactor::Branches loaded;                             // what of the intact body's factor jumps load
-  BodyLoad load;                                           // none until load_body()
+  BodyLoad load;                                           // none until it is loaded
   Eigen::Index size() const { return S.rows(); }
 };
 

@@ -38,9 +38,8 @@ double pressure(const State& state, const ContactPlace& place) {
 }
 
 LawAnswer answer_at(const State& state, const ContactPlace& place, const Vec2& w) {
-  const Vec2 t = tangent_of(place.n);
   return law_at(place.law, place.k,
-                {w.dot(place.n), w.dot(t), place.w_t_start, place.r_t_start, place.bound,
+                {w.dot(place.n), w.dot(place.t()), place.w_t_start, place.r_t_start, place.bound,
                  place.in_situ.dot(place.n) - pressure(state, place)});
 }
 
@@ -85,7 +84,7 @@ void evaluate(const State& state, const Condensed& condensed, const std::vector<
     const ContactPlace& place = places[k];
     const LawAnswer& r = at.answers[k];
     add_force(place, net_load(state, place), load);
-    add_force(place, r.n * place.n + r.t * tangent_of(place.n), reaction);
+    add_force(place, place.along(r.n, r.t), reaction);
   }
   const Eigen::VectorXd inner = condensed.S.selfadjointView<Eigen::Lower>() * at.j;
   at.strain = 0.5 * at.j.dot(inner) + condensed.load.strain;
@@ -113,8 +112,7 @@ Eigen::VectorXd solve_on_pieces(const State& state, const Condensed& condensed, 
     const ContactPlace& place = places[k];
     const LawAnswer& r = answers[k];
     add_force(place,
-              net_load(state, place) + r.n_0 * place.n + r.t_0 * tangent_of(place.n) -
-                  tangent_matrix(place, r) * place.bonded,
+              net_load(state, place) + r.n_0 * place.n + r.t_0 * place.t() - tangent_matrix(place, r) * place.bonded,
               f);
   }
   return factor.solve(f);
@@ -122,11 +120,6 @@ Eigen::VectorXd solve_on_pieces(const State& state, const Condensed& condensed, 
 
 bool slips(const std::vector<LawAnswer>& answers) {
   return std::any_of(answers.begin(), answers.end(), [](const LawAnswer& r) { return r.dt_dn != 0.0; });
-}
-
-double friction_of(const InterfaceLaw& law) {
-  if (law.kind == InterfaceLaw::Kind::weak) return law.residual_friction;
-  return law.kind == InterfaceLaw::Kind::friction ? law.coefficient : 0.0;
 }
 
 [[noreturn]] void report_mechanism(const State& state, const std::vector<ContactPlace>& places) {
@@ -151,14 +144,6 @@ int unknowns_that_move(const TangentFactor& factor, Eigen::Index n) {
   return static_cast<int>((v.array().abs() > takes_part * v.lpNorm<Eigen::Infinity>()).count());
 }
 
-// Whether some places slide, but so few that their coupling of tangential and normal reactions costs less as a change
-// of a symmetric tangent than in a factorisation that is not symmetric: that takes n^3/3 more, a change 2 n^2, which is
-// n/6 of them; an eighth leaves some for what changes later.
-bool few_slide(const std::vector<LawAnswer>& answers, Eigen::Index unknowns) {
-  const auto sliding = std::ranges::count_if(answers, [](const LawAnswer& r) { return r.dt_dn != 0.0; });
-  return sliding > 0 && 8 * sliding < unknowns;
-}
-
 // Factors the tangent at `at` unless `factor` has it already; false where parts of the block move freely. On the way to
 // a solution they may for a while, so the factor is then that of a tangent slightly stiffer. A sliver of rock with
 // fewer particles than its copies of nodes have unknowns (between a fracture and an interface that it meets, or in a
@@ -174,8 +159,13 @@ bool factor_tangent(const Condensed& condensed, const std::vector<ContactPlace>&
   if (holds && factor.pieces == pieces) return true;
   factor.pieces = pieces;
   if (holds && factor.follow(places, answers)) return true;
-  if (few_slide(answers, condensed.size())) {
-    const std::vector<LawAnswer> first = without_coupling(answers);
+  // The coupling of tangential and normal reactions of few sliding places costs less as a change of a symmetric tangent
+  // than in a factorisation that is not symmetric: that takes n^3/3 more, a change 2 n^2, which is n/6 of them; an
+  // eighth leaves some for what changes later.
+  std::vector<LawAnswer> first = answers;
+  Eigen::Index sliding = 0;
+  for (LawAnswer& r : first) sliding += std::exchange(r.dt_dn, 0.0) != 0.0 ? 1 : 0;
+  if (sliding > 0 && 8 * sliding < condensed.size()) {
     if (factor.factorise(tangent(condensed.S, places, first), places, first) && factor.follow(places, answers))
       return true;
   }
@@ -202,7 +192,7 @@ double slope(const State& state, const std::vector<ContactPlace>& places, const 
   for (std::size_t k = 0; k < places.size(); ++k) {
     const ContactPlace& place = places[k];
     const LawAnswer r = answer_at(state, place, w[k] + length * dw[k]);
-    const Vec2 traction = net_load(state, place) + r.n * place.n + r.t * tangent_of(place.n);
+    const Vec2 traction = net_load(state, place) + r.n * place.n + r.t * place.t();
     sum -= place.A * traction.dot(dw[k]);
   }
   return sum;
@@ -321,7 +311,7 @@ Equilibrium solve_with_fixed_bounds(const State& state, const Condensed& condens
     change = 0.0;
     for (std::size_t k = 0; k < places.size(); ++k) {
       ContactPlace& place = places[k];
-      const double mu = friction_of(place.law);
+      const double mu = sliding_coefficient(place.law);
       const double bound = mu * at.answers[k].n;
       if (mu == 0.0) continue;
       change = std::max(change, std::abs(bound - std::max(0.0, place.bound)));
@@ -379,24 +369,17 @@ std::vector<ContactPlace> contact_places(const Scene& scene, const std::vector<E
       const SurfacePoint& s = surface.points[q];
       if (!s.split) continue;
       const Vec2 t = tangent_of(s.n);
-      ContactPlace place{k,         q,        -1,   law,        stiffness,         s.A, s.n,
-                         s.in_situ, s.bonded, -1.0, s.w.dot(t), s.reaction.dot(t), {}};
-      place.D = jump_rows(condensed, state.point_stencils[k][q]);
-      places.push_back(std::move(place));
+      places.push_back({k, q, -1, law, stiffness, s.A, s.n, s.in_situ, s.bonded, -1.0, s.w.dot(t), s.reaction.dot(t),
+                        jump_rows(condensed, state.point_stencils[k][q])});
     }
   }
   for (std::size_t k = 0; k < state.ties.size(); ++k) {
     const TipTie& tie = state.ties[k];
-    InterfaceLaw spring;
-    spring.kind = InterfaceLaw::Kind::soft;
-    spring.compression = InterfaceLaw::Compression::spring;
-    spring.normal_stiffness_Pa_m = spring.shear_stiffness_Pa_m = tie.stiffness;
     SurfaceStencil stencil;
     stencil.plus[0] = tie.plus, stencil.minus[0] = tie.minus, stencil.N[0] = 1.0;
-    ContactPlace place{0,   0, static_cast<int>(k), spring, 0.0, 1.0, tie.s.n, Vec2::Zero(), Vec2::Zero(), -1.0, 0.0,
-                       0.0, {}};
+    ContactPlace& place = places.emplace_back();
+    place.tie = static_cast<int>(k), place.law = tie_law(tie), place.A = 1.0, place.n = tie.s.n;
     place.D = jump_rows(condensed, stencil);
-    places.push_back(std::move(place));
   }
   return places;
 }

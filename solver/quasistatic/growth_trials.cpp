@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "fracture/growth.hpp"
+#include "state/rebuild.hpp"
 
 namespace strata {
 
@@ -42,6 +44,41 @@ void inherit_friction(const State& state, const std::vector<ContactPlace>& place
   }
 }
 
+// The state with the particles alone that its surfaces, a length (m) longer at a tip, reach: of all others a trial
+// takes what the intact body says. A body force loads them all.
+State beside_surfaces(const Scene& scene, State& state, const Tip& tip, double length) {
+  State beside;
+  Particles all = std::exchange(state.particles, {});
+  static_cast<SavedState&>(beside) = state;
+  state.particles = std::move(all);
+  const double reach = 2.0 * (extension(state.grid) + std::abs(length)) + 2.0 * state.grid.h;
+  const Vec2 at = tip_position(state, tip);
+  std::vector<std::size_t> kept;
+  auto cut = state.cut_bins.begin();
+  for (std::size_t b = 0; b < state.bins.size(); ++b) {
+    const Bin& bin = state.bins[b];
+    const bool is_cut = cut != state.cut_bins.end() && *cut == b;
+    if (is_cut) ++cut;
+    const bool near = (Vec2{state.grid.x(bin.i), state.grid.y(bin.j)} - at).norm() < reach;
+    if (!is_cut && !near && !scene.body.acceleration_m_s2) continue;
+    for (const std::size_t q : bin) kept.push_back(q);
+  }
+  beside.particles = chosen(state.particles, kept);
+  return beside;
+}
+
+// Makes the state of a trial; false where there is not a whole piece to take away.
+bool change_length(const Scene& scene, State& state, double length, GrowthTrial& trial) {
+  trial.state = beside_surfaces(scene, state, state.tips[trial.tip], length);
+  const auto extend = [&] { return extend_tip(scene, trial.state, trial.state.tips[trial.tip], length); };
+  trial.length = length > 0.0 ? extend() : -shorten_tip(trial.state, trial.state.tips[trial.tip], -length);
+  if (trial.state.particles.next_id != state.particles.next_id) {  // with those divided the body is another
+    trial.state = state;
+    trial.length = extend();
+  }
+  return trial.length != 0.0;
+}
+
 double energy_of(const QuasistaticModel& model, const Equilibrium& equilibrium) {
   return equilibrium.energy + dissipated_by_friction(model, equilibrium);
 }
@@ -67,11 +104,7 @@ std::vector<GrowthTrial> build_trials(const Scene& scene, const std::vector<Elas
       GrowthTrial& trial = trials.emplace_back();
       trial.tip = k;
       trial.turn = tip.turn;
-      trial.state = state;
-      Tip& tried = trial.state.tips[k];
-      trial.length =
-          length > 0.0 ? extend_tip(scene, trial.state, tried, length) : -shorten_tip(trial.state, tried, -length);
-      if (trial.length == 0.0) {  // not a whole piece to take away
+      if (!change_length(scene, state, length, trial)) {
         trials.pop_back();
         continue;
       }

@@ -75,7 +75,7 @@ IntactBody::IntactBody(const Scene& scene, const std::vector<Elasticity>& rocks,
   State intact;
   intact.grid = state.grid;
   intact.particles = state.particles;
-  points_ = intact.particles.size();
+  points_ = intact.particles.next_id;
   if (halved) weigh_halves(scene, intact.particles);
   rebuild_copies(scene, intact);
   masters_ = halved ? mirrored(intact, intact.masters) : intact.masters;

@@ -28,14 +28,14 @@ class IntactBody {
   const TreeFactor& factor() const { return factor_; }
 
   bool halved() const { return halved_; }
-  std::size_t points() const { return points_; }                   // that K is summed over
+  int points() const { return points_; }                           // that K is summed over: next_id of these
   const std::vector<Master>& masters() const { return masters_; }  // of the grid's nodes
   int unknowns() const { return 2 * static_cast<int>(masters_.size()); }
 
  private:
   TreeFactor factor_;
   std::vector<Master> masters_;
-  std::size_t points_ = 0;
+  int points_ = 0;
   bool halved_ = false;
 };
 

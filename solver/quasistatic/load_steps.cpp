@@ -12,7 +12,6 @@
 #include "interfaces/failure.hpp"
 #include "interfaces/monitors.hpp"
 #include "quasistatic/fluid_step.hpp"
-#include "quasistatic/load_point.hpp"
 
 namespace strata {
 
@@ -85,6 +84,77 @@ void equilibrate(const Scene& scene, const std::vector<Elasticity>& rocks, State
   measure_tips(scene, rocks, run.rules, state);
   if (!trials_hold(scene, state, run.trials)) run.trials = build_trials(scene, rocks, state, run.model);
   run.margin = margin_of(scene, rocks, state, run);
+}
+
+// What a trial step changes and a rejected one takes back. Particles only hold what follows from it.
+struct LoadPoint {
+  double time = 0.0;
+  FluidLine fluid;
+  ReynoldsLine reynolds;
+  FluidBalance balance;
+  std::vector<Surface> surfaces;
+  std::vector<Tip> tips;
+  std::vector<Vec2> u, body;  // displacement (m) and body force per mass (m/s^2) of particles by id; none without that
+};
+
+LoadPoint load_point(const State& state) {
+  LoadPoint point{state.time, state.fluid, state.reynolds, state.balance, state.surfaces, state.tips, {}, {}};
+  if (state.body.empty()) return point;
+  const Particles& p = state.particles;
+  point.u.resize(static_cast<std::size_t>(p.next_id), Vec2::Zero());
+  point.body = point.u;
+  for (std::size_t q = 0; q < p.size(); ++q) {
+    const auto id = static_cast<std::size_t>(p.id[q]);
+    point.u[id] = {p.u_x[q], p.u_y[q]};
+    point.body[id] = state.body[q];
+  }
+  return point;
+}
+
+// Takes a state back to the load it had, on the same surfaces; its fields do not follow.
+void return_to(const LoadPoint& from, State& state) {
+  state.time = from.time;
+  state.fluid = from.fluid;
+  state.reynolds = from.reynolds;
+  state.balance = from.balance;
+  state.surfaces = from.surfaces;
+  state.tips = from.tips;
+}
+
+// Work of the fluid since an earlier load, as if its pressure and what surfaces have released of the in-situ traction
+// had changed with the jumps (J/m): sum A (P + P')/2 n . (w' - w); the traction's in `in_situ`. The fracture may have
+// become longer in between.
+double work_of_loads(const State& state, const LoadPoint& before, double& in_situ) {
+  double fluid = 0.0;
+  in_situ = 0.0;
+  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
+    const auto &now = state.surfaces[k].points, &then = before.surfaces[k].points;
+    // The fracture may have become longer at its front; its older points stay where they were.
+    const auto same =
+        std::find_if(now.begin(), now.end(), [&](const SurfacePoint& s) { return s.x == then.front().x; });
+    const auto shift = static_cast<std::size_t>(same - now.begin());
+    for (std::size_t q = 0; q < now.size(); ++q) {
+      const SurfacePoint& s = now[q];
+      if (!s.split) continue;
+      const bool is_new = q < shift || q - shift >= then.size();
+      const SurfacePoint& old = is_new ? s : then[q - shift];
+      const Vec2 dw = is_new || !old.split ? s.w : Vec2{s.w - old.w};
+      fluid += s.A * 0.5 * (s.P + old.P) * s.n.dot(dw);
+      in_situ -= s.A * (0.5 * (s.in_situ + old.in_situ)).dot(dw);
+    }
+  }
+  return fluid;
+}
+
+// Work of the body force as if it had changed with the displacements (J/m): sum m (b + b')/2 . (u' - u).
+double work_of_body(const State& state, const LoadPoint& before) {
+  const Particles& p = state.particles;
+  double work = 0.0;
+  for (std::size_t q = 0; q < state.body.size(); ++q) {
+    const auto id = static_cast<std::size_t>(p.id[q]);
+    work += p.m[q] * 0.5 * (before.body[id] + state.body[q]).dot(Vec2{p.u_x[q], p.u_y[q]} - before.u[id]);
+  }
+  return work;
 }
 
 // Energy bookkeeping of an accepted change of load or geometry; surface: what new surface takes (J/m).

@@ -11,10 +11,6 @@ namespace {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-Unknown unknown_of(const State& state, int record, int component) {
-  return strata::unknown_of(state.masters, record, component);
-}
-
 // Adds the force of a uniform traction t (Pa) on 1/parts of an edge of `length` m to f, applied at x.
 void load_point(const Scene& scene, const State& state, const Vec2& x, const Vec2& t, double length, int parts,
                 Eigen::VectorXd& f) {
@@ -24,7 +20,7 @@ void load_point(const Scene& scene, const State& state, const Vec2& x, const Vec
   for (std::size_t node = 0; node < 9; ++node) {
     const int record = g.node(i + static_cast<int>(node % 3) - 1, j + static_cast<int>(node / 3) - 1);
     for (int component = 0; component < 2; ++component) {
-      const Unknown at = unknown_of(state, record, component);
+      const Unknown at = unknown_of(state.masters, record, component);
       if (at.index >= 0) f[at.index] += at.factor * weights.N[node] * t[component] * length / parts;
     }
   }
@@ -85,13 +81,12 @@ void load_in_situ(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
   const Eigen::VectorXd u = factor.solve(f);
   Particles& p = state.particles;
   for (const Bin& bin : state.bins) {
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
-         q += static_cast<std::size_t>(bin.stride)) {
+    for (const std::size_t q : bin) {
       const Gradients g = gradients_at(loaded, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
       double e[2][2] = {};
       for (std::size_t n = 0; n < 9; ++n) {
         for (int component = 0; component < 2; ++component) {
-          const Unknown at = unknown_of(state, bin.record[n], component);
+          const Unknown at = unknown_of(state.masters, bin.record[n], component);
           const double value = at.index < 0 ? 0.0 : at.factor * u[at.index];
           e[component][0] += value * g.N_x[n], e[component][1] += value * g.N_y[n];
         }

@@ -1,5 +1,7 @@
 #include "quasistatic/model.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -7,8 +9,8 @@
 
 #include "interfaces/surface_tractions.hpp"
 #include "interfaces/tip_ties.hpp"
-#include "quasistatic/body_load.hpp"
 #include "scene/graded_cells.hpp"
+#include "state/body_force.hpp"
 #include "state/stiffness.hpp"
 
 namespace strata {
@@ -20,8 +22,7 @@ template <class Shape>
 void set_particles(const std::vector<Vec2>& u, State& state) {
   Particles& p = state.particles;
   for (const Bin& bin : state.bins) {
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
-         q += static_cast<std::size_t>(bin.stride)) {
+    for (const std::size_t q : bin) {
       const Gradients g = gradients_of<Shape>(state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
       Vec2 u_p = Vec2::Zero(), d_x = Vec2::Zero(), d_y = Vec2::Zero();
       for (std::size_t n = 0; n < 9; ++n) {
@@ -46,8 +47,7 @@ void set_watched(const QuasistaticModel& model, const std::vector<Vec2>& u, Stat
     const Bin& bin = state.bins[model.watched[b]];
     std::array<Vec2, 9> u_i;
     for (std::size_t n = 0; n < 9; ++n) u_i[n] = u[static_cast<std::size_t>(model.reached[b][n])];
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
-         q += static_cast<std::size_t>(bin.stride)) {
+    for (const std::size_t q : bin) {
       const std::array<double, 18>& N = model.slopes[at++];
       Vec2 d_x = Vec2::Zero(), d_y = Vec2::Zero();
       for (std::size_t n = 0; n < 9; ++n) d_x += N[n] * u_i[n], d_y += N[9 + n] * u_i[n];
@@ -79,9 +79,7 @@ std::vector<std::size_t> watched_bins(const Scene& scene, const State& state, co
   for (std::size_t b = 0; b < state.bins.size(); ++b) {
     const Bin& bin = state.bins[b];
     bool watch = weighed(scene, state, bin);
-    for (auto q = static_cast<std::size_t>(bin.first); !watch && q < static_cast<std::size_t>(bin.last);
-         q += static_cast<std::size_t>(bin.stride))
-      watch = particle[q] != 0;
+    for (const std::size_t q : bin) watch = watch || particle[q] != 0;
     if (watch) watched.push_back(b);
   }
   return watched;
@@ -94,8 +92,7 @@ std::vector<std::array<double, 18>> slopes_at(const Scene& scene, const State& s
   const Particles& p = state.particles;
   for (const std::size_t b : bins) {
     const Bin& bin = state.bins[b];
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
-         q += static_cast<std::size_t>(bin.stride)) {
+    for (const std::size_t q : bin) {
       const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
       std::array<double, 18>& N = slopes.emplace_back();
       std::copy(g.N_x.begin(), g.N_x.end(), N.begin());
@@ -128,8 +125,7 @@ void weigh_copies(const Scene& scene, State& state) {
   const Particles& p = state.particles;
   for (const std::size_t b : state.cut_bins) {
     const Bin& bin = state.bins[b];
-    for (auto q = static_cast<std::size_t>(bin.first); q < static_cast<std::size_t>(bin.last);
-         q += static_cast<std::size_t>(bin.stride)) {
+    for (const std::size_t q : bin) {
       const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
       for (std::size_t n = 0; n < 9; ++n) state.sums[static_cast<std::size_t>(bin.record[n])].m += g.N[n] * p.m[q];
     }
@@ -164,10 +160,73 @@ std::vector<std::array<int, 9>> reached_by(const State& state, const std::vector
   return reached;
 }
 
+// Corners that stand in for edges that hold nothing would have to carry what a force pushes the whole block with.
+void require_balance(const Scene& scene, const State& state) {
+  constexpr double balanced = 1e-9;  // of the sum of sizes: round-off leaves 1e-12 of forces that cancel
+  const Particles& p = state.particles;
+  const Vec2 centre{0.5 * scene.domain.width_m, 0.5 * scene.domain.height_m};
+  Vec2 sum = Vec2::Zero(), size = Vec2::Zero();
+  double turn = 0.0, turns = 0.0;
+  for (std::size_t q = 0; q < p.size(); ++q) {
+    const Vec2 f = p.m[q] * state.body[q], arm = Vec2{p.x[q], p.y[q]} - centre;
+    sum += f, size += f.cwiseAbs();
+    turn += cross(arm, f), turns += arm.norm() * f.norm();
+  }
+  const bool free_x = !scene.domain.holds_x(), free_y = !scene.domain.holds_y();
+  const auto refuse = [](const char* what, double value, const char* unit, const char* advice) {
+    throw NumericalFailure(
+        fmt::format("the body force {} the whole block with {} {} per metre, and no edge holds it. Use "
+                    "{}, or a force without resultant",
+                    what, value, unit, advice));
+  };
+  if (free_x && std::abs(sum.x()) > balanced * size.x()) refuse("pushes", sum.x(), "N", "domain.sides = \"fixed\"");
+  if (free_y && std::abs(sum.y()) > balanced * size.y())
+    refuse("lifts", sum.y(), "N", "domain.bottom = \"symmetry\" or top = \"fixed\"");
+  if (free_x && free_y && std::abs(turn) > balanced * turns) refuse("turns", turn, "N m", "domain.sides = \"fixed\"");
+}
+
+// Loads the condensed block with the body force at a time (s): state.body, and condensed.load for it. With f_u on the
+// unknowns of the intact block and f_j on the jumps, K u + G j = f_u and G^T u + K_jj j = f_j + D^T t A, so that
+//   S j = D^T t A + f_j - G^T u_0,  u_0 = K^-1 f_u,  u = u_0 - K^-1 G j.
+// Does nothing where the scene has no body force, or where that time's is there already. Throws NumericalFailure where
+// a formula is not finite, or where the force has a resultant along a motion of the whole block that no edge holds.
+void load_body(const Scene& scene, double time, const IntactBody& body, State& state, Condensed& condensed) {
+  BodyLoad& load = condensed.load;
+  if (!scene.body.acceleration_m_s2 || (!load.empty() && load.time == time)) return;
+  set_body_acceleration(scene, time, state);
+  require_balance(scene, state);
+  const Particles& p = state.particles;
+  load.time = time;
+  load.intact = Eigen::VectorXd::Zero(body.unknowns());
+  load.jumps = Eigen::VectorXd::Zero(condensed.size());
+  for (const Bin& bin : state.bins) {
+    for (const std::size_t q : bin) {
+      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
+      for (std::size_t n = 0; n < 9; ++n) {
+        const int node = state.copies.node_of_record[static_cast<std::size_t>(bin.record[n])];
+        for (int component = 0; component < 2; ++component) {
+          const double f = g.N[n] * p.m[q] * state.body[q][component];
+          const Unknown base = unknown_of(body.masters(), node, component);
+          const Unknown jump = jump_unknown(condensed, bin.record[n], component);
+          if (base.index >= 0) load.intact[base.index] += base.factor * f;
+          if (jump.index >= 0) load.jumps[jump.index] += jump.factor * f;
+        }
+      }
+    }
+  }
+  const Eigen::VectorXd u_0 = body.factor().solve(load.intact);
+  for (std::size_t k = 0; k < condensed.columns.size(); ++k) {
+    const SparseVector& G = condensed.columns[k]->G;
+    for (std::size_t e = 0; e < G.index.size(); ++e)
+      load.jumps[static_cast<Eigen::Index>(k)] -= G.value[e] * u_0[G.index[e]];
+  }
+  load.strain = 0.5 * load.intact.dot(u_0);
+}
+
 // Plastic slip of a place since friction's memory (m): the tangential jump less what the stick spring gives way.
 double plastic_slip(const ContactPlace& place, const LawAnswer& r, const Vec2& w) {
   if (r.dt_dn == 0.0) return 0.0;
-  return w.dot(tangent_of(place.n)) - place.w_t_start + (r.t - place.r_t_start) / place.k;
+  return w.dot(place.t()) - place.w_t_start + (r.t - place.r_t_start) / place.k;
 }
 
 }  // namespace
@@ -193,7 +252,7 @@ void update_equations(const Scene& scene, const std::vector<Elasticity>& rocks, 
   weigh_copies(scene, state);
   update_stencil_weights(scene, state);
   const bool halved = halve && mirror_symmetric(scene);
-  const bool same_body = model.body && model.body->points() == state.particles.size();
+  const bool same_body = model.body && model.body->points() == state.particles.next_id;  // a trial has some of them
   if (!same_body) {
     std::vector<int> order;
     if (model.body && model.body->halved() == halved) order = model.body->factor().order();
@@ -201,10 +260,7 @@ void update_equations(const Scene& scene, const std::vector<Elasticity>& rocks, 
     model.body = std::make_shared<const IntactBody>(scene, rocks, state, halved, std::move(order));
   }
   model.condensed = condense(scene, rocks, state, *model.body, same_body ? &model.condensed : nullptr);
-  model.places = contact_places(scene, rocks, state, model.condensed);
-  model.factor = TangentFactor{};
-  model.j.resize(0);
-  model.dw_dP.resize(0, 0);
+  forget_solution(scene, rocks, state, model);
 }
 
 void forget_solution(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
@@ -241,7 +297,7 @@ void set_fields(const Scene& scene, State& state, QuasistaticModel& model, const
     SurfacePoint& s = place.tie >= 0 ? state.ties[static_cast<std::size_t>(place.tie)].s
                                      : state.surfaces[place.surface].points[place.point];
     s.w = equilibrium.w[k];
-    s.reaction = r.n * place.n + r.t * tangent_of(place.n);
+    s.reaction = place.along(r.n, r.t);
   }
   const Eigen::VectorXd w = model.vertex_jumps * equilibrium.j;
   Eigen::Index row = 0;
@@ -253,13 +309,9 @@ void set_fields(const Scene& scene, State& state, QuasistaticModel& model, const
 void remember(State& state, QuasistaticModel& model, const Equilibrium& equilibrium) {
   for (std::size_t k = 0; k < model.places.size(); ++k) {
     ContactPlace& place = model.places[k];
-    const LawAnswer& r = equilibrium.answers[k];
-    if (place.tie < 0) {
-      SurfacePoint& s = state.surfaces[place.surface].points[place.point];
-      s.slip += std::abs(equilibrium.w[k].dot(tangent_of(place.n)) - place.w_t_start);
-    }
-    place.w_t_start = equilibrium.w[k].dot(tangent_of(place.n));
-    place.r_t_start = r.t;
+    const double w_t = equilibrium.w[k].dot(place.t());
+    if (place.tie < 0) state.surfaces[place.surface].points[place.point].slip += std::abs(w_t - place.w_t_start);
+    place.w_t_start = w_t, place.r_t_start = equilibrium.answers[k].t;
   }
 }
 

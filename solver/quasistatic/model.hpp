@@ -47,7 +47,8 @@ void forget_solution(const Scene& scene, const std::vector<Elasticity>& rocks, c
                      QuasistaticModel& model);
 
 /// Equilibrium under the pressures that the state's points hold and the body force at a time (s); see
-/// solve_equilibrium() and load_body(), and what they throw. Sets state.body.
+/// solve_equilibrium(), and what it throws. Sets state.body. Throws NumericalFailure, too, where a formula is not
+/// finite, or where the force has a resultant along a motion of the whole block that no edge holds.
 Equilibrium find_equilibrium(const Scene& scene, double time, State& state, QuasistaticModel& model);
 
 /// Writes an equilibrium to the state: jumps (m) and reactions (Pa) to the surfaces, displacements and their gradients

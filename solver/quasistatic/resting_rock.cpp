@@ -85,7 +85,7 @@ void follow(const State& state, RestingRock& resting) {
   for (ContactPlace& place : resting.model.places) {
     if (place.tie >= 0) continue;
     const SurfacePoint& s = state.surfaces[place.surface].points[place.point];
-    place.w_t_start = s.w.dot(tangent_of(place.n)), place.r_t_start = s.reaction.dot(tangent_of(place.n));
+    place.w_t_start = s.w.dot(place.t()), place.r_t_start = s.reaction.dot(place.t());
   }
   resting.state.fluid = state.fluid;
   resting.state.time = state.time;

@@ -41,14 +41,9 @@ double weakest(Solve solve, Eigen::Index n) {
 
 }  // namespace
 
-std::vector<LawAnswer> without_coupling(std::vector<LawAnswer> answers) {
-  for (LawAnswer& r : answers) r.dt_dn = 0.0;
-  return answers;
-}
-
 Eigen::Matrix2d tangent_matrix(const ContactPlace& place, const LawAnswer& r) {
-  const Vec2 t = tangent_of(place.n);
-  return r.dn_dn * place.n * place.n.transpose() + r.dt_dn * t * place.n.transpose() + r.dt_dt * t * t.transpose();
+  const Vec2 &n = place.n, t = place.t();
+  return r.dn_dn * n * n.transpose() + r.dt_dn * t * n.transpose() + r.dt_dt * t * t.transpose();
 }
 
 Eigen::MatrixXd tangent(const Eigen::MatrixXd& S, const std::vector<ContactPlace>& places,
@@ -70,11 +65,14 @@ Eigen::MatrixXd tangent(const Eigen::MatrixXd& S, const std::vector<ContactPlace
   return T;
 }
 
+// By the factor of T_0, in unknowns scaled to a unit diagonal.
+template <class B>
+B TangentFactor::solve_scaled(const B& b) const {
+  return symmetric_ ? B(cholesky_.solve(b)) : B(lu_.solve(b));
+}
+
 bool TangentFactor::stands_still() const {
-  const auto solve = [&](const Eigen::VectorXd& x) {
-    return symmetric_ ? Eigen::VectorXd(cholesky_.solve(x)) : Eigen::VectorXd(lu_.solve(x));
-  };
-  return weakest(solve, scale_.size()) > smallest_eigenvalue;
+  return weakest([&](const Eigen::VectorXd& x) { return solve_scaled(x); }, scale_.size()) > smallest_eigenvalue;
 }
 
 bool TangentFactor::factorise(const Eigen::MatrixXd& T, const std::vector<ContactPlace>& places,
@@ -99,7 +97,7 @@ std::vector<TangentFactor::Change> TangentFactor::changes(const std::vector<Cont
   std::vector<Change> changes;
   for (std::size_t k = 0; k < places.size(); ++k) {
     const LawAnswer &before = first_[k], &now = answers[k];
-    const Vec2 n = places[k].n, t = tangent_of(n);
+    const Vec2 n = places[k].n, t = places[k].t();
     const double A = places[k].A, n_n = A * (before.dn_dn - now.dn_dn), t_n = A * (before.dt_dn - now.dt_dn),
                  t_t = A * (before.dt_dt - now.dt_dt);
     if (n_n != 0.0) changes.push_back({k, 0, n, n_n * n});
@@ -172,14 +170,9 @@ bool TangentFactor::follow(const std::vector<ContactPlace>& places, const std::v
 
 Eigen::MatrixXd TangentFactor::solve_first(const Eigen::MatrixXd& b) const {
   if (b.rows() == 0) return b;
-  if (b.cols() == 1) {  // Eigen solves for a vector by other kernels than for a matrix of one column, and faster
-    const Eigen::VectorXd one = scale_.cwiseProduct(b.col(0));
-    const Eigen::VectorXd x = symmetric_ ? Eigen::VectorXd(cholesky_.solve(one)) : Eigen::VectorXd(lu_.solve(one));
-    return scale_.cwiseProduct(x);
-  }
-  const Eigen::MatrixXd scaled = scale_.asDiagonal() * b;
-  if (symmetric_) return scale_.asDiagonal() * Eigen::MatrixXd(cholesky_.solve(scaled));
-  return scale_.asDiagonal() * Eigen::MatrixXd(lu_.solve(scaled));
+  if (b.cols() == 1)  // Eigen solves for a vector by other kernels than for a matrix of one column, and faster
+    return scale_.cwiseProduct(solve_scaled(Eigen::VectorXd(scale_.cwiseProduct(b.col(0)))));
+  return scale_.asDiagonal() * solve_scaled(Eigen::MatrixXd(scale_.asDiagonal() * b));
 }
 
 Eigen::MatrixXd TangentFactor::solve(const Eigen::MatrixXd& b) const {

@@ -28,6 +28,9 @@ struct ContactPlace {
   double bound = -1.0;                      // friction's bound where it is held fixed (Pa)
   double w_t_start = 0.0, r_t_start = 0.0;  // what friction remembers
   std::array<SparseRow, 2> D;               // rows of the jump's x and y
+
+  Vec2 t() const { return tangent_of(n); }
+  Vec2 along(double normal, double tangential) const { return normal * n + tangential * t(); }
 };
 
 using Pieces = std::vector<LawAnswer::Piece>;
@@ -38,9 +41,6 @@ Eigen::Matrix2d tangent_matrix(const ContactPlace& place, const LawAnswer& r);
 /// T = S - sum A D^T (dr/dw) D (N/m per metre of thickness). Throws nothing.
 Eigen::MatrixXd tangent(const Eigen::MatrixXd& S, const std::vector<ContactPlace>& places,
                         const std::vector<LawAnswer>& answers);
-
-/// Answers whose tangential reaction does not go with the normal one, so that the tangent is symmetric. Throws nothing.
-std::vector<LawAnswer> without_coupling(std::vector<LawAnswer> answers);
 
 // A tangent T_0 that was factored, and what of it has changed since. A place whose law is on another piece changes the
 // derivative of its normal reaction, or of its tangential one, or both: with a column u = D^T n or D^T t and a row
@@ -82,6 +82,8 @@ class TangentFactor {
     Vec2 v = Vec2::Zero();      // -A times the change of its derivative (N/m)
   };
 
+  template <class B>
+  B solve_scaled(const B& b) const;
   bool stands_still() const;
   Eigen::MatrixXd solve_first(const Eigen::MatrixXd& b) const;
   std::vector<Change> changes(const std::vector<ContactPlace>& places, const std::vector<LawAnswer>& answers) const;

@@ -38,7 +38,7 @@ void SideBySide::clear() {
 void SideBySide::add_rows(int first, int last) {
   for (int row = first; row < last; ++row) {
     if (place_[static_cast<std::size_t>(row)] != 0) continue;
-    place_[static_cast<std::size_t>(row)] = values_.size();
+    place_[static_cast<std::size_t>(row)] = static_cast<std::uint32_t>(values_.size());
     values_.emplace_back(Row::Zero());
     held_.push_back(row);
   }
@@ -65,7 +65,12 @@ TreeFactor::TreeFactor(const Eigen::SparseMatrix<double>& K, const char* singula
     place_.resize(L->n);
     for (std::size_t k = 0; k < L->n; ++k) place_[static_cast<std::size_t>(unknown_[k])] = static_cast<int>(k);
     block_of_row_.resize(L->n);
-    reserve(*L);
+    std::size_t blocks = 0, most_rows = 0;
+    for (std::size_t s = 0; s < L->nsuper; ++s) {
+      const auto of_it = static_cast<std::size_t>((super[s + 1] - super[s] + width - 1) / width);
+      blocks += of_it, most_rows += of_it * static_cast<std::size_t>(rows_at[s + 1] - rows_at[s]);
+    }
+    blocks_.reserve(blocks), row_.reserve(most_rows), values_.reserve(most_rows + width * blocks);
     for (std::size_t s = 0; s < L->nsuper; ++s) {
       const auto stride = static_cast<std::size_t>(rows_at[s + 1] - rows_at[s]);
       for (int first = super[s]; first < super[s + 1]; first += width) {
@@ -85,21 +90,6 @@ TreeFactor::TreeFactor(const Eigen::SparseMatrix<double>& K, const char* singula
   cholmod_finish(&common);
   if (out_of_memory) throw std::bad_alloc();
   if (!sound) throw NumericalFailure(singular);
-}
-
-// Room for the blocks of all supernodes.
-void TreeFactor::reserve(const cholmod_factor& L) {
-  const auto *super = static_cast<const int*>(L.super), *rows_at = static_cast<const int*>(L.pi);
-  std::size_t blocks = 0, rows = 0;
-  for (std::size_t s = 0; s < L.nsuper; ++s) {
-    const auto columns = static_cast<std::size_t>(super[s + 1]) - static_cast<std::size_t>(super[s]),
-               stride = static_cast<std::size_t>(rows_at[s + 1]) - static_cast<std::size_t>(rows_at[s]);
-    for (std::size_t first = 0; first < columns; first += width) {
-      ++blocks;
-      rows += stride - std::min(first + width, columns);
-    }
-  }
-  blocks_.reserve(blocks), row_.reserve(rows), values_.reserve(rows + width * blocks);
 }
 
 // A block from its columns of a supernode, `stride` values apart; rows: `count` of them, its own first.

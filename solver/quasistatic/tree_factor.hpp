@@ -10,9 +10,8 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <array>
+#include <cstdint>
 #include <vector>
-
-struct cholmod_factor_struct;  // of CHOLMOD
 
 namespace strata {
 
@@ -37,12 +36,15 @@ class SideBySide {
   /// Makes room for rows [first, last). Throws nothing.
   void add_rows(int first, int last);
 
+  /// Whether a row has room. Throws nothing.
+  bool holds(int row) const { return place_[static_cast<std::size_t>(row)] != 0; }
+
   /// A row; one without room must stay 0.
   Row& operator[](int row) { return values_[place_[static_cast<std::size_t>(row)]]; }
 
  private:
-  std::vector<std::size_t> place_;  // of each row among the values; 0: the one of all without room
-  std::vector<int> held_;           // rows with room
+  std::vector<std::uint32_t> place_;  // of each row among the values; 0: the one of all without room
+  std::vector<int> held_;             // rows with room
   std::vector<Row> values_;
 };
 
@@ -99,7 +101,6 @@ class TreeFactor {
                                // those below; one Eight a row, a value a column
   };
 
-  void reserve(const cholmod_factor_struct& L);
   void add_block(int first, int columns, const double* values, std::size_t stride, const int* rows, std::size_t count);
   void up(const Block& block, Eigen::VectorXd& y) const;
   template <class Row, class Rows>

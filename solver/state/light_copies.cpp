@@ -1,5 +1,6 @@
 #include "state/light_copies.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -82,29 +83,39 @@ bool larger(const Corner& a, const Corner& b) {
 
 using Corners = std::vector<Corner>;  // of a cut node
 
-// By cut node, whether it has corners that a leaning fracture makes.
-std::vector<char> leaning_corners(const State& state) {
-  std::vector<char> leaning(state.copies.cut.size(), 0);
-  for (int node = 0; node < state.grid.nodes(); ++node) {
+// The cut nodes with corners that a leaning fracture makes, and the rock whose particles reach them.
+struct LeaningCorners {
+  std::vector<char> at;  // of each cut node: whether it is one
+  Eigen::AlignedBox2d rock;
+};
+
+LeaningCorners leaning_corners(const State& state) {
+  const Grid& g = state.grid;
+  LeaningCorners leaning{std::vector<char>(state.copies.cut.size(), 0), {}};
+  for (int node = 0; node < g.nodes(); ++node) {
     const int c = state.copies.cut_of_node[static_cast<std::size_t>(node)];
-    if (c >= 0 && has_corners(state.copies.cut[static_cast<std::size_t>(c)]) && leans_at(state, node))
-      leaning[static_cast<std::size_t>(c)] = 1;
+    if (c < 0 || !has_corners(state.copies.cut[static_cast<std::size_t>(c)]) || !leans_at(state, node)) continue;
+    leaning.at[static_cast<std::size_t>(c)] = 1;
+    const int i = g.column(node), j = g.row(node);
+    leaning.rock.extend(Vec2{g.x(std::max(i - 2, -1)), g.y(std::max(j - 2, -1))});
+    leaning.rock.extend(Vec2{g.x(std::min(i + 2, g.nx + 1)), g.y(std::min(j + 2, g.ny + 1))});
   }
   return leaning;
 }
 
 // sum_p V_p |grad N_i| of each corner of each cut node that has some.
-std::vector<Corners> corners_of(const Scene& scene, const State& state, const std::vector<char>& leaning) {
+std::vector<Corners> corners_of(const Scene& scene, const State& state, const LeaningCorners& leaning) {
   std::vector<Corners> corners(state.copies.cut.size());
   const Particles& p = state.particles;
   const Grid& grid = state.grid;
   for (std::size_t q = 0; q < p.size(); ++q) {
+    if (!leaning.rock.contains(Vec2{p.x[q], p.y[q]})) continue;
     const int i = grid.column_at(p.x[q]), j = grid.row_at(p.y[q]);
     if (i < 0 || i > grid.nx || j < 0 || j > grid.ny) continue;
     std::array<int, 9> cut = grid.around(i, j);
     for (int& c : cut) {
       c = state.copies.cut_of_node[static_cast<std::size_t>(c)];
-      if (c >= 0 && leaning[static_cast<std::size_t>(c)] == 0) c = -1;
+      if (c >= 0 && leaning.at[static_cast<std::size_t>(c)] == 0) c = -1;
     }
     if (std::ranges::count(cut, -1) == 9) continue;
     const Gradients g = gradients_at(scene, grid, i, j, {p.x[q], p.y[q]}, p.half(q));
@@ -124,8 +135,8 @@ std::vector<Corners> corners_of(const Scene& scene, const State& state, const st
 
 void join_corners(const Scene& scene, State& state) {
   auto& cuts = state.copies.cut;
-  const std::vector<char> leaning = leaning_corners(state);
-  if (std::ranges::count(leaning, 1) == 0) return;
+  const LeaningCorners leaning = leaning_corners(state);
+  if (leaning.rock.isEmpty()) return;
   const std::vector<Corners> corners = corners_of(scene, state, leaning);
   for (std::size_t c = 0; c < cuts.size(); ++c) {
     const Corners& own = corners[c];
