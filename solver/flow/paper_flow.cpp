@@ -34,18 +34,22 @@ void diffuse(const Channel& channel, double mobility, Fluid::TimeRule rule, doub
   }
   before[inlet] = after[inlet] = 0.0;
   // Elimination without pivoting: the matrix is diagonally dominant.
-  std::vector<double> factor(n, 0.0), inverse(n), z(n);
+  std::vector<double> factor(n, 0.0), inverse(n), upper(n), z(n);
   for (std::size_t k = 0; k < n; ++k) {
     if (k > 0) factor[k] = theta * before[k] * inverse[k - 1];
     inverse[k] = 1.0 / (1.0 + theta * (before[k] + after[k] - (k > 0 ? factor[k] * after[k - 1] : 0.0)));
+    upper[k] = theta * after[k] * inverse[k];
   }
   for (int step = 1; step <= count; ++step) {
     P[inlet] = theta * inlet_Pa(step) + (1.0 - theta) * P[inlet];
     z[0] = P[0];
     for (std::size_t k = 1; k < n; ++k) z[k] = P[k] + factor[k] * z[k - 1];
     z[n - 1] *= inverse[n - 1];
-    for (std::size_t k = n - 1; k-- > 0;) z[k] = z[k] * inverse[k] + theta * after[k] * inverse[k] * z[k + 1];
-    for (std::size_t k = 0; k + 1 < n; ++k) {
+    for (std::size_t k = n - 1; k-- > 0;) z[k] = z[k] * inverse[k] + upper[k] * z[k + 1];
+    // P - M z, and where z is the mean theta P_new + (1 - theta) P what follows from that, without a way from k to k
+    // + 1.
+    for (std::size_t k = 0; theta > 0.0 && k < n; ++k) P[k] = (z[k] - (1.0 - theta) * P[k]) / theta;
+    for (std::size_t k = 0; theta == 0.0 && k + 1 < n; ++k) {
       P[k] += after[k] * (z[k + 1] - z[k]);
       P[k + 1] -= before[k + 1] * (z[k + 1] - z[k]);
     }
