@@ -33,7 +33,7 @@ def rows(share: float = 0.5) -> list[dict[str, Any]]:
 def errors(text: str, line: Line) -> dict[str, float]:
     """The errors that a table gives in a line, by level."""
     found = next(one for one in text.splitlines() if one.startswith(f"| {line.says} |"))
-    return {level: float(number) / 100.0 for number, level in re.findall(r"([\d.]+) % \(([^)]+)\)", found)}
+    return {level: float(number) / 100.0 for number, level in re.findall(r"(?<![-.\d])([\d.]+) % \(([^)]+)\)", found)}
 
 
 @pytest.mark.parametrize("line", LINES, ids=[line.case for line in LINES])
@@ -49,7 +49,9 @@ def test_a_table_from_the_ladder() -> None:
     """Errors lose their sign and are those of the rows; a row that is missing is an error."""
     made = table(rows())
     for line in LINES:
-        for level, error in errors(made, line).items():
+        told = errors(made, line)
+        assert list(told) == list(line.levels)
+        for level, error in told.items():
             assert error == pytest.approx(0.5 * gates()[line.case, line.quantity, level], rel=0.05)
     with pytest.raises(ValueError, match="no K_I of graded at 1 m"):
         table([row for row in rows() if row["case"] != "graded"])
