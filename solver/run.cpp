@@ -18,7 +18,9 @@
 #include "force_balance.hpp"
 #include "initialise.hpp"
 #include "interfaces/monitors.hpp"
+#include "output/fields.hpp"
 #include "output/recorder.hpp"
+#include "output/summary.hpp"
 #include "output/terminal.hpp"
 #include "quasistatic/load_steps.hpp"
 #include "quasistatic/resting_rock.hpp"
@@ -72,8 +74,7 @@ std::optional<std::string> reason_to_stop(const Scene& scene, const State& state
   if (stop.tip_y_m && tip != nullptr && tip_position(state, *tip).y() >= *stop.tip_y_m - 1e-3 * state.grid.h) {
     return fmt::format("tip reached y = {} m", *stop.tip_y_m);
   }
-  const bool stuck =
-      !state.tips.empty() && std::none_of(state.tips.begin(), state.tips.end(), [](const Tip& t) { return t.growing; });
+  const bool stuck = !state.tips.empty() && std::ranges::none_of(state.tips, &Tip::growing);
   if (stuck && !stop.time_s && !stop.inlet_Pa) return "no tip can grow any further: " + state.tips.front().stopped_by;
   return std::nullopt;
 }
@@ -81,19 +82,34 @@ std::optional<std::string> reason_to_stop(const Scene& scene, const State& state
 // What a run holds while it goes on.
 struct Run {
   const Scene& scene;
-  const std::vector<Elasticity>& rocks;
-  Recorder& recorder;
-  Clock::time_point start;      // of the process
-  Checkpoint good;              // the last state that was known to be sound, and how far the output had come then
-  State state = good.state;     // the present one
-  std::int64_t saved_step = 0;  // of the state that a resumed run would find
-  double interval = 0.0;        // of output times (s)
-  double particle_steps = 0.0;  // of this process
-  std::optional<Quasistatic> statics{};  // of a run without inertia
-  WeighGrowth weigh{};                   // of one with inertia
+  const RunFolder& folder;
+  const RunOptions& options;
+  Clock::time_point start;  // of the process
+  Recorder recorder;
+  Checkpoint good;  // the last state that was known to be sound, and what had been written then; or none yet
+  std::vector<Elasticity> rocks = make_elasticities(scene);
+  double interval = scene.output.fields_every_s.value_or(expected_duration(scene).value_or(1.0) / 50.0);  // s
+  State state = State();                              // the present one
+  std::int64_t saved_step = good.state.step;          // of the state that a resumed run would find
+  double particle_steps = 0.0;                        // of this process
+  std::optional<Quasistatic> statics{};               // of a run without inertia
+  WeighGrowth weigh = growth_weighing(scene, rocks);  // of one with inertia
 
-  double next_output() const { return static_cast<double>(recorder.outputs()) * interval; }
+  const std::vector<double>& output_times() const { return recorder.written().output_times; }
+  double next_output() const { return static_cast<double>(output_times().size()) * interval; }
 };
+
+// The first state, or that of a checkpoint made whole; both as a resumed run finds them.
+void begin(Run& run) {
+  if (run.good.state.particles.size() == 0) {
+    run.good.state = initialise(run.scene, run.rocks);
+  } else {
+    restore(run.scene, run.good.state);
+  }
+  run.state = run.good.state;
+  if (is_quasistatic(run.scene)) start_quasistatic(run.scene, run.rocks, run.state, run.statics.emplace());
+  run.good.state = run.state;
+}
 
 void add_stop_event(State& state) {
   const Tip* tip = leading_tip(state);
@@ -121,7 +137,7 @@ void complete_fields(Run& run) {
 }
 
 void output(Run& run) {
-  if (run.state.time == run.recorder.last_output_s()) return;
+  if (!run.output_times().empty() && run.output_times().back() == run.state.time) return;
   complete_fields(run);
   run.recorder.output(run.scene, run.state);
 }
@@ -166,27 +182,22 @@ void step_and_record(Run& run) {
   }
 }
 
-void save_good_state(Run& run) {
-  if (run.good.state.step <= run.saved_step) return;
-  run.recorder.checkpoint(run.scene, run.good.state, run.good.mark);
-  run.saved_step = run.good.state.step;
-}
-
 // Keeps the state where it is as a resumed run finds it.
 void keep_if_sound(Run& run) {
   const bool total = run.scene.numerics.kinematics == Numerics::Kinematics::total;
   const std::int64_t steps = run.statics ? steps_between_copies : total ? steps_between_bases : steps_between_rebuilds;
   if (run.state.step % steps != 0 || run.state.step <= run.good.state.step) return;
-  run.good = {run.state, run.recorder.mark()};
+  run.good = {run.state, run.recorder.written()};
   if (run.statics) restart_quasistatic(run.scene, run.rocks, run.state, *run.statics);  // as a resumed run starts
   run.weigh = growth_weighing(run.scene, run.rocks);
 }
 
-// Steps from run.state to the end of the run: why it is over, or nothing where it is interrupted.
-std::optional<std::string> march(Run& run, double checkpoint_every_s, Progress& progress) {
+// Steps to the end of the run: why it is over, or nothing where it is interrupted.
+std::optional<std::string> march(Run& run) {
+  Progress progress(run.scene, run.state, run.options.quiet);
   Clock::time_point last_checkpoint = Clock::now();
   while (true) {
-    if (settled(run) && run.recorder.outputs() == 0) output(run);
+    if (settled(run) && run.output_times().empty()) output(run);
     if (auto reason = reason_to_stop(run.scene, run.state); reason && settled(run)) {
       add_stop_event(run.state);
       output(run);
@@ -194,8 +205,9 @@ std::optional<std::string> march(Run& run, double checkpoint_every_s, Progress& 
     }
     keep_if_sound(run);
     const bool stop = asked_to_stop != 0;
-    if (stop || seconds_since(last_checkpoint) > checkpoint_every_s) {
-      save_good_state(run);
+    if (stop || seconds_since(last_checkpoint) > run.options.checkpoint_every_s) {
+      if (run.good.state.step > run.saved_step) run.recorder.checkpoint(run.scene, run.good);
+      run.saved_step = run.good.state.step;
       last_checkpoint = Clock::now();
     }
     if (stop) {
@@ -208,92 +220,63 @@ std::optional<std::string> march(Run& run, double checkpoint_every_s, Progress& 
 }
 
 // The command by which a run goes on, and from where.
-std::string resume_text(const Run& run, const RunFolder& folder) {
-  return fmt::format("`strata resume {}` goes on from {}", folder.path.string(),
+std::string resume_text(const Run& run) {
+  return fmt::format("`strata resume {}` goes on from {}", run.folder.path.string(),
                      run.saved_step > 0 ? fmt::format("step {}", run.saved_step) : "the start");
 }
 
-// The run to its end, its failure or its interruption: the exit status. The last leaves no summary.
-int run_to_end(Run& run, const RunFolder& folder, const RunOptions& options, RunRecord& record) {
-  Progress progress(run.scene, run.state, options.quiet);
-  int exit = done;
+// The run to its end, its failure or its interruption: the exit status, and what is to be said of it.
+int march_to_end(Run& run, RunRecord& record) {
   try {
-    if (is_quasistatic(run.scene)) start_quasistatic(run.scene, run.rocks, run.state, run.statics.emplace());
-    run.good.state = run.state;
+    begin(run);
     looks_at_signals = 1;
-    const std::optional<std::string> reason = march(run, options.checkpoint_every_s, progress);
-    if (!reason) exit = interrupted, record.status = "interrupted";
-    record.reason = reason ? *reason : resume_text(run, folder);
+    if (const std::optional<std::string> reason = march(run)) {
+      record.status = "completed", record.reason = *reason;
+      return done;
+    }
+    record.status = "interrupted", record.reason = resume_text(run);
+    return interrupted;
   } catch (const NumericalFailure& failure) {
-    exit = numerics_failed, record.status = "failed";
+    const bool begun = run.good.state.particles.size() > 0;
+    record.status = "failed";
     record.reason =
-        fmt::format("{}. The last good state, of step {}, is in checkpoint.bin.", failure.what(), run.good.state.step);
+        fmt::format("{}. {}", failure.what(),
+                    begun ? fmt::format("The last good state, of step {}, is in checkpoint.bin.", run.good.state.step)
+                          : "The run has no state yet.");
     run.state = run.good.state;
-    run.recorder.checkpoint(run.scene, run.good.state, run.good.mark);
+    if (begun) run.recorder.checkpoint(run.scene, run.good);
+    return numerics_failed;
   }
-  record.wall_s = seconds_since(run.start);
-  record.particle_steps = run.particle_steps;
-  if (exit == interrupted) return exit;
-  run.recorder.finish();
-  atomic_write(folder.summary(), summary_json(run.scene, run.state, record));
-  return exit;
 }
 
-RunRecord make_record(const Scene& scene) {
+// Steps, writes what is left to write, and says how it went; the exit status. An interrupted run has no summary.
+int run_to_end(Run run) {
   RunRecord record;
-  record.scene_name = scene.title.empty() ? scene.name : scene.title;
+  record.scene_name = run.scene.title.empty() ? run.scene.name : run.scene.title;
   record.threads = omp_get_max_threads();
-  record.status = "completed";
-  return record;
-}
-
-// What to do where the disc or the folder fails in the middle of a run.
-std::string after_output_failure(const OutputFailure& failure, const Run& run, const RunFolder& folder) {
-  const std::string where =
-      fmt::format("{}.\nThe run ends at step {}, t = {:.6g} s.", failure.what(), run.state.step, run.state.time);
-  std::error_code error;
-  if (!std::filesystem::exists(folder.scene(), error)) {
-    return fmt::format("{} Its folder {} is gone. Put it back and `strata resume` it, or run the scene again.", where,
-                       folder.path.string());
-  }
-  return fmt::format("{} What was written before is whole: once the folder can be written, {}.", where,
-                     resume_text(run, folder));
-}
-
-int run_from(Run run, const RunFolder& folder, const RunOptions& options) {
-  run.saved_step = run.state.step;
-  run.interval = run.scene.output.fields_every_s.value_or(expected_duration(run.scene).value_or(1.0) / 50.0);
-  run.weigh = growth_weighing(run.scene, run.rocks);
-  RunRecord record = make_record(run.scene);
   int exit = done;
   try {
-    exit = run_to_end(run, folder, options, record);
+    exit = march_to_end(run, record);
+    record.wall_s = seconds_since(run.start);
+    record.particle_steps = run.particle_steps;
+    run.recorder.gather();
+    if (exit != interrupted) {
+      atomic_write(run.folder.summary(), summary_json(run.scene, run.state, record));
+      remove_file(run.folder.all_fields());
+    }
   } catch (const OutputFailure& failure) {
-    fmt::print(stderr, "{}\n", after_output_failure(failure, run, folder));
+    fmt::print(stderr,
+               "{}.\nThe run ends at step {}, t = {:.6g} s. What was written before is whole: once its folder is there "
+               "and can be written, {}.\n",
+               failure.what(), run.state.step, run.state.time, resume_text(run));
     return bad_input;
   }
-  if (!options.quiet) {
-    fmt::print(stderr, "{}", closing_lines(run.scene, run.state, record, folder.path));
+  if (!run.options.quiet) {
+    fmt::print(stderr, "{}", closing_lines(run.scene, run.state, record, run.folder.path));
   } else if (exit != done) {
     fmt::print(stderr, "{}{}\n", exit == interrupted ? "interrupted; " : "", record.reason);
   }
   return exit;
-}
-
-// The summary of a run that fails before it has a first state.
-int fail_at_start(const Scene& scene, const RunFolder& folder, const NumericalFailure& failure,
-                  Clock::time_point start) {
-  RunRecord record = make_record(scene);
-  record.status = "failed";
-  record.reason = fmt::format("{}. The run has no state yet.", failure.what());
-  record.wall_s = seconds_since(start);
-  fmt::print(stderr, "{}\n", record.reason);
-  try {
-    atomic_write(folder.summary(), summary_json(scene, State(), record));
-  } catch (const OutputFailure& also) {
-    fmt::print(stderr, "{}\n", also.what());
-  }
-  return numerics_failed;
 }
 
 // Threads that the system moves between processors wait for each other's caches at every step. Each is kept on its own
@@ -301,19 +284,19 @@ int fail_at_start(const Scene& scene, const RunFolder& folder, const NumericalFa
 // threads each would otherwise meet on the first ones. What the user says of places (OMP_PROC_BIND, OMP_PLACES) counts.
 void pin_threads() {
   const int threads = omp_get_max_threads();
-  if (threads < 2 || std::getenv("OMP_PROC_BIND") != nullptr || std::getenv("OMP_PLACES") != nullptr) return;
   cpu_set_t allowed;
   CPU_ZERO(&allowed);
-  if (sched_getaffinity(0, sizeof allowed, &allowed) != 0 || CPU_COUNT(&allowed) != threads) return;
-  std::vector<std::size_t> processors;
-  for (std::size_t k = 0; k < CPU_SETSIZE; ++k) {
-    if (CPU_ISSET(k, &allowed)) processors.push_back(k);
-  }
+  if (threads < 2 || std::getenv("OMP_PROC_BIND") != nullptr || std::getenv("OMP_PLACES") != nullptr ||
+      sched_getaffinity(0, sizeof allowed, &allowed) != 0 || CPU_COUNT(&allowed) != threads)
+    return;
 #pragma omp parallel num_threads(threads)
   {
+    std::size_t processor = 0;  // the thread's own: as many come before it as threads do
+    for (int before = omp_get_thread_num(); before > 0 || !CPU_ISSET(processor, &allowed); ++processor)
+      before -= CPU_ISSET(processor, &allowed) ? 1 : 0;
     cpu_set_t own;
     CPU_ZERO(&own);
-    CPU_SET(processors[static_cast<std::size_t>(omp_get_thread_num())], &own);
+    CPU_SET(processor, &own);
     sched_setaffinity(0, sizeof own, &own);  // a thread that cannot be kept runs where it is put
   }
 }
@@ -328,28 +311,11 @@ void set_up(const Scene& scene, const RunOptions& options) {
   for (const int signal : {SIGXFSZ, SIGPIPE}) std::signal(signal, SIG_IGN);
 }
 
-// From a checkpoint or, without one, from the initial state.
-int run_on(const Scene& scene, const RunFolder& folder, const RunOptions& options, Clock::time_point start,
-           Recorder& recorder, std::optional<Checkpoint> from) {
-  const std::vector<Elasticity> rocks = make_elasticities(scene);
-  try {
-    if (from) {
-      restore(scene, from->state);
-    } else {
-      from = Checkpoint{initialise(scene, rocks), recorder.mark()};
-    }
-    return run_from({scene, rocks, recorder, start, std::move(*from)}, folder, options);
-  } catch (const NumericalFailure& failure) {
-    return fail_at_start(scene, folder, failure, start);
-  }
-}
-
-int run_anew(const Scene& scene, const RunOptions& options, const std::filesystem::path& path, bool replace,
+int run_anew(const Scene& scene, const RunOptions& options, const RunFolder& folder, bool replace,
              Clock::time_point start) {
-  const RunFolder folder = clear_run_folder(path, replace);
+  clear_run_folder(folder, replace);
   atomic_write(folder.scene(), scene.resolved_toml);
-  Recorder recorder(folder);
-  return run_on(scene, folder, options, start, recorder, std::nullopt);
+  return run_to_end({scene, folder, options, start, Recorder(folder), Checkpoint()});
 }
 
 }  // namespace
@@ -357,16 +323,18 @@ int run_anew(const Scene& scene, const RunOptions& options, const std::filesyste
 int run_scene(const Scene& scene, const RunOptions& options) {
   const Clock::time_point start = Clock::now();
   set_up(scene, options);
-  const Descriptor lock = make_run_folder(options.out);
+  const RunFolder folder{options.out};
+  make_folder(folder.path);
+  const Descriptor lock = lock_folder(folder.path);
   if (!options.quiet)
     fmt::print(stderr, "{:.2g} points, {:.2g} GB by estimate\n", points_of(scene), 1e-9 * memory_need(scene));
-  return run_anew(scene, options, options.out, options.replace, start);
+  return run_anew(scene, options, folder, options.replace, start);
 }
 
 int resume_run(const std::filesystem::path& dir, const RunOptions& options) {
   const Clock::time_point start = Clock::now();
-  const Descriptor lock = lock_folder(dir);
   const RunFolder folder{dir};
+  const Descriptor lock = lock_folder(dir);
   const ReadResult read = read_scene(folder.scene(), "", {});
   for (const std::string& error : read.errors) fmt::print(stderr, "{}\n", error);
   if (!read.scene) return bad_input;
@@ -376,24 +344,24 @@ int resume_run(const std::filesystem::path& dir, const RunOptions& options) {
     if (!options.quiet) fmt::print(stderr, "{}\n", how_it_ended(folder));
     return done;
   }
-  const std::string begun_by = made_with(folder.result()).version;
+  const std::string begun_by = made_with(folder).version;
   if (!begun_by.empty() && begun_by != version()) {
     fmt::print(stderr, "{}: begun by strata {}, goes on with {}, whose digits may differ\n", dir.string(), begun_by,
                version());
   }
   set_up(scene, options);
-  std::optional<Checkpoint> checkpoint;
-  std::optional<Recorder> recorder;
+  std::optional<Run> run;
   try {
-    checkpoint = load_checkpoint(folder.checkpoint(), scene);
-    recorder.emplace(folder, checkpoint->mark);
+    Checkpoint from = load_checkpoint(folder.checkpoint(), scene);
+    Recorder recorder(folder, from.written);
+    run.emplace(Run{scene, folder, options, start, std::move(recorder), std::move(from)});
   } catch (const OutputFailure&) {
     throw;
-  } catch (const std::runtime_error& error) {  // nothing to go on from, or files that hold less than it says
+  } catch (const std::runtime_error& error) {  // nothing to go on from, or fields are missing
     fmt::print(stderr, "{} The run starts anew.\n", error.what());
-    return run_anew(scene, options, dir, true, start);
+    return run_anew(scene, options, folder, true, start);
   }
-  return run_on(scene, folder, options, start, *recorder, std::move(checkpoint));
+  return run_to_end(std::move(*run));
 }
 
 }  // namespace strata

@@ -1,12 +1,10 @@
 #include "output/run_folder.hpp"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <fstream>
@@ -20,22 +18,12 @@ namespace strata {
 namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& file, const char* doing, int error) {
-  throw OutputFailure(fmt::format("{}: cannot {}: {}", file.string(), doing, std::generic_category().message(error)));
+  throw OutputFailure(
+      fmt::format("{}: cannot {}: {}", shortened(file.string(), 1000), doing, std::generic_category().message(error)));
 }
 
-std::filesystem::path with_ending(std::filesystem::path file, const char* ending) {
-  return file += ending;
-}
-
-// The summary first: without it nothing is taken for a run that has ended.
-std::array<std::filesystem::path, 6> files_of(const RunFolder& folder) {
-  return {folder.summary(), folder.checkpoint(), folder.history(), folder.result(), folder.xdmf(), folder.scene()};
-}
-
-void remove_file(const std::filesystem::path& file) {
-  std::error_code error;
-  std::filesystem::remove_all(file, error);
-  if (error) throw OutputFailure(fmt::format("{}: cannot be replaced: {}", file.string(), error.message()));
+std::filesystem::path beside(std::filesystem::path file) {
+  return file += ".tmp";
 }
 
 }  // namespace
@@ -47,6 +35,12 @@ Descriptor::~Descriptor() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) fail(folder, "be made", error.value());
+}
+
 Descriptor lock_folder(const std::filesystem::path& folder) {
   Descriptor lock(folder, O_RDONLY | O_DIRECTORY);
   if (lock.get() < 0) fail(folder, "be opened", errno);
@@ -55,43 +49,38 @@ Descriptor lock_folder(const std::filesystem::path& folder) {
       "{}: in use by a run that is going on. Wait for its end, stop it, or name another folder.", folder.string()));
 }
 
-Descriptor make_run_folder(const std::filesystem::path& path) {
-  std::error_code error;
-  std::filesystem::create_directories(path, error);
-  if (error)
-    throw OutputFailure(fmt::format("{}: cannot be made: {}", shortened(path.string(), 1000), error.message()));
-  if (!std::filesystem::is_directory(path)) throw OutputFailure(fmt::format("{}: is not a folder", path.string()));
-  return lock_folder(path);
-}
-
-RunFolder clear_run_folder(const std::filesystem::path& path, bool replace) {
-  RunFolder folder{path};
-  for (const auto& file : files_of(folder)) {
+void clear_run_folder(const RunFolder& folder, bool replace) {
+  // The summary first: without it nothing is taken for a run that has ended.
+  for (const auto& file :
+       {folder.summary(), folder.checkpoint(), folder.history(), folder.result(), folder.xdmf(), folder.scene()}) {
     std::error_code error;
     if (!replace && std::filesystem::exists(file, error)) {
       throw OutputFailure(
           fmt::format("{0}: holds a run already. `strata resume {0}` goes on with it or leaves it as it is where it "
                       "has ended; --replace runs the scene anew in its place; --out names another folder.",
-                      path.string()));
+                      folder.path.string()));
     }
-  }
-  for (const auto& file : files_of(folder)) {
-    remove_file(with_ending(file, ".tmp"));
+    remove_file(beside(file));
     if (file != folder.scene()) remove_file(file);
   }
-  remove_file(fields_of(folder.result()));
-  return folder;
+  remove_file(folder.all_fields());
+}
+
+void remove_file(const std::filesystem::path& file) {
+  std::error_code error;
+  std::filesystem::remove_all(file, error);
+  if (error) fail(file, "be removed", error.value());
 }
 
 void write_beside(const std::filesystem::path& file, Sync sync,
                   const std::function<void(const std::filesystem::path& beside)>& write) {
-  const std::filesystem::path beside = with_ending(file, ".tmp");
+  const std::filesystem::path made = beside(file);
   try {
-    write(beside);
-    if (sync == Sync::yes) sync_file(beside);
-    if (std::rename(beside.c_str(), file.c_str()) != 0) fail(file, "be replaced", errno);
+    write(made);
+    if (sync == Sync::yes) sync_file(made);
+    if (std::rename(made.c_str(), file.c_str()) != 0) fail(file, "be replaced", errno);
   } catch (...) {
-    std::remove(beside.c_str());
+    std::remove(made.c_str());
     throw;
   }
   if (sync == Sync::no) return;
@@ -102,19 +91,21 @@ void write_beside(const std::filesystem::path& file, Sync sync,
 }
 
 void atomic_write(const std::filesystem::path& file, std::string_view text, Sync sync) {
-  write_beside(file, sync, [text](const std::filesystem::path& beside) { write_with_room(beside, text, 0); });
+  write_beside(file, sync, [text](const std::filesystem::path& made) {
+    const Descriptor out(made, O_WRONLY | O_CREAT | O_TRUNC);
+    if (out.get() < 0) fail(made, "be written", errno);
+    for (std::string_view rest = text; !rest.empty();) {
+      const ssize_t written = ::write(out.get(), rest.data(), rest.size());
+      if (written < 0 && errno != EINTR) fail(made, "be written", errno);
+      if (written > 0) rest.remove_prefix(static_cast<std::size_t>(written));
+    }
+  });
 }
 
-void write_with_room(const std::filesystem::path& file, std::string_view text, std::uint64_t bytes) {
-  const Descriptor out(file, O_WRONLY | O_CREAT | O_TRUNC);
-  if (out.get() < 0) fail(file, "be written", errno);
-  while (!text.empty()) {
-    const ssize_t written = ::write(out.get(), text.data(), text.size());
-    if (written < 0 && errno != EINTR) fail(file, "be written", errno);
-    if (written > 0) text.remove_prefix(static_cast<std::size_t>(written));
-  }
-  const int full = bytes > 0 ? ::posix_fallocate(out.get(), 0, static_cast<off_t>(bytes)) : 0;
-  if (full != 0) fail(file, "be written", full);
+void take_room(const std::filesystem::path& file, std::uint64_t bytes) {
+  const Descriptor out(file, O_WRONLY);
+  const int error = out.get() < 0 ? errno : ::posix_fallocate(out.get(), 0, static_cast<off_t>(bytes));
+  if (error != 0) fail(file, "be written", error);
 }
 
 void append_at(const std::filesystem::path& file, std::uint64_t bytes, std::string_view text) {
@@ -143,14 +134,8 @@ void sync_file(const std::filesystem::path& file) {
 
 std::string read_whole(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error(fmt::format("{}: cannot be opened", file.string()));
+  if (!in) throw std::runtime_error(fmt::format("{}: cannot be opened.", file.string()));
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
-std::uint64_t checksum(std::string_view bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
-  return hash;
 }
 
 }  // namespace strata

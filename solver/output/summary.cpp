@@ -71,7 +71,7 @@ Json monitors_json(const Monitors& monitors, const std::vector<Watched>& shares)
                {"largest_particle_velocity_m_s", monitors.largest_particle_velocity},
                {"contact_residual", monitors.contact_residual},
                {"volume_balance", monitors.volume_balance},
-               {"mirror", monitors.mirror},
+               {"mirror", monitors.mirror != 0},
                {"growths", monitors.growths},
                {"growths_at_interfaces", monitors.growths_apart},
                {"growth_unweighed", monitors.growth_unweighed},

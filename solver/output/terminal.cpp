@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "output/history.hpp"
-#include "output/result_hdf5.hpp"
 #include "output/suspect.hpp"
 
 namespace strata {
@@ -21,32 +20,22 @@ namespace {
 
 // Way from `from` to `to` that is done at `now`, 0 to 1; a bound that is already reached is 1.
 double way(double from, double to, double now) {
-  if (now >= to) return 1.0;
-  return std::clamp((now - from) / (to - from), 0.0, 1.0);
-}
-
-double initial_tip_y(const Fracture& fracture) {
-  double y = fracture.path_m.front()[1];
-  for (const auto& x : fracture.path_m) y = std::max(y, x[1]);
-  return y;
+  return now >= to ? 1.0 : std::clamp((now - from) / (to - from), 0.0, 1.0);
 }
 
 // Where the fracture started, stayed and went on: all that fits into a line.
 std::string growth_line(const State& state) {
   constexpr std::size_t most = 6;
   std::vector<std::string> parts;
-  std::size_t more = 0;
   for (const Event& event : state.events) {
-    if (event.kind != "start" && event.kind != "arrest" && event.kind != "restart") continue;
-    if (parts.size() == most) {
-      ++more;
-    } else {
+    if (event.kind == "start" || event.kind == "arrest" || event.kind == "restart")
       parts.push_back(fmt::format("{} {:.4g} MPa at y = {:.2f} m", event.kind, 1e-6 * event.inlet_Pa, event.tip_y_m));
-    }
   }
   if (parts.empty()) return "growth: none";
+  const std::size_t all = parts.size();
+  parts.resize(std::min(all, most));
   return fmt::format("growth: {}{}", fmt::join(parts, "; "),
-                     more > 0 ? fmt::format("; {} more in summary.json", more) : "");
+                     all > most ? fmt::format("; {} more in summary.json", all - most) : "");
 }
 
 // Without round-off, and so without a sign that is none.
@@ -71,26 +60,13 @@ std::string tip_line(const Scene& scene, const State& state) {
   return fmt::format("tip: {}; inlet {:.4g} MPa", fmt::join(parts, "; and "), 1e-6 * state.fluid.inlet_Pa);
 }
 
-// How near a figure is to marking the run; 1 is at the threshold.
-double nearness(const Watched& watched) {
-  if (!std::isfinite(watched.value)) return std::numeric_limits<double>::infinity();
-  if (*watched.threshold > 0.0) return watched.value / *watched.threshold;
-  return watched.value > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
-}
-
 std::string monitor_line(const Scene& scene, const State& state) {
   std::vector<std::string> parts;
   for (const Watched& mark : suspicions(scene, state)) {
     const std::string above = mark.threshold ? fmt::format(", above {:.3g}", *mark.threshold) : "";
     parts.push_back(fmt::format("{} = {:.3g}{}: {}", mark.monitor, mark.value, above, mark.why));
   }
-  if (!parts.empty()) return fmt::format("SUSPECT: {}", fmt::join(parts, "; "));
-  std::vector<Watched> judged = watched(scene, state);
-  std::erase_if(judged, [](const Watched& w) { return !w.threshold; });
-  const auto worst = std::ranges::max_element(judged, {}, nearness);
-  if (worst == judged.end()) return "monitors: none";
-  return fmt::format("monitors: none suspect; nearest is {} = {:.3g}, which above {:.3g} would mean: {}",
-                     worst->monitor, worst->value, *worst->threshold, worst->why);
+  return parts.empty() ? "monitors: none suspect" : fmt::format("SUSPECT: {}", fmt::join(parts, "; "));
 }
 
 }  // namespace
@@ -103,7 +79,8 @@ double fraction_done(const Scene& scene, const State& state) {
   if (stop.inlet_Pa) done = std::max(done, way(scene.fluid.start_Pa, *stop.inlet_Pa, state.fluid.inlet_Pa));
   const Tip* tip = leading_tip(state);
   if (stop.tip_y_m && tip) {
-    done = std::max(done, way(initial_tip_y(*scene.fracture), *stop.tip_y_m, tip_position(state, *tip).y()));
+    const double start = std::ranges::max(scene.fracture->path_m, {}, [](const auto& x) { return x[1]; })[1];
+    done = std::max(done, way(start, *stop.tip_y_m, tip_position(state, *tip).y()));
   }
   return done;
 }
@@ -124,14 +101,12 @@ std::string progress_text(const State& state, double fraction, double left_s) {
 }
 
 Progress::Progress(const Scene& scene, const State& start, bool quiet)
-    : quiet_(quiet),
-      terminal_(::isatty(STDERR_FILENO) == 1),
-      start_fraction_(fraction_done(scene, start)),
-      start_(Clock::now()),
-      last_(start_) {}
+    : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), start_fraction_(fraction_done(scene, start)) {}
 
 Progress::~Progress() {
-  clear();
+  if (!drawn_) return;
+  std::fputs("\r\x1b[K", stderr);
+  std::fflush(stderr);
 }
 
 void Progress::show(const Scene& scene, const State& state) {
@@ -144,22 +119,15 @@ void Progress::show(const Scene& scene, const State& state) {
   const double done = fraction - start_fraction_;  // by this process, which may have gone on from a checkpoint
   const double left = done > 0.0 ? elapsed * (1.0 - fraction) / done : std::numeric_limits<double>::quiet_NaN();
   const std::string text = progress_text(state, fraction, left);
-  if (terminal_) {
-    constexpr int width = 24;
-    const int full = static_cast<int>(width * fraction);
-    fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {}\x1b[K", "", full, "", width - full, text);
-    std::fflush(stderr);
-    drawn_ = true;
-  } else {
+  if (!terminal_) {
     fmt::print(stderr, "{}\n", text);
+    return;
   }
-}
-
-void Progress::clear() {
-  if (!drawn_) return;
-  std::fputs("\r\x1b[K", stderr);
+  constexpr int width = 24;
+  const int full = static_cast<int>(width * fraction);
+  fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {}\x1b[K", "", full, "", width - full, text);
   std::fflush(stderr);
-  drawn_ = false;
+  drawn_ = true;
 }
 
 std::string closing_lines(const Scene& scene, const State& state, const RunRecord& record,
@@ -183,9 +151,7 @@ std::string how_it_ended(const RunFolder& folder) {
     how = fmt::format("{}: {}", summary.at("status").get<std::string>(), summary.at("reason").get<std::string>());
   } catch (const std::exception&) {  // said already
   }
-  const bool known = !made_with(folder.result()).scene.empty();
-  return fmt::format("{}: has ended and is left as it is ({}){}", folder.path.string(), how,
-                     known ? "" : "; whether scene.toml was changed since then it does not say");
+  return fmt::format("{}: has ended and is left as it is ({})", folder.path.string(), how);
 }
 
 }  // namespace strata

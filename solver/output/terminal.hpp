@@ -29,13 +29,10 @@ class Progress {
   Progress(const Scene& scene, const State& start, bool quiet);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  ~Progress();
+  ~Progress();  // takes the bar off the terminal
 
   /// Shows the state if it is time to: every 0.2 s on a terminal, elsewhere every 10 s; throws nothing of its own.
   void show(const Scene& scene, const State& state);
-
-  /// Takes the bar off the terminal, so that other lines may be printed; throws nothing.
-  void clear();
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -43,13 +40,13 @@ class Progress {
   bool terminal_;
   bool drawn_ = false;
   double start_fraction_;
-  Clock::time_point start_;
-  Clock::time_point last_;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point last_ = start_;
 };
 
-/// Five lines: how the run ended and why; start, arrests and restarts with pressure and height; its tips; the monitor
-/// that is nearest to its threshold, or all that mark the run; where the results are. Without a fracture the second and
-/// third are left out, without a state the fourth, too. folder: of the run. Throws nothing but std::bad_alloc.
+/// Five lines: how the run ended and why; start, arrests and restarts with pressure and height; its tips; the monitors
+/// that mark it; where the results are. Without a fracture the second and third are left out, without a state the
+/// fourth, too. folder: of the run. Throws nothing but std::bad_alloc.
 std::string closing_lines(const Scene& scene, const State& state, const RunRecord& record,
                           const std::filesystem::path& folder);
 

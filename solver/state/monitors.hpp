@@ -18,7 +18,7 @@ struct Monitors {
   double largest_particle_velocity = 0.0;  // m/s
   double contact_residual = 0.0;           // largest force out of balance in an equilibrium, over the largest load
   double volume_balance = 0.0;             // fluid missing now, over what was injected (law = "reynolds")
-  bool mirror = false;                     // solved on half of a mirror-symmetric block
+  std::int64_t mirror = 0;                 // 1: solved on half of a mirror-symmetric block
 
   double largest_open_J = 0.0;     // |stored + dissipated - supplied| of the ledger, at rows
   double largest_made_J = 0.0;     // energy that the time step and the transfer have made, net (watch_made)

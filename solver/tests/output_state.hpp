@@ -121,7 +121,7 @@ inline void fill_monitors(Numbers& number, Monitors& m) {
         &m.largest_flow_fall, &m.floor_share,        &m.floor_share_sum}) {
     *value = number.next();
   }
-  m.mirror = true;
+  m.mirror = 1;
   m.growths = 14, m.growths_apart = 5, m.flow_growths = 18;
 }
 

@@ -164,7 +164,7 @@ TEST_CASE("a resumed run ends with the same digits") {
   part.advance(static_cast<int>(steps_between_rebuilds));
   const TemporaryFolder folder;
   const auto file = folder.path / "checkpoint.bin";
-  save_checkpoint(file, scene, part.state, {});
+  save_checkpoint(file, scene, {part.state, {}});
   part.state = load_checkpoint(file, scene).state;
   part.rebuild();
   part.advance(200);

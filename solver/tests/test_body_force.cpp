@@ -175,7 +175,7 @@ TEST_CASE("a run under a body force resumes to the same digits, on any number of
   scene.resolved_toml = "body";
   Run run(scene);
   run.advance(32);
-  save_checkpoint(folder.path / "checkpoint.bin", run.scene, run.state, {});
+  save_checkpoint(folder.path / "checkpoint.bin", run.scene, {run.state, {}});
   Run again(scene);
   again.state = load_checkpoint(folder.path / "checkpoint.bin", run.scene).state;
   again.rebuild();

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "output/fields.hpp"
 #include "output/recorder.hpp"
 #include "output_state.hpp"
 #include "scene_text.hpp"
@@ -54,8 +55,7 @@ TEST_CASE("a run ends with how, growth, tip, worst monitor and where") {
   CHECK(lines[1] ==
         "growth: start 2.1 MPa at y = 1.00 m; arrest 2.25 MPa at y = 2.00 m; restart 3.5 MPa at y = 2.00 m");
   CHECK(lines[2] == "tip: x = 4.00 m, y = 2.00 m, K_I 1.450 and K_II 0.000 MPa sqrt(m), J 205.2 N/m; inlet 2.468 MPa");
-  CHECK_THAT(lines[3], Catch::StartsWith("monitors: none suspect; nearest is largest_courant = 0.9, which above 1.71 "
-                                         "would mean: no block"));
+  CHECK(lines[3] == "monitors: none suspect");
   CHECK(lines[4] == "results in " + folder.path.string() + ": summary.json, result.h5");
 }
 
@@ -100,7 +100,7 @@ TEST_CASE("a folder's scene that is not the run's is refused with the keys that 
     of_state.resolved_toml = scene.resolved_toml;
     recorder.output(of_state, made_state());
   }
-  CHECK(made_with(folder.result()).version == version());
+  CHECK(made_with(folder).version == version());
   CHECK_NOTHROW(require_unchanged_scene(folder, scene));
   CHECK_NOTHROW(require_unchanged_scene(folder, scene_test::good("# a comment\n" + scene_test::layered)));
   const auto refused = [&](const std::string& what, const std::string& by) {
@@ -113,11 +113,13 @@ TEST_CASE("a folder's scene that is not the run's is refused with the keys that 
     return std::string("not refused");
   };
   CHECK_THAT(refused("inlet_Pa = 4e6", "inlet_Pa = 5e6"),
-             Catch::Contains("was changed after the run began: stop.inlet_Pa = 5000000.0 (4000000.0 in the run).") &&
+             Catch::Contains("was changed after the run began: it says stop.inlet_Pa = 5000000.0; the run has "
+                             "stop.inlet_Pa = 4000000.0.") &&
                  Catch::Contains("scene.toml --out DIR`") && Catch::Contains("--replace`"));
   CHECK_THAT(refused("inlet_Pa = 4e6", "inlet_Pa = 4e6\ntime_s = 9"),
-             Catch::Contains("began: stop.time_s = 9.0 (left out in the run)."));
-  CHECK_THAT(refused("coefficient = 0.4", "coefficient = 0.5"),
-             Catch::Contains("began: interface.joint.coefficient = 0.5 (0.4 in the run)."));
-  CHECK_THAT(refused("thickness_m = 10", "thickness_m = 20"), Catch::Contains("began: strata.layers = "));
+             Catch::Contains("began: it says stop.time_s = 9.0; the run has nothing."));
+  CHECK_THAT(
+      refused("coefficient = 0.4", "coefficient = 0.5"),
+      Catch::Contains("it says interface.joint.coefficient = 0.5; the run has interface.joint.coefficient = 0.4."));
+  CHECK_THAT(refused("thickness_m = 10", "thickness_m = 20"), Catch::Contains("thickness_m = 20"));
 }

@@ -238,7 +238,7 @@ TEST_CASE("graded runs are the same whatever the threads and however often cut s
     omp_set_num_threads(1);
     cut.advance(first);
     const TemporaryFolder folder;
-    save_checkpoint(folder.path / "checkpoint.bin", scene, cut.state, {});
+    save_checkpoint(folder.path / "checkpoint.bin", scene, {cut.state, {}});
     cut.state = load_checkpoint(folder.path / "checkpoint.bin", scene).state;
     cut.rebuild();
     cut.advance(then);

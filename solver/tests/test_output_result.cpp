@@ -1,12 +1,11 @@
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cmath>
 #include <thread>
 
+#include "output/fields.hpp"
 #include "output/hdf5_io.hpp"
 #include "output/recorder.hpp"
 #include "output_state.hpp"
@@ -32,26 +31,36 @@ State later_state() {
   return state;
 }
 
+// The result of a run with these outputs.
+std::filesystem::path result_of(const TemporaryFolder& folder, const std::vector<State>& states,
+                                const Scene& scene = made_scene()) {
+  Recorder recorder(RunFolder{folder.path});
+  for (const State& state : states) recorder.output(scene, state);
+  recorder.gather();
+  return RunFolder{folder.path}.result();
+}
+
 // All that the file says, with the paths: equal texts mean equal content.
 std::string dump(hdf5::Id parent, const std::string& path) {
   std::string text;
-  for (const std::string& name : hdf5::names(parent)) {
-    text += fmt::format("{}/{}", path, name);
+  for (const std::string& name : hdf5::names(parent, path)) {
+    const std::string at = path + "/" + name;
+    text += at;
     try {
-      const auto values = hdf5::read(parent, name);
-      text += fmt::format(" [{}]", hdf5::text_attribute(parent, name, "unit"));
+      const auto values = hdf5::read(parent, at);
+      text += fmt::format(" [{}]", hdf5::text_attribute(parent, at, "unit"));
       for (const double value : values) text += fmt::format(" {}", value);
       text += "\n";
     } catch (const std::runtime_error&) {  // a group
       text += '\n';
-      text += dump(hdf5::group(parent, name).id(), fmt::format("{}/{}", path, name));
+      text += dump(parent, at);
     }
   }
   return text;
 }
 
 std::string dump(const std::filesystem::path& file) {
-  return dump(hdf5::open_file(file).id(), "");
+  return dump(hdf5::open_file(file), ".");
 }
 
 }  // namespace
@@ -62,25 +71,23 @@ TEST_CASE("the fracture's fields are those of its vertices") {
   State state = made_state();
   state.fracture().vertices[0].w = {-3e-3, 5e-4};  // opens by 3 mm, the + side slips 0.5 mm up the path
   state.fracture().vertices[1].w = {-5e-5, 0.0};   // less open than minimum_opening_m
-  ResultFile(folder.path / "result.h5").write_output(scene, state);
-  const auto file = hdf5::open_file(folder.path / "result.h5");
-  const auto group = hdf5::group(file.id(), "fracture/00000");
-  const hdf5::Id id = group.id();
-  CHECK(hdf5::read(id, "x_m") == std::vector<double>{4.0, 4.0, 4.0});
-  CHECK(hdf5::read(id, "y_m") == std::vector<double>{0.0, 1.0, 2.0});
-  CHECK(hdf5::read(id, "arc_m") == std::vector<double>{0.0, 1.0, 2.0});
-  CHECK(hdf5::read(id, "pressure_Pa") == state.fluid.P);
-  CHECK(hdf5::read(id, "opening_m")[0] == Approx(3e-3));
-  CHECK(hdf5::read(id, "opening_m")[1] == Approx(5e-5));
-  CHECK(hdf5::read(id, "slip_m")[0] == Approx(5e-4));
-  CHECK(hdf5::read(id, "permeability_m2")[0] == Approx(9e-6 / 12.0));
-  CHECK(hdf5::read(id, "permeability_m2")[1] == Approx(1e-8 / 12.0));
-  CHECK(hdf5::number_attribute(id, ".", "time_s") == state.time);
-  CHECK(hdf5::number_attribute(id, ".", "inlet_Pa") == state.fluid.inlet_Pa);
-  CHECK(hdf5::text_attribute(id, "permeability_m2", "unit") == "m^2");
-  CHECK(hdf5::text_attribute(id, "pressure_Pa", "unit") == "Pa");
-  CHECK(hdf5::names(id).size() == 7);
-  CHECK(hdf5::read(file.id(), "times") == std::vector<double>{state.time});
+  const auto file = hdf5::open_file(result_of(folder, {state}, scene));
+  const std::string at = "fracture/00000/";
+  CHECK(hdf5::read(file, at + "x_m") == std::vector<double>{4.0, 4.0, 4.0});
+  CHECK(hdf5::read(file, at + "y_m") == std::vector<double>{0.0, 1.0, 2.0});
+  CHECK(hdf5::read(file, at + "arc_m") == std::vector<double>{0.0, 1.0, 2.0});
+  CHECK(hdf5::read(file, at + "pressure_Pa") == state.fluid.P);
+  CHECK(hdf5::read(file, at + "opening_m")[0] == Approx(3e-3));
+  CHECK(hdf5::read(file, at + "opening_m")[1] == Approx(5e-5));
+  CHECK(hdf5::read(file, at + "slip_m")[0] == Approx(5e-4));
+  CHECK(hdf5::read(file, at + "permeability_m2")[0] == Approx(9e-6 / 12.0));
+  CHECK(hdf5::read(file, at + "permeability_m2")[1] == Approx(1e-8 / 12.0));
+  CHECK(hdf5::number_attribute(file, at, "time_s") == state.time);
+  CHECK(hdf5::number_attribute(file, at, "inlet_Pa") == state.fluid.inlet_Pa);
+  CHECK(hdf5::text_attribute(file, at + "permeability_m2", "unit") == "m^2");
+  CHECK(hdf5::text_attribute(file, at + "pressure_Pa", "unit") == "Pa");
+  CHECK(hdf5::names(file, at).size() == 7);
+  CHECK(hdf5::read(file, "times") == std::vector<double>{state.time});
 }
 
 // Requires that fields come back bit for bit, of one chunk and more, packed or not; packed ones that repeat take less.
@@ -94,18 +101,18 @@ TEST_CASE("large fields are packed without loss") {
       smooth[k] = static_cast<float>(3e5 * std::sin(1e-3 * static_cast<double>(k)));
       label[k] = static_cast<std::int32_t>(k);
     }
-    for (const auto storage : {hdf5::Storage::plain, hdf5::Storage::packed}) {
-      hdf5::write_file(path, 1000, [&](hdf5::Id root) {
-        hdf5::write(root, "smooth", smooth, "Pa", storage);
-        hdf5::write(root, "label", label, "1", storage);
+    for (const bool packed : {false, true}) {
+      hdf5::write_file(path, [&](hdf5::Id root) {
+        hdf5::write(root, "smooth", smooth, "Pa", packed);
+        hdf5::write(root, "label", label, "1", packed);
       });
       const hdf5::Handle file = hdf5::open_file(path);
-      const std::vector<double> read = hdf5::read(file.id(), "smooth"), labels = hdf5::read(file.id(), "label");
+      const std::vector<double> read = hdf5::read(file, "smooth"), labels = hdf5::read(file, "label");
       CHECK(std::equal(read.begin(), read.end(), smooth.begin(), smooth.end(),
                        [](double a, float b) { return a == static_cast<double>(b); }));
       CHECK(std::equal(labels.begin(), labels.end(), label.begin(), label.end()));
       const auto size = static_cast<double>(content_of(path).size()), whole = 8.0 * static_cast<double>(n);
-      if (n >= 5000) CHECK(size / whole < (storage == hdf5::Storage::packed ? 0.65 : 1.2));
+      if (n >= 5000) CHECK(size / whole < (packed ? 0.65 : 1.2));
     }
   }
 }
@@ -117,25 +124,23 @@ TEST_CASE("an interface's fields are those of its points, under its number in th
   first.w = {2e-3, 1e-3};  // normal up, tangent to the right
   first.reaction = {3e5, 4e5};
   first.failed_s = 0.25;
-  ResultFile(folder.path / "result.h5").write_output(made_scene(), state);
-  const auto file = hdf5::open_file(folder.path / "result.h5");
+  const auto file = hdf5::open_file(result_of(folder, {state}));
   // The surface lies at y = 5, on the second interface of the scene; the first, which never acts, has none.
-  CHECK(hdf5::names(hdf5::group(file.id(), "interfaces/00000").id()) == std::vector<std::string>{"1"});
-  const auto group = hdf5::group(file.id(), "interfaces/00000/1");
-  const hdf5::Id id = group.id();
-  CHECK(hdf5::text_attribute(id, ".", "law") == "bedding");
-  CHECK(hdf5::number_attribute(id, ".", "at_m") == 5.0);
-  CHECK(hdf5::read(id, "x_m") == std::vector<double>{1.0, 3.0, 5.0, 7.0});
-  CHECK(hdf5::read(id, "y_m") == std::vector<double>(4, 5.0));
-  CHECK(hdf5::read(id, "opening_m")[0] == Approx(1e-3));
-  CHECK(hdf5::read(id, "slip_m")[0] == Approx(2e-3));
-  CHECK(hdf5::read(id, "reaction_n_Pa")[0] == Approx(4e5));
-  CHECK(hdf5::read(id, "reaction_t_Pa")[0] == Approx(3e5));
-  const auto split = hdf5::read(id, "split");
+  CHECK(hdf5::names(file, "interfaces/00000") == std::vector<std::string>{"1"});
+  const std::string at = "interfaces/00000/1/";
+  CHECK(hdf5::text_attribute(file, at, "law") == "bedding");
+  CHECK(hdf5::number_attribute(file, at, "at_m") == 5.0);
+  CHECK(hdf5::read(file, at + "x_m") == std::vector<double>{1.0, 3.0, 5.0, 7.0});
+  CHECK(hdf5::read(file, at + "y_m") == std::vector<double>(4, 5.0));
+  CHECK(hdf5::read(file, at + "opening_m")[0] == Approx(1e-3));
+  CHECK(hdf5::read(file, at + "slip_m")[0] == Approx(2e-3));
+  CHECK(hdf5::read(file, at + "reaction_n_Pa")[0] == Approx(4e5));
+  CHECK(hdf5::read(file, at + "reaction_t_Pa")[0] == Approx(3e5));
+  const auto split = hdf5::read(file, at + "split");
   for (std::size_t k = 0; k < 4; ++k) CHECK(split[k] == (state.surfaces[1].points[k].split ? 1.0 : 0.0));
-  CHECK(hdf5::text_attribute(id, "reaction_n_Pa", "unit") == "Pa");
-  CHECK(hdf5::read(id, "failed_s")[0] == 0.25);
-  CHECK(hdf5::text_attribute(id, "failed_s", "unit") == "s");
+  CHECK(hdf5::text_attribute(file, at + "reaction_n_Pa", "unit") == "Pa");
+  CHECK(hdf5::read(file, at + "failed_s")[0] == 0.25);
+  CHECK(hdf5::text_attribute(file, at + "failed_s", "unit") == "s");
 }
 
 TEST_CASE("total stress is the in-situ stress and plane strain's Hooke's law") {
@@ -156,25 +161,21 @@ TEST_CASE("particles are written in the order of their id, and their number may 
   const TemporaryFolder folder;
   const Scene scene = made_scene();
   const std::vector<Elasticity> rocks = make_elasticities(scene);
-  ResultFile result(folder.path / "result.h5");
-  const State states[] = {made_state(), later_state()};
-  for (const State& state : states) result.write_output(scene, state);
-  CHECK(result.outputs() == 2);
-  const auto file = hdf5::open_file(folder.path / "result.h5");
+  const std::vector<State> states{made_state(), later_state()};
+  const auto file = hdf5::open_file(result_of(folder, states));
   for (std::size_t k = 0; k < 2; ++k) {
     const Particles& p = states[k].particles;
-    const auto group = hdf5::group(file.id(), fmt::format("particles/{:05}", k));
-    const hdf5::Id id = group.id();
-    CHECK(hdf5::number_attribute(id, ".", "time_s") == states[k].time);
+    const std::string at_k = fmt::format("particles/{:05}/", k);
+    CHECK(hdf5::number_attribute(file, at_k, "time_s") == states[k].time);
     const auto field = [&](const char* name, const char* unit) {
-      CHECK(hdf5::text_attribute(id, name, "unit") == unit);
-      return hdf5::read(id, name);
+      CHECK(hdf5::text_attribute(file, at_k + name, "unit") == unit);
+      return hdf5::read(file, at_k + name);
     };
     const auto x = field("x_m", "m"), y = field("y_m", "m"), u_x = field("u_x_m", "m"), u_y = field("u_y_m", "m");
     const auto v_x = field("v_x_m_s", "m/s"), v_y = field("v_y_m_s", "m/s"), V = field("volume_m2", "m^2");
     const auto s_xx = field("s_xx_Pa", "Pa"), s_yy = field("s_yy_Pa", "Pa"), s_xy = field("s_xy_Pa", "Pa");
     const auto rock = field("rock", "1"), ids = field("id", "1");
-    CHECK(hdf5::names(id).size() == 12);
+    CHECK(hdf5::names(file, at_k).size() == 12);
     REQUIRE(x.size() == p.size());
     for (std::size_t q = 0; q < p.size(); ++q) {
       const auto at = static_cast<std::size_t>(p.id[q]);  // ids of the made-up particles are 0 to n - 1
@@ -197,46 +198,42 @@ TEST_CASE("particles are written in the order of their id, and their number may 
 // Mutation that fails: an output that carries what was written before.
 TEST_CASE("an output time costs the same however many there were") {
   const TemporaryFolder folder;
-  const auto path = folder.path / "result.h5";
   State state = made_state();
   Numbers number{5};
   state.particles = made_particles(20000, number);
-  ResultFile result(path);
-  for (int k = 0; k < 20; ++k) result.write_output(made_scene(), state);
-  const auto size = [&](const char* name) { return std::filesystem::file_size(fields_of(path) / name); };
-  CHECK(size("00019.h5") == size("00000.h5"));
-  CHECK(size("00000.h5") > 7 * 4 * 20000);
-  CHECK(std::filesystem::file_size(path) < 50000);
+  Recorder recorder(RunFolder{folder.path});
+  for (int k = 0; k < 20; ++k) recorder.output(made_scene(), state);
+  const auto size = [&](std::size_t k) { return std::filesystem::file_size(RunFolder{folder.path}.fields(k)); };
+  CHECK(size(19) == size(0));
+  CHECK(size(0) > 7 * 4 * 20000);
 }
 
-TEST_CASE("/history holds the columns of history.csv, however often it is written") {
+TEST_CASE("/history holds the columns of history.csv, however often it is gathered") {
   const TemporaryFolder folder;
-  ResultFile result(folder.path / "result.h5");
-  std::vector<HistoryRow> rows(3, HistoryRow(history_columns().size()));
-  for (std::size_t k = 0; k < 3; ++k) of(rows[k], "J_N_m") = 1.0 / (3.0 + static_cast<double>(k));
-  result.finish(rows);
-  rows.resize(2);
-  result.finish(rows);
+  Recorder recorder(RunFolder{folder.path});
+  State state = made_state();
+  std::vector<double> J;
+  for (int k = 0; k < 3; ++k) {
+    J.push_back(state.tips[0].J = 1.0 / (3.0 + k));
+    recorder.row(made_scene(), state);
+    recorder.gather();
+  }
   const auto file = hdf5::open_file(folder.path / "result.h5");
-  const auto group = hdf5::group(file.id(), "history");
-  CHECK(hdf5::read(group.id(), "J_N_m") == std::vector<double>{of(rows[0], "J_N_m"), of(rows[1], "J_N_m")});
-  CHECK(hdf5::text_attribute(group.id(), "J_N_m", "unit") == "N/m");
-  CHECK(hdf5::names(group.id()).size() == history_columns().size());
+  CHECK(hdf5::read(file, "history/J_N_m") == J);
+  CHECK(hdf5::text_attribute(file, "history/J_N_m", "unit") == "N/m");
+  CHECK(hdf5::names(file, "history").size() == history_columns().size());
 }
 
 TEST_CASE("the .xdmf names data sets that exist, of the size they have") {
   const TemporaryFolder folder;
-  ResultFile result(folder.path / "result.h5");
-  result.write_output(made_scene(), made_state());
-  result.write_output(made_scene(), later_state());
+  const auto file = hdf5::open_file(result_of(folder, {made_state(), later_state()}));
   const std::string text = content_of(folder.path / "result.xdmf");
-  const auto file = hdf5::open_file(folder.path / "result.h5");
   std::size_t items = 0;
   for (std::size_t at = text.find("result.h5:/"); at != std::string::npos; at = text.find("result.h5:/", at + 1)) {
     const std::string path = text.substr(at + 11, text.find('<', at) - at - 11);
     INFO(path);
     const std::size_t dimensions = text.rfind("Dimensions=\"", at) + 12;
-    CHECK(hdf5::read(file.id(), path).size() == std::stoul(text.substr(dimensions)));
+    CHECK(hdf5::read(file, path).size() == std::stoul(text.substr(dimensions)));
     ++items;
   }
   CHECK(items == 2 * (2 + 8 + 2 + 5));
@@ -249,11 +246,10 @@ TEST_CASE("a scene without fracture and interfaces has particles alone") {
   State state = made_state();
   state.has_fracture = false;
   state.surfaces.clear();
-  ResultFile(folder.path / "result.h5").write_output(made_scene(), state);
-  const auto file = hdf5::open_file(folder.path / "result.h5");
-  CHECK(hdf5::exists(file.id(), "particles/00000/x_m"));
-  CHECK_FALSE(hdf5::exists(file.id(), "fracture/00000"));
-  CHECK_FALSE(hdf5::exists(file.id(), "interfaces/00000"));
+  const auto file = hdf5::open_file(result_of(folder, {state}));
+  CHECK(hdf5::exists(file, "particles/00000/x_m"));
+  CHECK_FALSE(hdf5::exists(file, "fracture/00000"));
+  CHECK_FALSE(hdf5::exists(file, "interfaces/00000"));
   CHECK(content_of(folder.path / "result.xdmf").find("fracture") == std::string::npos);
 }
 
@@ -264,9 +260,9 @@ TEST_CASE("equal runs write equal bytes, whenever they are run") {
     Recorder recorder(RunFolder{folder->path});
     recorder.output(made_scene(), made_state());
     recorder.row(made_scene(), later_state());
-    recorder.checkpoint(made_scene(), later_state(), recorder.mark());
+    recorder.checkpoint(made_scene(), {later_state(), recorder.written()});
     recorder.output(made_scene(), later_state());
-    recorder.finish();
+    recorder.gather();
   }
   for (const char* name : {"history.csv", "result.h5", "result.xdmf", "checkpoint.bin"}) {
     INFO(name);
@@ -286,84 +282,32 @@ TEST_CASE("a run that goes on from a checkpoint ends with the content of an unin
     recorder.row(scene, second);
     recorder.output(scene, second);
     recorder.output(scene, third);
-    recorder.finish();
+    recorder.gather();
   }
   {
     Recorder recorder(RunFolder{broken.path});
     recorder.output(scene, first);
     recorder.row(scene, second);
-    recorder.checkpoint(scene, second, recorder.mark());
+    recorder.checkpoint(scene, {second, recorder.written()});
     recorder.output(scene, third);  // cut off again: the run stops here and goes on from the checkpoint
     recorder.row(scene, first);
-    recorder.finish();
+    recorder.gather();
   }
   const RunFolder folder{broken.path};
   const Checkpoint checkpoint = load_checkpoint(folder.checkpoint(), scene);
-  CHECK(checkpoint.mark.history.rows == 2);
-  CHECK(checkpoint.mark.outputs == 1);
   {
-    Recorder recorder(folder, checkpoint.mark);
-    CHECK(recorder.outputs() == 1);
+    Recorder recorder(folder, checkpoint.written);
+    CHECK(recorder.written().rows.size() == 2);
+    CHECK(recorder.written().output_times.size() == 1);
     recorder.output(scene, checkpoint.state);
     recorder.output(scene, third);
-    recorder.finish();
+    recorder.gather();
   }
   CHECK(content_of(folder.history()) == content_of(RunFolder{whole.path}.history()));
   CHECK(content_of(folder.xdmf()) == content_of(RunFolder{whole.path}.xdmf()));
   CHECK(dump(folder.result()) == dump(RunFolder{whole.path}.result()));
   CHECK(dump(folder.result()).size() > 10000);
   const auto file = hdf5::open_file(folder.result());
-  CHECK(hdf5::read(file.id(), "times") == std::vector<double>{first.time, second.time, third.time});
-  CHECK(hdf5::read(file.id(), "history/time_s") ==
-        std::vector<double>{first.time, second.time, second.time, third.time});
-}
-
-TEST_CASE("output times beyond those kept are dropped at once") {
-  const TemporaryFolder folder;
-  const auto path = folder.path / "result.h5";
-  {
-    ResultFile result(path);
-    result.write_output(made_scene(), made_state());
-    result.write_output(made_scene(), later_state());
-  }
-  CHECK(ResultFile(path, 1).outputs() == 1);
-  const auto file = hdf5::open_file(path);
-  CHECK(hdf5::read(file.id(), "times") == std::vector<double>{made_state().time});
-  for (const char* kind : {"particles", "fracture", "interfaces"}) {
-    CHECK(hdf5::names(hdf5::group(file.id(), kind).id()) == std::vector<std::string>{"00000"});
-  }
-  CHECK(content_of(folder.path / "result.xdmf").find("/00001/") == std::string::npos);
-}
-
-TEST_CASE("a result file that is missing, foreign or short is refused") {
-  const TemporaryFolder folder;
-  const auto path = folder.path / "result.h5";
-  CHECK_THROWS_WITH(ResultFile(path, 0), Catch::Contains("result.h5: cannot be opened"));
-  ResultFile(path).write_output(made_scene(), made_state());
-  CHECK(ResultFile(path, 1).outputs() == 1);
-  CHECK_THROWS_WITH(ResultFile(path, 2), Catch::Contains("holds 1 output times where 2 were expected"));
-  std::ofstream(path) << "no HDF5";
-  CHECK_THROWS_WITH(ResultFile(path, 1), Catch::Contains("result.h5: cannot be opened"));
-  CHECK_THROWS_WITH(ResultFile("/nowhere/result.h5"), Catch::Contains("/nowhere/result.h5.tmp: cannot be written"));
-}
-
-TEST_CASE("a reader that holds a lock on the result file does not stop the run") {
-  const TemporaryFolder folder;
-  ResultFile result(folder.path / "result.h5");
-  const int reader = ::open((folder.path / "result.h5").c_str(), O_RDONLY);
-  REQUIRE(::flock(reader, LOCK_SH | LOCK_NB) == 0);
-  result.write_output(made_scene(), made_state());
-  CHECK(result.outputs() == 1);
-  ::close(reader);
-}
-
-TEST_CASE("pressures that do not belong to the vertices are refused, and leave the file as it was") {
-  const TemporaryFolder folder;
-  ResultFile result(folder.path / "result.h5");
-  const std::string before = content_of(folder.path / "result.h5");
-  State state = made_state();
-  state.fluid.P.pop_back();
-  CHECK_THROWS_WITH(result.write_output(made_scene(), state), Catch::Contains("2 fluid pressures at 3 vertices"));
-  CHECK(result.outputs() == 0);
-  CHECK(content_of(folder.path / "result.h5") == before);
+  CHECK(hdf5::read(file, "times") == std::vector<double>{first.time, second.time, third.time});
+  CHECK(hdf5::read(file, "history/time_s") == std::vector<double>{first.time, second.time, second.time, third.time});
 }

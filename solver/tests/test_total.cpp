@@ -5,7 +5,8 @@
 #include "interfaces/surface_law.hpp"
 #include "output/checkpoint.hpp"
 #include "output/hdf5_io.hpp"
-#include "output/result_hdf5.hpp"
+#include "output/fields.hpp"
+#include "output/hdf5_io.hpp"
 #include "output_state.hpp"
 #include "small_scenes.hpp"
 
@@ -115,7 +116,7 @@ TEST_CASE("a run in reference places resumes to the same digits") {
       strata::advance(one.scene, one.rocks, one.state, growth_weighing(one.scene, one.rocks));
   };
   advance(run, steps_between_bases);
-  save_checkpoint(folder.path / "checkpoint.bin", run.scene, run.state, {});
+  save_checkpoint(folder.path / "checkpoint.bin", run.scene, {run.state, {}});
   Run again(growing(Kinematics::total));
   again.state = load_checkpoint(folder.path / "checkpoint.bin", run.scene).state;
   again.rebuild();
@@ -140,9 +141,11 @@ TEST_CASE("positions are written where the rock is") {
   const TemporaryFolder folder;
   Run run(crack(Kinematics::total, 200.0));
   run.advance(200);
-  ResultFile(folder.path / "result.h5").write_output(run.scene, run.state);
-  const auto file = hdf5::open_file(folder.path / "result.h5");
-  const auto x = hdf5::read(file.id(), "particles/00000/x_m"), u = hdf5::read(file.id(), "particles/00000/u_x_m");
+  const RunFolder files{folder.path};
+  make_folder(files.all_fields());
+  write_fields(files, 0, run.scene, run.state);
+  const auto file = hdf5::open_file(files.fields(0));
+  const auto x = hdf5::read(file, "particles/00000/x_m"), u = hdf5::read(file, "particles/00000/u_x_m");
   const std::vector<Vec2> before = places(run.state);
   double most = 0.0;
   for (std::size_t q = 0; q < x.size(); ++q) {
@@ -150,7 +153,7 @@ TEST_CASE("positions are written where the rock is") {
     CHECK(x[q] == Approx(before[q].x() + u[q]).epsilon(2e-7));
   }
   CHECK(most > 1e-4);
-  const auto y = hdf5::read(file.id(), "fracture/00000/y_m");
+  const auto y = hdf5::read(file, "fracture/00000/y_m");
   const SurfacePoint& tip = run.state.fracture().vertices.back();
   CHECK(tip.x.y() == 5.0);
   CHECK(std::abs(tip.u.y()) > 1e-6);

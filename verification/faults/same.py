@@ -69,6 +69,9 @@ def torn(folder: Path) -> list[str]:
             fields = {name.split("/")[1] for name in content if name.startswith("particles/") and "@" not in name}
             if len(fields) != outputs:
                 found.append(f"result.h5: {outputs} times, fields of {len(fields)}")
+        for file in folder.glob("result.h5.fields/?????.h5"):
+            if not any(name.startswith(f"particles/{file.stem}/") for name in stored(file)):
+                found.append(f"{file.name}: no fields")
         if (folder / "summary.json").is_file():
             summary(folder / "summary.json")
     except (OSError, ValueError, KeyError, IndexError) as error:

@@ -1,0 +1,54 @@
+// result.h5: the fields of a run at its output times, and result.xdmf, through which ParaView reads them.
+//
+//   attributes scene, version    what the run was made with: the resolved scene, the version of strata that began it
+//   /times                       time of each output (s)
+//   /history/<column>            the columns of history.csv
+//   /fracture/00000/...          at the fracture's vertices: x_m, y_m, arc_m, opening_m, slip_m, pressure_Pa,
+//                                permeability_m2; attributes time_s, inlet_Pa
+//   /interfaces/00000/<k>/...    at the points of the scene's interface k, from 0: x_m, y_m, opening_m, slip_m,
+//                                reaction_n_Pa, reaction_t_Pa, failed_s, split (0 or 1); attributes law, at_m
+//   /particles/00000/...         in the order of their id: id, rock, x_m, y_m, u_x_m, u_y_m, v_x_m_s, v_y_m_s, s_xx_Pa,
+//                                s_yy_Pa, s_xy_Pa (total stress, tension positive), volume_m2; attribute time_s
+//
+// Every data set has an attribute `unit`. The number of particles may differ from one output time to the next. The
+// normal points from the - to the + side, which is on the left of the path; the tangent runs along the path. Fields of
+// particles are stored in single precision, all else in double.
+//
+// While a run goes on each output time is a file of its own, RunFolder::fields(k), with the same paths: an output costs
+// the same whatever was written before, and whenever the process is killed all can be read. They are gathered in
+// result.h5 where a run ends or is interrupted.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "output/history.hpp"
+#include "output/run_folder.hpp"
+#include "scene/scene.hpp"
+#include "state/elasticity.hpp"
+#include "state/state.hpp"
+
+namespace strata {
+
+/// Total stress of particle p (Pa, tension positive): in-situ stress and, in plane strain, that of the displacement
+/// gradient; rocks: in the order of the scene. Throws nothing.
+Stress total_stress(const std::vector<Elasticity>& rocks, const Particles& particles, std::size_t p);
+
+/// Writes the file of output time k; throws OutputFailure where it cannot be written.
+void write_fields(const RunFolder& folder, std::size_t k, const Scene& scene, const State& state);
+
+/// Gathers the files of the output times (s) in result.h5, with the rows of the history, and writes the .xdmf. Throws
+/// OutputFailure, with all as it was, where the disc has no room.
+void gather_fields(const RunFolder& folder, const std::vector<double>& times, const std::vector<HistoryRow>& rows);
+
+// What a run was made with and by; empty texts where it has no output yet.
+struct MadeWith {
+  std::string scene;    // resolved
+  std::string version;  // of strata
+};
+
+/// What the files of a run say of it; throws nothing but std::bad_alloc.
+MadeWith made_with(const RunFolder& folder);
+
+}  // namespace strata
