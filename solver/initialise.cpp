@@ -17,28 +17,24 @@ namespace strata {
 
 namespace {
 
-void append_particle(const Scene& scene, const std::vector<Elasticity>& rocks, const GridPoint& x, const GridPoint& y,
-                     Particles& p) {
-  const std::size_t rock = rock_at(scene, {x.at, y.at});
-  for (auto* array : {&p.u_x, &p.u_y, &p.v_x, &p.v_y, &p.g_xx, &p.g_xy, &p.g_yx, &p.g_yy}) array->push_back(0.0);
-  p.x.push_back(x.at), p.y.push_back(y.at);
-  p.V.push_back(x.length * y.length);
-  p.m.push_back(rocks[rock].rho * x.length * y.length);
-  p.half_x.push_back(0.5 * x.length), p.half_y.push_back(0.5 * y.length);
-  p.rock.push_back(static_cast<std::uint8_t>(rock));
-  p.sides.push_back(0);
-  p.in_situ.push_back({-scene.in_situ.horizontal_Pa, -scene.in_situ.vertical_Pa, 0.0});
-  p.id.push_back(p.next_id++);
-}
-
 Particles make_particles(const Scene& scene, const std::vector<Elasticity>& rocks, const Grid& grid) {
-  const int across = points_across(scene);
-  const std::vector<GridPoint> columns = points_along_x(grid, across), rows = points_along_y(grid, across);
-  Particles particles;
-  for (const GridPoint& y : rows) {
-    for (const GridPoint& x : columns) append_particle(scene, rocks, x, y, particles);
+  const std::vector<GridPoint> columns = points_along_x(grid, points_across(scene));
+  Particles p;
+  for (const GridPoint& y : points_along_y(grid, points_across(scene))) {
+    for (const GridPoint& x : columns) {
+      const std::size_t rock = rock_at(scene, {x.at, y.at});
+      for (auto* zero : {&p.u_x, &p.u_y, &p.v_x, &p.v_y, &p.g_xx, &p.g_xy, &p.g_yx, &p.g_yy}) zero->push_back(0.0);
+      p.x.push_back(x.at), p.y.push_back(y.at);
+      p.V.push_back(x.length * y.length);
+      p.m.push_back(rocks[rock].rho * x.length * y.length);
+      p.half_x.push_back(0.5 * x.length), p.half_y.push_back(0.5 * y.length);
+      p.rock.push_back(static_cast<std::uint8_t>(rock));
+      p.sides.push_back(0);
+      p.in_situ.push_back({-scene.in_situ.horizontal_Pa, -scene.in_situ.vertical_Pa, 0.0});
+      p.id.push_back(p.next_id++);
+    }
   }
-  return particles;
+  return p;
 }
 
 void make_fracture(const Scene& scene, State& state) {
@@ -55,46 +51,40 @@ void make_fracture(const Scene& scene, State& state) {
   state.fluid.inlet_Pa = scene.fluid.start_Pa;
   const bool from_symmetry = scene.domain.bottom == Edge::symmetry && path.front().y() == 0.0;
   // A fracture within the block is fed at its middle and has two tips.
-  const auto middle = std::min_element(
-      fracture.vertices.begin(), fracture.vertices.end(), [&](const SurfacePoint& a, const SurfacePoint& b) {
-        return std::abs(a.arc - 0.5 * fracture.length()) < std::abs(b.arc - 0.5 * fracture.length());
-      });
+  const auto middle = std::ranges::min_element(
+      fracture.vertices, {}, [&](const SurfacePoint& s) { return std::abs(s.arc - 0.5 * fracture.length()); });
   state.fluid.inlet = from_symmetry ? 0 : static_cast<std::size_t>(middle - fracture.vertices.begin());
   if (!from_symmetry) state.tips.push_back(Tip{});
   for (Tip& tip : state.tips) tip.at_back = false;
   state.tips.push_back(Tip{});
 }
 
-// The vertices of an interface at `at` (m). Along a graded grid its legs are halves of spans, each with a point in its
+// The points of an interface at `at` (m). Along a graded grid its legs are halves of spans, each with a point in its
 // middle where the particles stand too: what a law exerts then balances a uniform stress in the rock at every node.
-std::vector<Vec2> interface_path(const Scene& scene, const Grid& grid, double at) {
+Surface make_interface(const Scene& scene, const Grid& grid, double at, int bit) {
   const bool along_x = scene.strata.along == Strata::Along::y;
   const std::vector<double>& knots = along_x ? grid.x_knots : grid.y_knots;
   const Stretch rock = along_x ? scene.domain.along_x() : scene.domain.along_y();
-  std::vector<double> along{rock.from, rock.to};
-  if (!knots.empty()) {
-    along.clear();
-    const int n = along_x ? grid.nx : grid.ny;
-    for (int k = 0; k <= n; ++k) {
-      if (k > 0) along.push_back(knots[static_cast<std::size_t>(k + 1)]);
-      along.push_back(along_x ? grid.x(k) : grid.y(k));
-    }
-  }
   std::vector<Vec2> path;
-  for (const double s : along) path.push_back(along_x ? Vec2{s, at} : Vec2{at, s});
-  return path;
+  const auto add = [&](double s) { path.push_back(along_x ? Vec2{s, at} : Vec2{at, s}); };
+  if (knots.empty()) {
+    add(rock.from), add(rock.to);
+    return make_surface(Surface::Kind::interface, bit, path, surface_spacing(grid));
+  }
+  for (int k = 0; k <= (along_x ? grid.nx : grid.ny); ++k) {
+    if (k > 0) add(knots[static_cast<std::size_t>(k + 1)]);
+    add(along_x ? grid.x(k) : grid.y(k));
+  }
+  return make_surface(Surface::Kind::interface, bit, path, std::numeric_limits<double>::infinity());
 }
 
 void make_interfaces(const Scene& scene, State& state) {
-  const bool along_x = scene.strata.along == Strata::Along::y;
   for (const InterfacePlace& place : scene.strata.interfaces) {
     if (scene.laws[place.law].kind == InterfaceLaw::Kind::perfect) continue;
-    const bool graded = !(along_x ? state.grid.x_knots : state.grid.y_knots).empty();
-    Surface surface = make_surface(Surface::Kind::interface, static_cast<int>(state.surfaces.size()),
-                                   interface_path(scene, state.grid, place.at_m),
-                                   graded ? std::numeric_limits<double>::infinity() : surface_spacing(state.grid));
+    Surface surface = make_interface(scene, state.grid, place.at_m, static_cast<int>(state.surfaces.size()));
     surface.law = place.law;
     for (SurfacePoint& s : surface.points) {
+      const bool along_x = scene.strata.along == Strata::Along::y;
       s.column = along_x ? state.grid.column_at(s.x.x()) : state.grid.row_at(s.x.y());
       s.split = scene.laws[place.law].apart_at_start();
     }
@@ -107,8 +97,7 @@ void make_interfaces(const Scene& scene, State& state) {
 void set_start_reactions(State& state) {
   for (Surface& surface : state.surfaces) {
     for (SurfacePoint& s : surface.points) {
-      const bool fracture = surface.kind == Surface::Kind::fracture;
-      if (fracture) s.P = state.fluid.inlet_Pa;
+      if (surface.kind == Surface::Kind::fracture) s.P = state.fluid.inlet_Pa;
       if (s.split) s.reaction = std::max(0.0, s.closing_stress() - s.P) * s.n;
     }
   }

@@ -142,11 +142,6 @@ void output(Run& run) {
   run.recorder.output(run.scene, run.state);
 }
 
-// How far a step without inertia may go (s): to the next output, or to the end.
-double next_stop(const Run& run) {
-  return std::min(run.next_output(), expected_duration(run.scene).value_or(HUGE_VAL));
-}
-
 // Whether the step of inertia that begins ends at an output or with the run, so that a row of the history follows.
 bool row_follows(const Run& run) {
   const State& state = run.state;
@@ -167,7 +162,8 @@ bool settled(const Run& run) {
 void step_and_record(Run& run) {
   const std::size_t points = fracture_points(run.state);
   if (run.statics) {
-    advance_quasistatic(run.scene, run.rocks, next_stop(run), run.state, *run.statics);
+    const double stop = std::min(run.next_output(), expected_duration(run.scene).value_or(HUGE_VAL));
+    advance_quasistatic(run.scene, run.rocks, stop, run.state, *run.statics);
   } else {
     advance(run.scene, run.rocks, run.state, run.weigh, row_follows(run));
   }

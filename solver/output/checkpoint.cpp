@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <iterator>
 #include <set>
 #include <sstream>
@@ -63,24 +62,10 @@ void fields(Archive& archive, Is<State> auto& state) {
   archive(state.monitors, state.total.velocity);
 }
 
-// Where bytes go, and where they come from.
-struct Saved {
-  std::string bytes;
-  void raw(const void* from, std::size_t n) { bytes.append(static_cast<const char*>(from), n); }
-};
-struct Loaded {
-  std::string_view rest;
-  void raw(void* to, std::size_t n) {
-    if (n > rest.size()) throw std::runtime_error("ends too early");
-    if (n > 0) std::memcpy(to, rest.data(), n);
-    rest.remove_prefix(n);
-  }
-};
-
 // Saves values one behind another, or loads them.
-template <class Store>
+template <bool loads>
 struct Archive {
-  Store store;
+  std::conditional_t<loads, std::string_view, std::string> bytes;  // so far, or left
 
   template <class... T>
   void operator()(T&&... values) {
@@ -89,27 +74,32 @@ struct Archive {
 
  private:
   template <class T>
-  void one(T& value) {
-    if constexpr (std::is_trivially_copyable_v<T>) {
-      store.raw(&value, sizeof value);
-    } else if constexpr (Is<T, Vec2>) {
-      store.raw(value.data(), 2 * sizeof(double));
-    } else if constexpr (requires { value.capacity(); }) {
-      list(value);
+  void raw(T* values, std::size_t n) {
+    if constexpr (loads) {
+      bytes.copy(reinterpret_cast<char*>(values), n * sizeof(T));
+      bytes = bytes.substr(n * sizeof(T));
     } else {
-      fields(*this, value);
+      bytes.append(reinterpret_cast<const char*>(values), n * sizeof(T));
     }
   }
 
-  template <class List>  // a text or a vector
-  void list(List& values) {
-    std::size_t n = values.size();
-    one(n);
-    if constexpr (!std::is_const_v<List>) values.resize(n);
-    if constexpr (std::is_trivially_copyable_v<typename List::value_type>) {
-      store.raw(values.data(), n * sizeof(typename List::value_type));
+  template <class T>
+  void one(T& value) {
+    if constexpr (std::is_trivially_copyable_v<T>) {
+      raw(&value, 1);
+    } else if constexpr (Is<T, Vec2>) {
+      raw(value.data(), 2);
+    } else if constexpr (requires { value.capacity(); }) {  // a text or a vector
+      std::size_t n = value.size();
+      one(n);
+      if constexpr (loads) value.resize(n);
+      if constexpr (std::is_trivially_copyable_v<typename T::value_type>) {
+        raw(value.data(), n);
+      } else {
+        for (auto& element : value) one(element);
+      }
     } else {
-      for (auto& value : values) one(value);
+      fields(*this, value);
     }
   }
 };
@@ -149,20 +139,19 @@ std::string missing(const Lines& others, const Lines& some) {
 }  // namespace
 
 void save_checkpoint(const std::filesystem::path& file, const Scene& scene, const Checkpoint& checkpoint) {
-  Archive<Saved> content, sum;
+  Archive<false> content, sum;
   content(scene.resolved_toml, checkpoint.written, checkpoint.state);
-  sum(checksum(content.store.bytes));
-  atomic_write(file, std::string(magic) + sum.store.bytes + content.store.bytes);
+  sum(checksum(content.bytes));
+  atomic_write(file, std::string(magic) + sum.bytes + content.bytes);
 }
 
 Checkpoint load_checkpoint(const std::filesystem::path& file, const Scene& scene) {
   const std::string bytes = read_whole(file);
   if (!bytes.starts_with(magic)) refuse(file, "is no checkpoint of strata, or has another version's format");
-  Archive<Loaded> content{{std::string_view(bytes).substr(magic.size())}};
-  if (content.store.rest.size() < sizeof(std::uint64_t)) refuse(file, "is torn");
+  Archive<true> content{std::string_view(bytes).substr(magic.size())};
   std::uint64_t sum = 0;
-  content(sum);
-  if (checksum(content.store.rest) != sum) refuse(file, "is torn");
+  if (content.bytes.size() > sizeof sum) content(sum);
+  if (checksum(content.bytes) != sum) refuse(file, "is torn");
   std::string of_run;
   content(of_run);
   if (of_run != scene.resolved_toml) {

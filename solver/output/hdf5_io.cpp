@@ -75,7 +75,7 @@ Handle open_file(const std::filesystem::path& file) {
 
 void write_file(const std::filesystem::path& file, const Change& change) {
   // The library has the file in memory alone, so that what the disc refuses is said by the system.
-  constexpr std::size_t taken_at_a_time = std::size_t{1} << 20U;  // bytes
+  constexpr std::size_t taken_at_a_time = std::size_t{1} << 16U;  // bytes
   const Handle access = file_access(), creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, file.string());
   H5Pset_fapl_core(access, taken_at_a_time, false);
   H5Pset_istore_k(creation, 1);  // most fields are of one chunk: a tree of 64, as is the default, takes 2 kB of each
@@ -89,7 +89,14 @@ void write_file(const std::filesystem::path& file, const Change& change) {
 }
 
 void change_in_place(const std::filesystem::path& file, const Change& change) {
-  const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDWR, file_access()), H5Fclose, file.string());
+  const Handle access = file_access();
+  H5AC_cache_config_t known{};  // what the library knows of the file: 2 MB of it and more, if it may
+  known.version = H5AC__CURR_CACHE_CONFIG_VERSION;
+  require(H5Pget_mdc_config(access, &known), file.string());
+  known.set_initial_size = true;
+  known.initial_size = known.min_size = known.max_size = std::size_t{1} << 15U;
+  require(H5Pset_mdc_config(access, &known), file.string());
+  const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDWR, access), H5Fclose, file.string());
   change(opened);
   require(H5Fflush(opened, H5F_SCOPE_GLOBAL), file.string());
 }

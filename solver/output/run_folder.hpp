@@ -47,14 +47,12 @@ class Descriptor {
 /// Makes a folder, with its parents, where it is missing. Throws OutputFailure where it cannot be made.
 void make_folder(const std::filesystem::path& folder);
 
-/// Locks a folder for the process that writes to it, until what is returned goes or the process ends: a lock of the
-/// system on the folder itself. Throws OutputFailure where another process writes to the folder, or where it cannot be
-/// opened. On a file system without locks nothing is locked.
+/// Locks a folder for the process that writes to it, until what is returned goes or the process ends; on a file system
+/// without locks nothing is locked. Throws OutputFailure where it is locked already or cannot be opened.
 Descriptor lock_folder(const std::filesystem::path& folder);
 
-/// Makes way for a run in a folder that is locked: throws OutputFailure, saying what may be done, where it holds one,
-/// unless `replace`, which takes that one's files out of it. Other files stay, and scene.toml, which the new run's
-/// replaces in one piece, so that the folder can be resumed at any time.
+/// Makes way for a run: throws OutputFailure, saying what may be done, where the folder holds one, unless `replace`,
+/// which removes that one's files but scene.toml, which the new run's replaces in one piece: it can always be resumed.
 void clear_run_folder(const RunFolder& folder, bool replace);
 
 /// Removes a file, or a folder with what is in it, if it is there; throws OutputFailure where it cannot.
@@ -64,21 +62,19 @@ void remove_file(const std::filesystem::path& file);
 // process in any case.
 enum class Sync { no, yes };
 
-/// Lets `write` write a file beside `file`, which is then renamed to it, so that at any time either the old or the new
-/// content is there; where that throws, the one beside is removed. Throws OutputFailure, naming the file and the
-/// system's reason.
+/// Lets `write` write a file beside `file`, which is then renamed to it: at any time either the old or the new content
+/// is there. Throws OutputFailure, naming the file and the system's reason, with the one beside removed.
 void write_beside(const std::filesystem::path& file, Sync sync,
                   const std::function<void(const std::filesystem::path& beside)>& write);
 
 /// Writes `text` to `file` by write_beside(); throws as that.
 void atomic_write(const std::filesystem::path& file, std::string_view text, Sync sync = Sync::yes);
 
-/// Makes `file` so many bytes long and takes their room on the disc, so that what is written within them later is not
-/// refused. Throws OutputFailure where the disc has no such room.
+/// Takes the room of so many bytes for `file`; throws OutputFailure where the disc has not got it.
 void take_room(const std::filesystem::path& file, std::uint64_t bytes);
 
-/// Adds `text` by one call of the system to the end of `file`, which must be its `bytes` long. Throws OutputFailure,
-/// with the file as it was, where the disc refuses it, or where the file is gone or has another length.
+/// Adds `text` by one call of the system to `file`, which must be `bytes` long. Throws OutputFailure, with the file as
+/// it was, where the disc refuses it, or where the file is gone or has another length.
 void append_at(const std::filesystem::path& file, std::uint64_t bytes, std::string_view text);
 
 /// Waits until what `file` holds is on the disc; throws OutputFailure where it cannot be.
