@@ -118,10 +118,6 @@ void add_stop_event(State& state) {
       {"stop", state.time, state.fluid.inlet_Pa, at.x(), at.y(), tip != nullptr && at_interface(*tip), ""});
 }
 
-std::size_t fracture_points(const State& state) {
-  return state.has_fracture ? state.fracture().points.size() : 0;
-}
-
 // Strain energy and fields as they are now; without inertia only those that decide what happens next are kept.
 void complete_fields(Run& run) {
   if (run.statics) {
@@ -160,7 +156,8 @@ bool settled(const Run& run) {
 
 // One step and what it leaves to write: fields at output times, a row of the history after growth.
 void step_and_record(Run& run) {
-  const std::size_t points = fracture_points(run.state);
+  const auto points = [&] { return run.state.has_fracture ? run.state.fracture().points.size() : 0; };
+  const std::size_t before = points();
   if (run.statics) {
     const double stop = std::min(run.next_output(), expected_duration(run.scene).value_or(HUGE_VAL));
     advance_quasistatic(run.scene, run.rocks, stop, run.state, *run.statics);
@@ -171,7 +168,7 @@ void step_and_record(Run& run) {
   const double slack = run.statics ? 1e-9 * run.interval : 0.5 * run.state.dt;
   if (settled(run) && run.state.time >= run.next_output() - slack) {
     output(run);
-  } else if (fracture_points(run.state) != points) {
+  } else if (points() != before) {
     if (!run.statics) run.state.ledger.strain = strain_energy(run.rocks, run.state.particles);
     watch_row(run.scene, run.state);
     run.recorder.row(run.scene, run.state);
@@ -337,6 +334,7 @@ int resume_run(const std::filesystem::path& dir, const RunOptions& options) {
   const Scene& scene = *read.scene;
   require_unchanged_scene(folder, scene);
   if (std::filesystem::exists(folder.summary())) {
+    remove_file(folder.all_fields());  // of a process that was killed after its last word
     if (!options.quiet) fmt::print(stderr, "{}\n", how_it_ended(folder));
     return done;
   }

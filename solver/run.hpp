@@ -15,9 +15,9 @@ struct RunOptions {
   double checkpoint_every_s = 60.0;  // of wall time: what a crash costs at most, and rare enough to cost nothing
 };
 
-/// Runs a scene to its end and writes its folder. Returns the exit status: 0 done, 2 the folder can no longer be
-/// written, 3 the numerics failed, 130 interrupted. Throws OutputFailure where the folder holds a run already, is in
-/// use or cannot be written at the start; else only what is a bug.
+/// Runs a scene and writes its folder. Returns the exit status: 0 done, 2 the folder can no longer be written, 3 the
+/// numerics failed, 130 interrupted. Throws OutputFailure where the folder holds a run, is in use or cannot be written
+/// at the start; else only what is a bug.
 int run_scene(const Scene& scene, const RunOptions& options);
 
 /// Goes on with the run in `dir` from its last checkpoint, or from the start where there is none, to the same digits;

@@ -23,8 +23,7 @@ struct Checkpoint {
   Written written;
 };
 
-/// Writes the state, but what is derived of it, to `file` in one piece: the old checkpoint stays until the new one is
-/// complete. Throws OutputFailure where it cannot be written.
+/// Writes the state, but what is derived of it, to `file`, in one piece. Throws OutputFailure where it cannot.
 void save_checkpoint(const std::filesystem::path& file, const Scene& scene, const Checkpoint& checkpoint);
 
 /// Reads a checkpoint back to the same digits. Throws std::runtime_error, saying which, where `file` is missing, is no

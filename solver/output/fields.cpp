@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 
 #include "output/hdf5_io.hpp"
 #include "output/summary.hpp"
@@ -121,16 +122,18 @@ void set_made_with(hdf5::Id file, const MadeWith& made) {
   hdf5::set_attribute(file, ".", "version", made.version);
 }
 
-// Points of a kind at an output time, with some of their fields.
-std::string xdmf_grid(const char* kind, std::size_t k, std::size_t n, const std::string& topology, int precision,
+// The points of a kind at an output time, with some of their fields; topology: how they hang together.
+std::string xdmf_grid(const char* kind, std::size_t k, std::size_t n, int precision, const std::string& topology,
                       const std::vector<const char*>& fields) {
   const auto item = [&](const char* field) {
     return fmt::format(
         "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"{}\" Dimensions=\"{}\">result.h5:{}/{}</DataItem>",
         precision, n, group_of(kind, k), field);
   };
-  std::string text = fmt::format("        <Grid Name=\"{}\" GridType=\"Uniform\">\n          {}\n", kind, topology);
-  text += fmt::format("          <Geometry GeometryType=\"X_Y\">{}{}</Geometry>\n", item("x_m"), item("y_m"));
+  std::string text = fmt::format(
+      "        <Grid Name=\"{}\" GridType=\"Uniform\">\n          {}\n          <Geometry "
+      "GeometryType=\"X_Y\">{}{}</Geometry>\n",
+      kind, topology, item("x_m"), item("y_m"));
   for (const char* field : fields) {
     text += fmt::format("          <Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Node\">{}</Attribute>\n",
                         field, item(field));
@@ -142,28 +145,25 @@ std::string xdmf_text(hdf5::Id result, const std::vector<double>& times) {
   std::string text =
       "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n"
       "    <Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
-  const auto points = [&](const char* kind, std::size_t k) {
-    return hdf5::read(result, group_of(kind, k) + "/x_m").size();
-  };
   for (std::size_t k = 0; k < times.size(); ++k) {
+    const auto points = [&](const char* kind) { return hdf5::read(result, group_of(kind, k) + "/x_m").size(); };
     text += fmt::format(
         "      <Grid Name=\"{:05}\" GridType=\"Collection\" CollectionType=\"Spatial\">\n        <Time "
         "Value=\"{}\"/>\n",
         k, times[k]);
-    const std::size_t n = points("particles", k);
-    text +=
-        xdmf_grid("particles", k, n, fmt::format("<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\"/>", n),
-                  4, {"u_x_m", "u_y_m", "v_x_m_s", "v_y_m_s", "s_xx_Pa", "s_yy_Pa", "s_xy_Pa", "volume_m2"});
+    const std::size_t particles = points("particles");
+    text += xdmf_grid("particles", k, particles, 4,
+                      fmt::format("<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\"/>", particles),
+                      {"u_x_m", "u_y_m", "v_x_m_s", "v_y_m_s", "s_xx_Pa", "s_yy_Pa", "s_xy_Pa", "volume_m2"});
     if (hdf5::exists(result, group_of("fracture", k))) {
-      const std::size_t m = points("fracture", k);
-      std::string order;
-      for (std::size_t vertex = 0; vertex < m; ++vertex) order += fmt::format("{}{}", vertex > 0 ? " " : "", vertex);
-      text += xdmf_grid("fracture", k, m,
+      std::vector<std::size_t> path(points("fracture"));
+      std::iota(path.begin(), path.end(), std::size_t{0});
+      text += xdmf_grid("fracture", k, path.size(), 8,
                         fmt::format("<Topology TopologyType=\"Polyline\" NumberOfElements=\"1\" "
                                     "NodesPerElement=\"{0}\"><DataItem Format=\"XML\" NumberType=\"Int\" "
                                     "Dimensions=\"1 {0}\">{1}</DataItem></Topology>",
-                                    m, order),
-                        8, {"opening_m", "slip_m", "pressure_Pa", "permeability_m2", "arc_m"});
+                                    path.size(), fmt::join(path, " ")),
+                        {"opening_m", "slip_m", "pressure_Pa", "permeability_m2", "arc_m"});
     }
     text += "      </Grid>\n";
   }

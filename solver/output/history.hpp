@@ -26,12 +26,12 @@ const char* name_of(Obstacle what);
 /// The tip with the largest y, the first of equal ones, or nullptr where there is none; throws nothing.
 const Tip* leading_tip(const State& state);
 
-/// Opening face to face (m) where the fracture starts on the symmetry line y = 0: at its first or its last vertex, or,
-/// where neither lies there, the largest of its vertices; 0 without a fracture. Throws nothing.
+/// Opening face to face (m) at the end of the fracture on the symmetry line y = 0 or, where none lies there, the
+/// largest of its vertices; 0 without a fracture. Throws nothing.
 double mouth_opening(const State& state);
 
-/// Area between the fracture's faces (m^2), the sum of A w . n over its points, of the modelled domain: what symmetry
-/// left out is not added. 0 without a fracture. Throws nothing.
+/// Area between the fracture's faces (m^2), sum A w . n, without what symmetry left out; 0 without a fracture. Throws
+/// nothing.
 double fracture_volume(const State& state);
 
 // A column's name, which ends in its unit, the unit apart, and its value in a state.
@@ -41,9 +41,8 @@ struct HistoryColumn {
   double value;
 };
 
-/// The columns in the order of history.csv, with their values in a state. The tip is the leading one; its numbers are
-/// nan where they are none (tip_numbers()), and so is what belongs to a tip where there is no fracture (opening, volume
-/// and inlet pressure are 0 then). Energies are per metre of thickness, as in Ledger. Throws std::bad_alloc only.
+/// The columns in the order of history.csv, with their values in a state: of the leading tip, nan where it has no such
+/// number or there is none (opening, volume and inlet pressure are 0 then). Throws std::bad_alloc only.
 std::vector<HistoryColumn> history_columns(const Scene& scene = Scene(), const State& state = State());
 
 using HistoryRow = std::vector<double>;  // a value of each column

@@ -10,25 +10,24 @@ namespace strata {
 
 class Recorder {
  public:
-  /// Starts the files of a new run, or goes on behind what a checkpoint says was written, so that they end as those of
-  /// an uninterrupted run. Throws std::runtime_error where fields are missing (then the run has to start anew),
-  /// OutputFailure where the files cannot be written.
+  /// Starts the files of a run, or goes on behind what a checkpoint says was written: they end as those of an
+  /// uninterrupted run. Throws std::runtime_error where fields are missing: then the run has to start anew. This and
+  /// all that follows throw OutputFailure where files cannot be written; what was there before stays.
   explicit Recorder(const RunFolder& folder, Written written = {});
 
   /// What was written so far; throws nothing.
   const Written& written() const { return written_; }
 
-  /// Adds a row to the history, after a growth event; throws OutputFailure where it cannot be written.
+  /// Adds a row to the history, after a growth event.
   void row(const Scene& scene, const State& state);
 
-  /// Adds a row and the fields, at an output time; throws OutputFailure where they cannot be written.
+  /// Adds a row and the fields, at an output time.
   void output(const Scene& scene, const State& state);
 
-  /// Makes what was written so far safe, then writes the checkpoint. Throws OutputFailure where that fails; the
-  /// checkpoint before then stays.
+  /// Makes what was written so far safe, then writes the checkpoint.
   void checkpoint(const Scene& scene, const Checkpoint& checkpoint);
 
-  /// Gathers what was written in result.h5; throws OutputFailure, with all as it was, where that fails.
+  /// Gathers what was written in result.h5.
   void gather() const;
 
  private:

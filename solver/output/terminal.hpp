@@ -15,8 +15,7 @@ namespace strata {
 /// scene stops, counted from time 0, the start pressure and the initial fracture; throws nothing.
 double fraction_done(const Scene& scene, const State& state);
 
-/// Time (s) as "3 h 05 min", "4 min 10 s" or "12 s", "?" where it is not finite or negative; throws std::bad_alloc
-/// only.
+/// Time (s) as "3 h 05 min", "4 min 10 s" or "12 s", "?" where it is none or negative; throws std::bad_alloc only.
 std::string duration_text(double seconds);
 
 /// Time of the run, inlet pressure, tip height and time left (s; "?" if nan) as text; throws std::bad_alloc only.
@@ -44,9 +43,8 @@ class Progress {
   Clock::time_point last_ = start_;
 };
 
-/// Five lines: how the run ended and why; start, arrests and restarts with pressure and height; its tips; the monitors
-/// that mark it; where the results are. Without a fracture the second and third are left out, without a state the
-/// fourth, too. folder: of the run. Throws nothing but std::bad_alloc.
+/// Lines: how the run ended and why; start, arrests and restarts with pressure and height, and its tips, where it has a
+/// fracture; monitors that mark it, where it has a state; where the results are. Throws std::bad_alloc only.
 std::string closing_lines(const Scene& scene, const State& state, const RunRecord& record,
                           const std::filesystem::path& folder);
 
