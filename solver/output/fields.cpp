@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <system_error>
 
 #include "output/hdf5_io.hpp"
 #include "output/summary.hpp"
@@ -210,7 +211,11 @@ void gather_fields(const RunFolder& folder, const std::vector<double>& times, co
   write_beside(folder.result(), Sync::yes, [&](const std::filesystem::path& beside) {
     hdf5::write_file(beside, write_head);
     std::uintmax_t room = std::filesystem::file_size(beside);
-    for (std::size_t k = 0; k < times.size(); ++k) room += std::filesystem::file_size(folder.fields(k));
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      std::error_code gone;  // as is said where it is copied
+      const std::uintmax_t size = std::filesystem::file_size(folder.fields(k), gone);
+      if (!gone) room += size;
+    }
     take_room(beside, room);
     hdf5::change_in_place(beside, copy_fields);
   });

@@ -4,7 +4,6 @@
 #include "explicit/advance.hpp"
 #include "interfaces/surface_law.hpp"
 #include "output/checkpoint.hpp"
-#include "output/hdf5_io.hpp"
 #include "output/fields.hpp"
 #include "output/hdf5_io.hpp"
 #include "output_state.hpp"
