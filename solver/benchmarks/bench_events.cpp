@@ -152,12 +152,14 @@ void add_writing(Shop& shop, const std::string& what) {
   add("write/" + what, 5, [&shop, what](benchmark::State& bench) {
     const Workpiece& work = shop.get({"", {}});
     const ScratchFolder scratch;
-    Recorder recorder(clear_run_folder(scratch.path(), true));
+    const RunFolder folder{scratch.path()};
+    clear_run_folder(folder, true);
+    Recorder recorder(folder);
     recorder.output(work.scene, work.state);
     const About about{"what=" + what, 1, 1.0, 0.0, 0.0};
     time_work(bench, shop, about, [&] {
       if (what == "checkpoint") {
-        recorder.checkpoint(work.scene, work.state, recorder.mark());
+        recorder.checkpoint(work.scene, {work.state, recorder.written()});
       } else {
         recorder.output(work.scene, work.state);
       }
