@@ -37,7 +37,7 @@ void note_energies(const Scene& scene, double largest_speed2, State& state) {
 }
 
 // The motion of particles over the grid, kinematics = "updated".
-Moved move_particles(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+Moved move_particles(const Scene& scene, const Rocks& rocks, State& state) {
   Ledger& ledger = state.ledger;
   if (!state.gathered) particles_to_grid(scene, rocks, state);                  // m_i, mom_i, f_i
   add_body_force(scene, state);                                                 // f_i += sum N m b
@@ -75,7 +75,7 @@ double work_of_loads(const Ledger& ledger) {
 
 // The motion of nodes that keep their particles, kinematics = "total". Between events all that a step needs is fixed,
 // and particles stand still at the last base. look: leave what J needs in state.motion.
-Moved move_base(const Scene& scene, const std::vector<Elasticity>& rocks, bool look, State& state) {
+Moved move_base(const Scene& scene, const Rocks& rocks, bool look, State& state) {
   Ledger& ledger = state.ledger;
   const double keep = 1.0 - scene.numerics.damping_1_s * state.dt, loads = work_of_loads(ledger);
   push_body(scene, state);                           // a_i += sum N_ip m_p b_p / m_i
@@ -102,7 +102,7 @@ Moved move_base(const Scene& scene, const std::vector<Elasticity>& rocks, bool l
 }
 
 // Copies after an event. Under kinematics = "total" nodes go on with the velocities they had.
-void follow_event(const Scene& scene, const std::vector<Elasticity>& rocks, bool grown, State& state) {
+void follow_event(const Scene& scene, const Rocks& rocks, bool grown, State& state) {
   const bool total = scene.numerics.kinematics == Numerics::Kinematics::total;
   const RecordVelocities before = total ? RecordVelocities{state.copies, state.total.velocity} : RecordVelocities{};
   rebuild(scene, rocks, state);
@@ -122,8 +122,7 @@ bool any_runs(const State& state) {
 
 }  // namespace
 
-void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, const WeighGrowth& weigh,
-             bool look) {
+void advance(const Scene& scene, const Rocks& rocks, State& state, const WeighGrowth& weigh, bool look) {
   const bool total = scene.numerics.kinematics == Numerics::Kinematics::total;
   const bool grows = state.has_fracture && scene.fracture->growth != Fracture::Growth::none;
   const bool grow_now = grows && ((state.step + 1) % scene.numerics.tip_steps == 0 || any_runs(state));
@@ -153,7 +152,7 @@ void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& st
   require_finite(state);
 }
 
-bool bonds_fail(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+bool bonds_fail(const Scene& scene, const Rocks& rocks, State& state) {
   // At a Courant number of 0.5 a front of failure, which goes by a column a look, is then as fast as a P wave.
   constexpr std::int64_t steps_between_looks = 2;
   Bonds& bonds = state.bonds;

@@ -111,7 +111,7 @@ Uptake prepare_transfer(const Scene& scene, State& state) {
   return {0.0, &state.take_x, &state.take_y};
 }
 
-void require_stable(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
+void require_stable(const Scene& scene, const Rocks& rocks, const State& state) {
   constexpr double times_supplied = 10.0;  // 1/(1 - (omega dt/2)^2) at 0.95 of the largest stable step
   constexpr double rounding = 1e-10;       // of the speed of sound
   const Ledger& ledger = state.ledger;

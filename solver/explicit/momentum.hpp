@@ -53,7 +53,7 @@ Uptake prepare_transfer(const Scene& scene, State& state);
 /// Throws NumericalFailure where the motion has become unstable: where its kinetic energy is not finite, or more than
 /// 10 times all that loads have put in or drawn out and the block started with, and more than rounding makes, m (1e-10
 /// c_P)^2. A stable step keeps it below what was put in but for a factor 1/(1 - (omega dt/2)^2) of its fastest mode.
-void require_stable(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state);
+void require_stable(const Scene& scene, const Rocks& rocks, const State& state);
 
 /// Energy that the time step and the transfer have made, net (J/m), for the monitors. Velocities stand for the middle
 /// of a step and strain for its end, so that their energies' sum swings by a share omega dt/2 of itself though nothing

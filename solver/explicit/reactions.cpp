@@ -105,7 +105,7 @@ void find_ties(PlaceFinder& find) {
   }
 }
 
-void find_points(const std::vector<Elasticity>& rocks, std::size_t face_law_at, PlaceFinder& find) {
+void find_points(const Rocks& rocks, std::size_t face_law_at, PlaceFinder& find) {
   const State& state = find.state;
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
     const Surface& surface = state.surfaces[k];
@@ -383,7 +383,7 @@ void add_jumps(State& state) {
 
 }  // namespace
 
-void find_split_places(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+void find_split_places(const Scene& scene, const Rocks& rocks, State& state) {
   SplitPlaces& out = state.split;
   PlaceFinder find{state, out};
   out.nodes.clear();
@@ -399,7 +399,7 @@ void find_split_places(const Scene& scene, const std::vector<Elasticity>& rocks,
   out.held.reset();
 }
 
-void solve_reactions(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+void solve_reactions(const Scene& scene, const Rocks& rocks, State& state) {
   find_split_places(scene, rocks, state);
   note_start(state);
   for (const SplitPlace& place : state.split.places)

@@ -294,9 +294,8 @@ template <class Lanes>
 /// records follow that bin's one by one. Moves them (Move) by node_v and take over a step, and adds what they then give
 /// to the nodes' sums (Gather); rocks: of all particles, the same in all lanes. Throws nothing.
 template <class Shape, bool Move, bool Gather, class Lanes>
-void sweep_block(const Lanes lanes, const std::vector<Elasticity>& rocks, const SweepStep& step,
-                 const BlockSpans<Lanes>& at, const Bin& bin, const SweepArrays& arrays,
-                 LaneReport<typename Lanes::Real>& report) {
+void sweep_block(const Lanes lanes, const Rocks& rocks, const SweepStep& step, const BlockSpans<Lanes>& at,
+                 const Bin& bin, const SweepArrays& arrays, LaneReport<typename Lanes::Real>& report) {
   using Real = typename Lanes::Real;
   constexpr int together = 4;  // particles of a lane whose weights are kept until their sums are formed
   constexpr bool block = !std::is_same_v<Lanes, OneLane>;

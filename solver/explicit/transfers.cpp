@@ -64,8 +64,8 @@ void add_lanes(const LaneReport<Real>& lanes, ParticleReport& to) {
 
 // A strip's bins, block by block; those that stand alone one by one.
 template <class Shape, bool Move, bool Gather>
-ParticleReport sweep_strip(const std::vector<Elasticity>& rocks, const SweepStep& step, const State& state,
-                           const SweepArrays& arrays, const Strip& strip) {
+ParticleReport sweep_strip(const Rocks& rocks, const SweepStep& step, const State& state, const SweepArrays& arrays,
+                           const Strip& strip) {
   LaneReport<Lane> of_blocks;
   LaneReport<double> of_bins;
   for (int b = strip.first; b < strip.last;) {
@@ -101,7 +101,7 @@ ParticleReport total_of(const std::vector<ParticleReport>& strips) {
 }
 
 template <bool Move, bool Gather>
-ParticleReport sweep(const Scene& scene, const std::vector<Elasticity>& rocks, const Uptake& uptake, State& state) {
+ParticleReport sweep(const Scene& scene, const Rocks& rocks, const Uptake& uptake, State& state) {
   state.reports.assign(state.strips.size(), {});
   const SweepArrays arrays = arrays_of(uptake, state);
   const SweepStep step{state.dt, uptake.keep};
@@ -132,20 +132,18 @@ void for_each_stencil(const Scene& scene, NodalSums& sums, State& state, Visit v
 
 }  // namespace
 
-void particles_to_grid(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+void particles_to_grid(const Scene& scene, const Rocks& rocks, State& state) {
   const Uptake none{1.0, &state.motion.dv_x, &state.motion.dv_y};
   sweep<false, true>(scene, rocks, none, state);
   state.gathered = false;  // the caller goes on from them
 }
 
-ParticleReport grid_to_particles(const Scene& scene, const std::vector<Elasticity>& rocks, const Uptake& uptake,
-                                 State& state) {
+ParticleReport grid_to_particles(const Scene& scene, const Rocks& rocks, const Uptake& uptake, State& state) {
   state.gathered = false;
   return sweep<true, false>(scene, rocks, uptake, state);
 }
 
-ParticleReport sweep_particles(const Scene& scene, const std::vector<Elasticity>& rocks, const Uptake& uptake,
-                               State& state) {
+ParticleReport sweep_particles(const Scene& scene, const Rocks& rocks, const Uptake& uptake, State& state) {
   const ParticleReport report = sweep<true, true>(scene, rocks, uptake, state);
   state.gathered = true;
   return report;

@@ -51,7 +51,7 @@ bool near_edge(const Scene& scene, const Vec2& x, const Vec2& direction, double 
   return near(scene.domain.along_x(), x.x(), direction.x()) || near(scene.domain.along_y(), x.y(), direction.y());
 }
 
-bool ready(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Tip& tip) {
+bool ready(const Scene& scene, const Rocks& rocks, const State& state, const Tip& tip) {
   const Elasticity& ahead = rocks[rock_ahead(scene, state, tip)];
   const double G = driving(ahead, tip);
   const bool may = scene.fracture->growth != Fracture::Growth::none && tip.growing && state.time >= tip.due_s;
@@ -371,11 +371,11 @@ bool runs(const Tip& tip, double time) {
   return tip.growing && time >= tip.due_s && time <= tip.runs_until_s;
 }
 
-bool ready_to_grow(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
+bool ready_to_grow(const Scene& scene, const Rocks& rocks, const State& state) {
   return std::ranges::any_of(state.tips, [&](const Tip& tip) { return ready(scene, rocks, state, tip); });
 }
 
-bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+bool grow(const Scene& scene, const Rocks& rocks, State& state) {
   bool moved = false;
   for (Tip& tip : state.tips) {
     if (!ready(scene, rocks, state, tip) || stop_at_edge(scene, state, tip)) continue;

@@ -18,10 +18,10 @@ namespace strata {
 /// or whose next increment would end within 1.5 cells of one, or within 5 cells of the coarse cells of a graded grid,
 /// stops for good and says so. A closed tip (K_I = 0) does not grow, unless energy has it slide on. Returns true if any
 /// tip moved: the copies must then be rebuilt. Throws nothing.
-bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
+bool grow(const Scene& scene, const Rocks& rocks, State& state);
 
 /// Whether grow() would look at any tip more closely now: its J has reached J_c and its wait is over. Throws nothing.
-bool ready_to_grow(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state);
+bool ready_to_grow(const Scene& scene, const Rocks& rocks, const State& state);
 
 /// Whether a tip runs at a time (s), so that it is looked at in every step: its next increment is due, and waves of its
 /// last one have not yet crossed the rings that J is measured in. Throws nothing.

@@ -123,7 +123,7 @@ double Ring::at_node(double r) const {
   return 0.5 + 0.5 * std::cos(pi * (r - inner) / (outer - inner));
 }
 
-TipGeometry tip_geometry(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Tip& tip) {
+TipGeometry tip_geometry(const Scene& scene, const Rocks& rocks, const State& state, const Tip& tip) {
   const Surface& fracture = state.fracture();
   TipGeometry at;
   at.frame.tip = tip_position(state, tip);

@@ -64,7 +64,7 @@ struct TipGeometry {
 };
 
 /// Frame, rings and rock of a tip. Throws nothing.
-TipGeometry tip_geometry(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Tip& tip);
+TipGeometry tip_geometry(const Scene& scene, const Rocks& rocks, const State& state, const Tip& tip);
 
 /// q at the nodes around the grid's node (i, j); nothing where no ring reaches them. Throws nothing.
 std::optional<RingNodes> ring_nodes(const Grid& g, const TipGeometry& at, int i, int j);

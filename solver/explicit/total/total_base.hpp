@@ -18,7 +18,7 @@ std::vector<Vec2> nodes_from_particles(const Scene& scene, const State& state, c
 /// Makes the particles as they are the base: masses, accelerations a_i = f_i/m_i of their stress, operator, surfaces.
 /// Nodes take up state.total.velocity or, where a run starts, the velocity field that gives the particles theirs.
 /// Does nothing where the base stands.
-void start_base(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
+void start_base(const Scene& scene, const Rocks& rocks, State& state);
 
 /// Brings particles (u, grad u, v = sum N_ip v_i) and surfaces (u, and the jumps of what is not split) up to date from
 /// the nodes' displacements since the base, keeps the nodes' velocities in state.total.velocity and ends the base. Does
@@ -50,7 +50,7 @@ void recount_kinetic(State& state);
 
 /// The forces of the rock of the samples of bonded places as linear functions of the nodal displacements since the base
 /// and accelerations; particles must be up to date. Throws nothing but std::bad_alloc.
-std::vector<BondSensor> make_bond_sensors(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state);
+std::vector<BondSensor> make_bond_sensors(const Scene& scene, const Rocks& rocks, const State& state);
 
 /// What find_forces() gives, from the nodes (N/m). Throws nothing.
 void forces_of_nodes(const State& state, std::vector<Vec2>& forces);
@@ -59,6 +59,6 @@ void forces_of_nodes(const State& state, std::vector<Vec2>& forces);
 /// displacements have there, w = D u: within a cell a tip grows into nodes that are split, whose sides have moved apart
 /// before. Without it faces would meet, and J would be too small, by what had opened. Copies must be built, and all
 /// particles up to date. Changes state.sums. Throws nothing but std::bad_alloc.
-void open_new_points(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
+void open_new_points(const Scene& scene, const Rocks& rocks, State& state);
 
 }  // namespace strata

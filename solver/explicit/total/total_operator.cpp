@@ -79,7 +79,7 @@ void describe_bin(const State& state, const Bin& bin, std::vector<std::int64_t>&
   }
 }
 
-BinKind make_kind(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Bin& bin) {
+BinKind make_kind(const Scene& scene, const Rocks& rocks, const State& state, const Bin& bin) {
   const Particles& p = state.particles;
   BinKind kind;
   for (const std::size_t q : bin) {
@@ -95,7 +95,7 @@ struct BinKinds {
   std::vector<int> of_bin;
 };
 
-BinKinds find_bin_kinds(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
+BinKinds find_bin_kinds(const Scene& scene, const Rocks& rocks, const State& state) {
   BinKinds out;
   Kinds<std::int64_t> numbers;
   std::vector<std::int64_t> tokens;
@@ -244,8 +244,7 @@ Slots make_slots(const State& state) {
 
 // Rows of -M^-1 K with K = sum_p V_p B^T C B (add_stiffness()) and lumped masses, rows and columns folded to masters.
 // Surroundings count as the same where they agree to 1.5e-11 of a cell.
-StencilRows make_stencil_rows(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
-                              const Slots& slots) {
+StencilRows make_stencil_rows(const Scene& scene, const Rocks& rocks, const State& state, const Slots& slots) {
   const BinKinds bins = find_bin_kinds(scene, rocks, state);
   const auto incidences = find_incidences(state, slots);
   const Assembly from{state, slots, bins, incidences};
@@ -402,7 +401,7 @@ void apply_stencils(TotalMotion& t) {
 }
 
 // The same by particles: f_i = -sum_p V_p sigma(grad u) grad N_ip, folded to masters.
-void apply_particles(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+void apply_particles(const Scene& scene, const Rocks& rocks, State& state) {
   TotalMotion& t = state.total;
   const Slots& slots = t.op->slots;
   NodalSums sums(state.masters.size());
@@ -453,7 +452,7 @@ struct LaneTotals {
 
 }  // namespace
 
-StencilOperator make_operator(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
+StencilOperator make_operator(const Scene& scene, const Rocks& rocks, const State& state) {
   StencilOperator op;
   op.slots = make_slots(state);
   const StencilRows rows = make_stencil_rows(scene, rocks, state, op.slots);
@@ -483,7 +482,7 @@ NodeTotals move_nodes(double keep, State& state) {
           sum_of_lanes(sum.product), largest_lane(sum.fastest)};
 }
 
-double find_accelerations(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+double find_accelerations(const Scene& scene, const Rocks& rocks, State& state) {
   const bool fast = scene.numerics.kernels == Numerics::Kernels::fast;
   fast ? apply_stencils(state.total) : apply_particles(scene, rocks, state);
   const TotalMotion& t = state.total;
