@@ -29,13 +29,12 @@ void require_settled(int sweeps, double change, double largest, const State& sta
 
 /// Finds the split places of a state and the springs of its tips, state.split, over records or, once kinematics =
 /// "total" has its operator, over slots. Weights of stencils must be known (update_stencil_weights()), and masses
-/// folded to masters.
+/// folded to masters. Throws nothing but std::bad_alloc.
 void find_split_places(const Scene& scene, const Rocks& rocks, State& state);
 
 /// Adds what the reactions of split places do in the step to state.motion, which holds the motion without them
 /// (successive over-relaxation on D M^-1 D^T, started from the last step's reactions), and their jumps of the step,
-/// w += dt D v, with their shares of the ledger and the monitors. Steps that run out of sweeps are counted there.
-/// Throws NumericalFailure as require_settled() does.
+/// w += dt D v, with their shares of the ledger and the monitors. Throws NumericalFailure as require_settled() does.
 void solve_reactions(const Scene& scene, const Rocks& rocks, State& state);
 
 /// The same under kinematics = "total" for places that stay as they are, with the net tractions P n - t_in_situ. What
