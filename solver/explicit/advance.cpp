@@ -81,10 +81,12 @@ Moved move_base(const Scene& scene, const Rocks& rocks, bool look, State& state)
   push_body(scene, state);                           // a_i += sum N_ip m_p b_p / m_i
   double external = push_split_places(keep, state);  // a_i += tractions, contact, friction, springs; w += dt D v
   const NodeTotals moved = move_nodes(keep, state);  // v_i, u_i
-  external += note_body_work(state);
+  if (look || !state.body.empty()) note_motion(state);
+  const double body = body_work(state);
+  ledger.body_work += body;
+  external += body / state.dt;
   state.time += state.dt;
   ++state.step;
-  if (look) note_motion(state);
   const bool fail = bonds_fail(scene, rocks, state);
   const double elastic = find_accelerations(scene, rocks, state);               // a_i = -(M^-1 K u)_i + ...
   const double damped = (1.0 - keep) * (ledger.kinetic + 0.5 * moved.product);  // as take_damping() has it

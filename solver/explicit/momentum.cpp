@@ -12,13 +12,6 @@ namespace strata {
 
 namespace {
 
-// The sum over all of n records, part by part.
-template <class Sum, class Work>
-Sum over_records(std::size_t n, Work work) {
-  return sum_by_lanes<Sum>(
-      record_parts, n, [&](std::size_t part) { return part_of(n, part); }, work);
-}
-
 struct LaneEnergies {
   Lane first{}, second{};
   LaneEnergies& operator+=(const LaneEnergies& other) {
@@ -33,7 +26,7 @@ GridEnergy advance_momentum(double damping, State& state) {
   const double keep = 1.0 - damping * state.dt, dt = state.dt;
   const NodalSums& sums = state.sums;
   NodalMotion& motion = state.motion;
-  const auto energy = over_records<LaneEnergies>(sums.size(), [&](auto lanes, std::size_t r, LaneEnergies& sum) {
+  const auto energy = sum_over_records<LaneEnergies>(sums.size(), [&](auto lanes, std::size_t r, LaneEnergies& sum) {
     const Lane zero{}, m = lanes.load(sums.m.data() + r), per_m = m > 0.0 ? 1.0 / m : zero;
     const Lane v_x = per_m * lanes.load(sums.mom_x.data() + r), v_y = per_m * lanes.load(sums.mom_y.data() + r);
     const Lane dv_x = dt * per_m * lanes.load(sums.f_x.data() + r), dv_y = dt * per_m * lanes.load(sums.f_y.data() + r);
@@ -49,7 +42,7 @@ void take_damping(double damping, const GridEnergy& grid, State& state) {
   if (damping == 0.0) return;
   const NodalSums& sums = state.sums;
   const NodalMotion& motion = state.motion;
-  const auto both = over_records<LaneEnergies>(sums.size(), [&](auto lanes, std::size_t r, LaneEnergies& sum) {
+  const auto both = sum_over_records<LaneEnergies>(sums.size(), [&](auto lanes, std::size_t r, LaneEnergies& sum) {
     sum.first += lanes.load(sums.mom_x.data() + r) * lanes.load(motion.v_x.data() + r);
     sum.second += lanes.load(sums.mom_y.data() + r) * lanes.load(motion.v_y.data() + r);
   });
@@ -62,7 +55,7 @@ void take_damping(double damping, const GridEnergy& grid, State& state) {
 GridEnergyAfter grid_energy(const State& state) {
   const NodalSums& sums = state.sums;
   const NodalMotion& motion = state.motion;
-  const auto energy = over_records<LaneEnergies>(sums.size(), [&](auto lanes, std::size_t r, LaneEnergies& sum) {
+  const auto energy = sum_over_records<LaneEnergies>(sums.size(), [&](auto lanes, std::size_t r, LaneEnergies& sum) {
     const Lane m = lanes.load(sums.m.data() + r);
     const Lane v_x = lanes.load(motion.v_x.data() + r), v_y = lanes.load(motion.v_y.data() + r);
     const Lane dv_x = lanes.load(motion.dv_x.data() + r), dv_y = lanes.load(motion.dv_y.data() + r);

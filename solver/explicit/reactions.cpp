@@ -46,7 +46,7 @@ void weigh(int record, double N, const SpreadArray& mass, SplitPlace& place, Sta
   SplitPlaces& split = state.split;
   const auto r = static_cast<std::size_t>(record);
   const Master& master = state.masters[r];
-  const auto at = static_cast<std::size_t>(state.total.op ? state.total.op->slots.of_record[r] : master.record);
+  const auto at = static_cast<std::size_t>(master.record);
   std::size_t& node = split.node_at[at];
   if (node == none) node = split.nodes.size(), split.nodes.push_back({at, mass[at]});
   auto entry = std::ranges::find(place.entries, node, &SplitPlace::Entry::node);

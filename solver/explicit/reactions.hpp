@@ -27,9 +27,9 @@ void note_sweeps(int sweeps, double change, double largest, Monitors& monitors);
 /// are no solution. What is left below that is noted, and marks the run. Throws NumericalFailure.
 void require_settled(int sweeps, double change, double largest, const State& state);
 
-/// Finds the split places of a state and the springs of its tips, state.split, over records or, once kinematics =
-/// "total" has its operator, over slots. Weights of stencils must be known (update_stencil_weights()), and masses
-/// folded to masters. Throws nothing but std::bad_alloc.
+/// Finds the split places of a state and the springs of its tips, state.split. Weights of stencils must be known
+/// (update_stencil_weights()), and masses folded to masters: those of state.sums or, once kinematics = "total" has its
+/// operator, of state.total. Throws nothing but std::bad_alloc.
 void find_split_places(const Scene& scene, const Rocks& rocks, State& state);
 
 /// Adds what the reactions of split places do in the step to state.motion, which holds the motion without them

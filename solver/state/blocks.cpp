@@ -104,6 +104,7 @@ void number_along_rows(Copies& copies, std::vector<Bin>& bins) {
     number[static_cast<std::size_t>(further[k].record)] = nodes + static_cast<int>(k);
     copies.node_of_record[static_cast<std::size_t>(nodes) + k] = further[k].node;
   }
+  copies.node_of_record.resize(static_cast<std::size_t>(nodes) + further.size());  // without what has been joined
   for (CutNode& cut : copies.cut) {
     for (int& record : cut.records) record = number[static_cast<std::size_t>(record)];
   }

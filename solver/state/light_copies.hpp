@@ -33,8 +33,8 @@ constexpr double least_corner = 1.0 / 128.0;
 /// corners, and several nodes may have the same one or two particles at the point of such a corner: too few to hold all
 /// these copies. A corner that has less than least_corner of its node's sum_p V_p |grad N_i| becomes part of the
 /// largest one on the same side of the fracture that a single interface parts from it (CutNode::joined), if that is
-/// larger than itself: where both are small, a single particle may be all there is of either. Needs the cut nodes of
-/// `state`, before any record of theirs. Throws nothing.
+/// larger than itself: where both are small, a single particle may be all there is of either. Changes the cut nodes and
+/// bins of `state`, before blocks, masters and stencils are made. Throws nothing.
 void join_corners(const Scene& scene, State& state);
 
 }  // namespace strata

@@ -77,10 +77,9 @@ struct SplitPlace {
   std::vector<Entry> entries;
 };
 
-// A node that split places reach: its record or, under kinematics = "total", its slot; its mass (kg/m), its velocity
-// and what the places have added to it (m/s).
+// A master that split places reach: its mass (kg/m), its velocity and what the places have added to it (m/s).
 struct SplitNode {
-  std::size_t at = 0;
+  std::size_t at = 0;  // record
   double m = 0.0;
   Vec2 v = Vec2::Zero(), dv = Vec2::Zero();
 };
@@ -90,7 +89,7 @@ struct HeldFactor;
 struct SplitPlaces {
   std::vector<SplitPlace> places;
   std::vector<SplitNode> nodes;
-  std::vector<std::size_t> node_at;        // index into nodes of each record (slot)
+  std::vector<std::size_t> node_at;        // index into nodes of each record
   std::vector<InterfaceLaw> laws;          // the scene's, that of the fracture's faces, and of tips' springs
   std::shared_ptr<const HeldFactor> held;  // of the places held last (solve_held_reactions())
 };

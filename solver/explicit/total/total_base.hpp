@@ -31,9 +31,6 @@ void note_motion(State& state);
 /// Adds sum_p N_ip m_p b_p / m_i for the body force state.body, if any, to the nodes' accelerations.
 void push_body(const Scene& scene, State& state);
 
-/// Adds the body force's work of the step to the ledger, sum m b . v dt at the step's end; returns its power (W/m).
-double note_body_work(State& state);
-
 // Velocities of the records of copies that an event is about to change.
 struct RecordVelocities {
   Copies copies;

@@ -16,7 +16,7 @@ namespace strata {
 namespace {
 
 constexpr int lanes = most_lanes;
-constexpr std::size_t shortest_run = 8;  // slots: below, a run needs more beside its sums than sharing them saves
+constexpr int shortest_run = 8;  // records: below, a run needs more beside its sums than sharing them saves
 
 Lane load(const double* from) {
   return AllLanes{}.load(from);
@@ -30,10 +30,11 @@ void store(double* to, const Lane& value) {
 // A row of -M^-1 K: its blocks by ascending offset.
 using StencilRow = std::vector<StencilEntry>;
 
-// The rows of all masters. Slots whose surroundings are the same (particles, weights and copies around them) share one.
+// The rows of all masters. Records whose surroundings are the same (particles, weights and copies around them) share
+// one.
 struct StencilRows {
   std::vector<StencilRow> rows;
-  std::vector<int> row_of_slot;  // -1: no master of a mass stands there
+  std::vector<int> of_record;  // -1: no master of a mass
 };
 
 // Places within a cell are told apart by multiples of this (cells): far above the round-off of a coordinate, far below
@@ -114,18 +115,18 @@ struct Incidence {
   int node = 0;
 };
 
-// Those of each slot, in the order of bins.
-std::vector<std::vector<Incidence>> find_incidences(const State& state, const Slots& slots) {
-  std::vector<std::vector<Incidence>> of_slot(static_cast<std::size_t>(slots.size));
+// Those of each master, in the order of bins.
+std::vector<std::vector<Incidence>> find_incidences(const State& state) {
+  std::vector<std::vector<Incidence>> of_master(state.masters.size());
   for (std::size_t b = 0; b < state.bins.size(); ++b) {
     for (std::size_t n = 0; n < 9; ++n) {
       const auto record = static_cast<std::size_t>(state.bins[b].record[n]);
-      auto& at = of_slot[static_cast<std::size_t>(slots.of_record[record])];
+      auto& at = of_master[static_cast<std::size_t>(state.masters[record].record)];
       if (at.empty()) at.reserve(9);
       at.push_back({static_cast<int>(b), static_cast<int>(n)});
     }
   }
-  return of_slot;
+  return of_master;
 }
 
 const Master& master_at(const State& state, const Bin& bin, int node) {
@@ -139,27 +140,26 @@ int code_of(const Master& master) {
 // What a row is assembled from.
 struct Assembly {
   const State& state;
-  const Slots& slots;
   const BinKinds& bins;
   const std::vector<std::vector<Incidence>>& incidences;
 
   template <class Visit>
-  void visit(int slot, Visit visit_one) const {
-    for (const Incidence& at : incidences[static_cast<std::size_t>(slot)]) {
+  void visit(int record, Visit visit_one) const {
+    for (const Incidence& at : incidences[static_cast<std::size_t>(record)]) {
       const auto b = static_cast<std::size_t>(at.bin);
       visit_one(state.bins[b], at.node, bins.of_bin[b]);
     }
   }
 };
 
-void describe_row(const Assembly& from, int slot, std::vector<std::int32_t>& tokens) {
+void describe_row(const Assembly& from, int record, std::vector<std::int32_t>& tokens) {
   tokens.clear();
-  from.visit(slot, [&](const Bin& bin, int node, int kind) {
+  from.visit(record, [&](const Bin& bin, int node, int kind) {
     tokens.push_back(kind);
     tokens.push_back(16 * node + code_of(master_at(from.state, bin, node)));
     for (int n = 0; n < 9; ++n) {
-      const int column = from.slots.of_record[static_cast<std::size_t>(bin.record[static_cast<std::size_t>(n)])];
-      tokens.push_back(16 * (column - slot) + code_of(master_at(from.state, bin, n)));
+      const Master& other = master_at(from.state, bin, n);
+      tokens.push_back(16 * (other.record - record) + code_of(other));
     }
   });
 }
@@ -194,10 +194,10 @@ void drop_round_off(StencilRow& row) {
 }
 
 // Empty where the node has no mass.
-StencilRow make_row(const Assembly& from, int slot) {
+StencilRow make_row(const Assembly& from, int record) {
   StencilRow row;
   double m = 0.0;
-  from.visit(slot, [&](const Bin& bin, int node, int kind) {
+  from.visit(record, [&](const Bin& bin, int node, int kind) {
     const BinKind& local = from.bins.kinds[static_cast<std::size_t>(kind)];
     const Master& own = master_at(from.state, bin, node);
     m += local.m[static_cast<std::size_t>(node)];
@@ -205,8 +205,7 @@ StencilRow make_row(const Assembly& from, int slot) {
       const auto block = local.K.block<2, 2>(2 * node, 2 * n);
       if (block.isZero(0.0)) continue;
       const Master& other = master_at(from.state, bin, n);
-      const int column = from.slots.of_record[static_cast<std::size_t>(bin.record[static_cast<std::size_t>(n)])];
-      StencilEntry& entry = entry_at(row, column - slot);
+      StencilEntry& entry = entry_at(row, other.record - record);
       entry.xx -= own.x * other.x * block(0, 0), entry.xy -= own.x * other.y * block(0, 1);
       entry.yx -= own.y * other.x * block(1, 0), entry.yy -= own.y * other.y * block(1, 1);
     }
@@ -217,70 +216,39 @@ StencilRow make_row(const Assembly& from, int slot) {
   return row;
 }
 
-// Where the nodal quantities of a state stand.
-Slots make_slots(const State& state) {
-  const Grid& g = state.grid;
-  Slots slots;
-  const int width = g.nx + 1 + 2 * Slots::ring, rows = g.ny + 1 + 2 * Slots::ring;
-  slots.stride = (width + 7) / 8 * 8 + 8;  // vectors that begin in a row's last slots end before the next row's first
-  slots.plane = slots.stride * rows;
-  int planes = 1;
-  const auto place = [&](int record) {
-    const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
-    const int c = state.copies.cut_of_node[static_cast<std::size_t>(node)];
-    int copy = 0;
-    if (c >= 0) {
-      const auto& records = state.copies.cut[static_cast<std::size_t>(c)].records;
-      const auto at = std::find(records.begin(), records.end(), record);
-      if (at != records.end()) copy = static_cast<int>(at - records.begin());
-    }
-    planes = std::max(planes, copy + 1);
-    return copy * slots.plane + (g.row(node) + Slots::ring) * slots.stride + g.column(node) + Slots::ring;
-  };
-  for (const Master& master : state.masters) slots.of_record.push_back(place(master.record));
-  slots.size = planes * slots.plane + 16;
-  return slots;
-}
-
 // Rows of -M^-1 K with K = sum_p V_p B^T C B (add_stiffness()) and lumped masses, rows and columns folded to masters.
 // Surroundings count as the same where they agree to 1.5e-11 of a cell.
-StencilRows make_stencil_rows(const Scene& scene, const Rocks& rocks, const State& state, const Slots& slots) {
+StencilRows make_stencil_rows(const Scene& scene, const Rocks& rocks, const State& state) {
   const BinKinds bins = find_bin_kinds(scene, rocks, state);
-  const auto incidences = find_incidences(state, slots);
-  const Assembly from{state, slots, bins, incidences};
+  const auto incidences = find_incidences(state);
+  const Assembly from{state, bins, incidences};
   StencilRows out;
-  out.row_of_slot.assign(static_cast<std::size_t>(slots.size), -1);
+  out.of_record.assign(state.masters.size(), -1);
   Kinds<std::int32_t> numbers;
   std::vector<std::int32_t> tokens;
-  for (int slot = 0; slot < slots.size; ++slot) {
-    const auto s = static_cast<std::size_t>(slot);
-    if (incidences[s].empty()) continue;
-    describe_row(from, slot, tokens);
+  for (std::size_t r = 0; r < incidences.size(); ++r) {
+    if (incidences[r].empty()) continue;
+    const auto record = static_cast<int>(r);
+    describe_row(from, record, tokens);
     const auto [number, is_new] = numbers.try_emplace(tokens, static_cast<int>(numbers.size()));
-    if (is_new) out.rows.push_back(make_row(from, slot));
-    if (!out.rows[static_cast<std::size_t>(number->second)].empty()) out.row_of_slot[s] = number->second;
+    if (is_new) out.rows.push_back(make_row(from, record));
+    if (!out.rows[static_cast<std::size_t>(number->second)].empty()) out.of_record[r] = number->second;
   }
   return out;
 }
 
 // --- building
 
-// Runs of slots with the same row.
-void find_runs(const StencilRows& rows, StencilOperator& op) {
-  const std::vector<int>& row = rows.row_of_slot;
-  for (std::size_t first = 0, last = 0; first < row.size(); first = last) {
-    for (last = first + 1; last < row.size() && row[last] == row[first];) ++last;
-    if (row[first] < 0 || last - first < shortest_run) continue;
-    StencilRun run{{static_cast<int>(first), static_cast<int>(last)}, static_cast<int>(op.entries.size())};
-    for (const bool diagonal : {false, true}) {
-      for (const StencilEntry& entry : rows.rows[static_cast<std::size_t>(row[first])]) {
-        if ((entry.xy == 0.0 && entry.yx == 0.0) != diagonal) continue;
-        op.entries.push_back(entry);
-        ++(diagonal ? run.diagonal : run.full);
-      }
+StencilRun make_run(int first, int last, const StencilRow& row, std::vector<StencilEntry>& entries) {
+  StencilRun run{first, last, static_cast<int>(entries.size())};
+  for (const bool diagonal : {false, true}) {
+    for (const StencilEntry& entry : row) {
+      if ((entry.xy == 0.0 && entry.yx == 0.0) != diagonal) continue;
+      entries.push_back(entry);
+      ++(diagonal ? run.diagonal : run.full);
     }
-    op.runs.push_back(run);
   }
+  return run;
 }
 
 void add_segments(const StencilRow& row, std::vector<StencilSegment>& segments) {
@@ -296,38 +264,9 @@ void add_segments(const StencilRow& row, std::vector<StencilSegment>& segments) 
   }
 }
 
-// A row of a plane each, from its first slot in use to its last.
-void find_ranges(StencilOperator& op) {
-  std::vector<int> used = op.slots.of_record;
-  std::sort(used.begin(), used.end());
-  for (const int slot : used) {
-    const bool same = !op.ranges.empty() && slot / op.slots.stride == op.ranges.back().first / op.slots.stride;
-    if (!same) op.ranges.push_back({slot, slot + 1});
-    op.ranges.back().last = std::max(op.ranges.back().last, slot + 1);
-  }
-}
-
-// All slots that no run has, with the segments of their rows.
-void find_singles(const StencilRows& rows, StencilOperator& op) {
-  std::vector<SlotRange> segments;
-  for (const StencilRow& row : rows.rows) {
-    const auto first = static_cast<int>(op.segments.size());
-    add_segments(row, op.segments);
-    segments.push_back({first, static_cast<int>(op.segments.size())});
-  }
-  auto run = op.runs.begin();
-  for (int slot = 0; slot < op.slots.size; ++slot) {
-    while (run != op.runs.end() && run->slots.last <= slot) ++run;
-    const int row = rows.row_of_slot[static_cast<std::size_t>(slot)];
-    if (row < 0 || (run != op.runs.end() && run->slots.first <= slot)) continue;
-    const SlotRange& of_row = segments[static_cast<std::size_t>(row)];
-    op.singles.push_back({slot, of_row.first, of_row.last});
-  }
-}
-
 // --- applying
 
-// `count` vectors of slots from `at` on.
+// `count` vectors of records from `at` on.
 template <int count>
 void apply_block(const StencilEntry* entries, const StencilRun& run, std::size_t at, TotalMotion& t) {
   constexpr std::ptrdiff_t W = lanes;
@@ -355,13 +294,13 @@ void apply_block(const StencilEntry* entries, const StencilRun& run, std::size_t
 
 void apply_run(const StencilOperator& op, const StencilRun& run, TotalMotion& t) {
   const StencilEntry* entries = op.entries.data() + run.entry;
-  auto at = static_cast<std::size_t>(run.slots.first);
-  const auto last = static_cast<std::size_t>(run.slots.last);
+  auto at = static_cast<std::size_t>(run.first);
+  const auto last = static_cast<std::size_t>(run.last);
   constexpr std::size_t W = lanes, four = 4 * W;
   for (; at + four <= last; at += four) apply_block<4>(entries, run, at, t);
   // What is left in as few vectors as hold it; they begin before it where it does not fill them.
   const std::size_t vectors = (last - at + lanes - 1) / lanes;
-  if (last - static_cast<std::size_t>(run.slots.first) < vectors * lanes) {
+  if (last - static_cast<std::size_t>(run.first) < vectors * lanes) {
     for (; at + lanes <= last; at += lanes) apply_block<1>(entries, run, at, t);
     if (at < last) apply_block<1>(entries, run, last - lanes, t);
     return;
@@ -372,9 +311,9 @@ void apply_run(const StencilOperator& op, const StencilRun& run, TotalMotion& t)
   if (vectors == 1) apply_block<1>(entries, run, last - lanes, t);
 }
 
-void apply_single(const StencilOperator& op, const SingleSlot& single, TotalMotion& t) {
-  const auto slot = static_cast<std::size_t>(single.slot);
-  const double *u_x = t.u_x.data() + slot, *u_y = t.u_y.data() + slot;
+void apply_single(const StencilOperator& op, const SingleRecord& single, TotalMotion& t) {
+  const auto r = static_cast<std::size_t>(single.record);
+  const double *u_x = t.u_x.data() + r, *u_y = t.u_y.data() + r;
   Lane x{}, y{};
   for (int s = single.first; s < single.last; ++s) {
     const StencilSegment& segment = op.segments[static_cast<std::size_t>(s)];
@@ -384,11 +323,11 @@ void apply_single(const StencilOperator& op, const SingleSlot& single, TotalMoti
     x += load(segment.xy.data()) * b;
     y += load(segment.yy.data()) * b;
   }
-  t.a_x[slot] = t.base_x[slot] + sum_of_lanes(x);
-  t.a_y[slot] = t.base_y[slot] + sum_of_lanes(y);
+  t.a_x[r] = t.base_x[r] + sum_of_lanes(x);
+  t.a_y[r] = t.base_y[r] + sum_of_lanes(y);
 }
 
-// A thread has the same runs and slots in each step, so that nodes stay in its cache.
+// A thread has the same runs and records in each step, so that nodes stay in its cache.
 void apply_stencils(TotalMotion& t) {
   const StencilOperator& op = *t.op;
 #pragma omp parallel if (t.m.size() > worth_threads)
@@ -396,14 +335,13 @@ void apply_stencils(TotalMotion& t) {
 #pragma omp for schedule(static) nowait
     for (const StencilRun& run : op.runs) apply_run(op, run, t);
 #pragma omp for schedule(static)
-    for (const SingleSlot& single : op.singles) apply_single(op, single, t);
+    for (const SingleRecord& single : op.singles) apply_single(op, single, t);
   }
 }
 
 // The same by particles: f_i = -sum_p V_p sigma(grad u) grad N_ip, folded to masters.
 void apply_particles(const Scene& scene, const Rocks& rocks, State& state) {
   TotalMotion& t = state.total;
-  const Slots& slots = t.op->slots;
   NodalSums sums(state.masters.size());
   const Particles& p = state.particles;
   for (const Bin& bin : state.bins) {
@@ -423,24 +361,13 @@ void apply_particles(const Scene& scene, const Rocks& rocks, State& state) {
   }
   fold_to_masters(state, sums);
   for (std::size_t r = 0; r < sums.size(); ++r) {
-    const auto slot = static_cast<std::size_t>(slots.of_record[r]);
-    if (state.masters[r].record != static_cast<int>(r) || !(t.m[slot] > 0.0)) continue;
-    t.a_x[slot] = t.base_x[slot] + sums[r].f_x / t.m[slot];
-    t.a_y[slot] = t.base_y[slot] + sums[r].f_y / t.m[slot];
+    if (!(t.m[r] > 0.0)) continue;
+    t.a_x[r] = t.base_x[r] + sums[r].f_x / t.m[r];
+    t.a_y[r] = t.base_y[r] + sums[r].f_y / t.m[r];
   }
 }
 
-// The sum over the slots in use.
-template <class Sum, class Work>
-Sum over_slots(const TotalMotion& t, Work work) {
-  const std::vector<SlotRange>& ranges = t.op->ranges;
-  const auto range = [&](std::size_t k) {
-    return Part{static_cast<std::size_t>(ranges[k].first), static_cast<std::size_t>(ranges[k].last)};
-  };
-  return sum_by_lanes<Sum>(ranges.size(), t.m.size(), range, work);
-}
-
-// Of vectors of slots: see NodeTotals.
+// Of lanes: see NodeTotals.
 struct LaneTotals {
   Lane kinetic{}, increment{}, power{}, product{}, fastest{};
   LaneTotals& operator+=(const LaneTotals& other) {
@@ -453,19 +380,32 @@ struct LaneTotals {
 }  // namespace
 
 StencilOperator make_operator(const Scene& scene, const Rocks& rocks, const State& state) {
+  const StencilRows rows = make_stencil_rows(scene, rocks, state);
   StencilOperator op;
-  op.slots = make_slots(state);
-  const StencilRows rows = make_stencil_rows(scene, rocks, state, op.slots);
-  find_runs(rows, op);
-  find_singles(rows, op);
-  find_ranges(op);
+  std::vector<int> segment{0};  // where those of each row begin and the last end
+  for (const StencilRow& row : rows.rows) {
+    add_segments(row, op.segments);
+    segment.push_back(static_cast<int>(op.segments.size()));
+  }
+  const std::vector<int>& of = rows.of_record;
+  for (std::size_t first = 0, last = 0; first < of.size(); first = last) {
+    for (last = first + 1; last < of.size() && of[last] == of[first];) ++last;
+    if (of[first] < 0) continue;
+    const auto row = static_cast<std::size_t>(of[first]);
+    const int from = static_cast<int>(first), to = static_cast<int>(last);
+    if (to - from >= shortest_run) {
+      op.runs.push_back(make_run(from, to, rows.rows[row], op.entries));
+    } else {
+      for (int record = from; record < to; ++record) op.singles.push_back({record, segment[row], segment[row + 1]});
+    }
+  }
   return op;
 }
 
 NodeTotals move_nodes(double keep, State& state) {
   TotalMotion& t = state.total;
   const double dt = state.dt;
-  const auto sum = over_slots<LaneTotals>(t, [&](auto lane, std::size_t s, LaneTotals& to) {
+  const auto sum = sum_over_records<LaneTotals>(state.masters.size(), [&](auto lane, std::size_t s, LaneTotals& to) {
     const Lane a_x = lane.load(&t.a_x[s]), a_y = lane.load(&t.a_y[s]), m = lane.load(&t.m[s]);
     const Lane before_x = lane.load(&t.v_x[s]), before_y = lane.load(&t.v_y[s]);
     const Lane v_x = keep * before_x + dt * a_x, v_y = keep * before_y + dt * a_y;
@@ -486,7 +426,7 @@ double find_accelerations(const Scene& scene, const Rocks& rocks, State& state) 
   const bool fast = scene.numerics.kernels == Numerics::Kernels::fast;
   fast ? apply_stencils(state.total) : apply_particles(scene, rocks, state);
   const TotalMotion& t = state.total;
-  return sum_of_lanes(over_slots<Lane>(t, [&](auto lane, std::size_t s, Lane& power) {
+  return sum_of_lanes(sum_over_records<Lane>(state.masters.size(), [&](auto lane, std::size_t s, Lane& power) {
     const Lane v_a = lane.load(&t.v_x[s]) * lane.load(&t.a_x[s]) + lane.load(&t.v_y[s]) * lane.load(&t.a_y[s]);
     power += lane.load(&t.m[s]) * v_a;
   }));

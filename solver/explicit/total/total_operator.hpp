@@ -8,8 +8,8 @@
 
 namespace strata {
 
-/// -M^-1 K of a state as runs of slots that share a stencil and groups of others: rows are assembled from the
-/// particles' own weights, and slots with the same surroundings share them. Its copies and masters must be built.
+/// -M^-1 K of a state as runs of records that share a stencil, and single ones: rows are assembled from the particles'
+/// own weights, and records with the same surroundings share them. Its copies and masters must be built.
 StencilOperator make_operator(const Scene& scene, const Rocks& rocks, const State& state);
 
 // Sums over the nodes of a step, taken part by part so that they do not depend on the number of threads.
