@@ -49,7 +49,7 @@ Moved move_particles(const Scene& scene, const Rocks& rocks, State& state) {
   solve_reactions(scene, rocks, state);  // contact, friction, springs at the step's end; w += dt D v
   watch_made(grid.mapped, grid.swing - 0.5 * (ledger.friction - friction), state);
   const GridEnergyAfter after = grid_energy(state);
-  take_damping(scene.numerics.damping_1_s, grid, state);  // as v_i at the step's start and end have it
+  take_damping(1.0 - scene.numerics.damping_1_s * state.dt, grid.mapped, after.product, ledger);
   spread_to_tied(state);
   ledger.body_work += body_work(state);
   const Uptake uptake = prepare_transfer(scene, state);  // FLIP, PIC or XPIC
@@ -88,10 +88,8 @@ Moved move_base(const Scene& scene, const Rocks& rocks, bool look, State& state)
   state.time += state.dt;
   ++state.step;
   const bool fail = bonds_fail(scene, rocks, state);
-  const double elastic = find_accelerations(scene, rocks, state);               // a_i = -(M^-1 K u)_i + ...
-  const double damped = (1.0 - keep) * (ledger.kinetic + 0.5 * moved.product);  // as take_damping() has it
-  ledger.damping += damped;
-  ledger.integration += (1.0 - keep * keep) * ledger.kinetic - damped;
+  const double elastic = find_accelerations(scene, rocks, state);  // a_i = -(M^-1 K u)_i + ...
+  take_damping(keep, ledger.kinetic, moved.product, ledger);
   ledger.kinetic = moved.kinetic;
   // What the rock stores and what its force of the step's start does differ by v K v dt^2/2, which follows from the
   // change of that force.

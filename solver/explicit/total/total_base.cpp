@@ -209,33 +209,26 @@ BondSensor::Entry& entry_at(BondSensor& sensor, const Master& master) {
   return at != sensor.entries.end() ? *at : sensor.entries.emplace_back(BondSensor::Entry{r});
 }
 
-// What a particle of a sample adds to its force where the nodes of its bin move.
-void add_particle(const Scene& scene, const Elasticity& rock, const State& state, const BondSample::Share& share,
-                  const Bin& bin, BondSensor& sensor) {
-  const Particles& p = state.particles;
-  const std::size_t q = share.index;
-  const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
-  for (std::size_t k = 0; k < 9; ++k) {
-    const auto r = static_cast<std::size_t>(bin.record[k]);
-    const Master& master = state.masters[r];
-    const Vec2 by_x = stress_of(rock, g.N_x[k], g.N_y[k], 0.0, 0.0).on(share.weight);
-    const Vec2 by_y = stress_of(rock, 0.0, 0.0, g.N_x[k], g.N_y[k]).on(share.weight);
-    BondSensor::Entry& entry = entry_at(sensor, master);
-    entry.xx += master.x * by_x.x(), entry.yx += master.x * by_x.y();
-    entry.xy += master.y * by_y.x(), entry.yy += master.y * by_y.y();
-  }
-}
-
 }  // namespace
 
 std::vector<BondSensor> make_bond_sensors(const Scene& scene, const Rocks& rocks, const State& state) {
   std::vector<BondSensor> sensors;
+  const Particles& p = state.particles;
   const std::vector<std::size_t> bin_of = bins_of_particles(state);
   for (const BondSample& sample : state.bonds.samples) {
     BondSensor& sensor = sensors.emplace_back();
-    for (const BondSample::Share& share : sample.particles) {
-      const Bin& bin = state.bins[bin_of[share.index]];
-      add_particle(scene, rocks[state.particles.rock[share.index]], state, share, bin, sensor);
+    for (const auto& [q, weight, Phi] : sample.particles) {
+      const Bin& bin = state.bins[bin_of[q]];
+      const Elasticity& rock = rocks[p.rock[q]];
+      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
+      for (std::size_t k = 0; k < 9; ++k) {
+        const Master& master = state.masters[static_cast<std::size_t>(bin.record[k])];
+        const Vec2 by_x = stress_of(rock, g.N_x[k], g.N_y[k], 0.0, 0.0).on(weight);
+        const Vec2 by_y = stress_of(rock, 0.0, 0.0, g.N_x[k], g.N_y[k]).on(weight);
+        BondSensor::Entry& entry = entry_at(sensor, master);
+        entry.xx += master.x * by_x.x(), entry.yx += master.x * by_x.y();
+        entry.xy += master.y * by_y.x(), entry.yy += master.y * by_y.y();
+      }
     }
     for (const BondSample::Mass& mass : sample.inertia)
       entry_at(sensor, state.masters[static_cast<std::size_t>(mass.record)]).m += mass.m;

@@ -129,39 +129,24 @@ std::vector<std::vector<Incidence>> find_incidences(const State& state) {
   return of_master;
 }
 
-const Master& master_at(const State& state, const Bin& bin, int node) {
-  return state.masters[static_cast<std::size_t>(bin.record[static_cast<std::size_t>(node)])];
+const Master& master_at(const State& state, int bin, int node) {
+  const Bin& of = state.bins[static_cast<std::size_t>(bin)];
+  return state.masters[static_cast<std::size_t>(of.record[static_cast<std::size_t>(node)])];
 }
 
-int code_of(const Master& master) {
-  return 3 * (static_cast<int>(master.x) + 1) + static_cast<int>(master.y) + 1;
-}
-
-// What a row is assembled from.
-struct Assembly {
-  const State& state;
-  const BinKinds& bins;
-  const std::vector<std::vector<Incidence>>& incidences;
-
-  template <class Visit>
-  void visit(int record, Visit visit_one) const {
-    for (const Incidence& at : incidences[static_cast<std::size_t>(record)]) {
-      const auto b = static_cast<std::size_t>(at.bin);
-      visit_one(state.bins[b], at.node, bins.of_bin[b]);
-    }
-  }
-};
-
-void describe_row(const Assembly& from, int record, std::vector<std::int32_t>& tokens) {
+// What the row of a master is made of.
+void describe_row(const State& state, const BinKinds& bins, const std::vector<Incidence>& around, int record,
+                  std::vector<std::int32_t>& tokens) {
+  const auto code_of = [](const Master& m) { return 3 * static_cast<int>(m.x) + static_cast<int>(m.y) + 4; };
   tokens.clear();
-  from.visit(record, [&](const Bin& bin, int node, int kind) {
-    tokens.push_back(kind);
-    tokens.push_back(16 * node + code_of(master_at(from.state, bin, node)));
+  for (const auto& [bin, node] : around) {
+    tokens.push_back(bins.of_bin[static_cast<std::size_t>(bin)]);
+    tokens.push_back(16 * node + code_of(master_at(state, bin, node)));
     for (int n = 0; n < 9; ++n) {
-      const Master& other = master_at(from.state, bin, n);
+      const Master& other = master_at(state, bin, n);
       tokens.push_back(16 * (other.record - record) + code_of(other));
     }
-  });
+  }
 }
 
 StencilEntry& entry_at(StencilRow& row, int offset) {
@@ -175,41 +160,36 @@ double largest_of(const StencilEntry& e) {
   return std::max({std::abs(e.xx), std::abs(e.xy), std::abs(e.yx), std::abs(e.yy)});
 }
 
-double largest_of(const StencilRow& row) {
-  double most = 0.0;
-  for (const StencilEntry& entry : row) most = std::max(most, largest_of(entry));
-  return most;
-}
-
 // Coefficients that are round-off of sums that cancel.
 void drop_round_off(StencilRow& row) {
   constexpr double nothing = 1e-15;
-  const double small = nothing * largest_of(row);
+  double most = 0.0;
+  for (const StencilEntry& entry : row) most = std::max(most, largest_of(entry));
   for (StencilEntry& entry : row) {
     for (double* value : {&entry.xx, &entry.xy, &entry.yx, &entry.yy}) {
-      if (std::abs(*value) <= small) *value = 0.0;
+      if (std::abs(*value) <= nothing * most) *value = 0.0;
     }
   }
   std::erase_if(row, [](const StencilEntry& entry) { return largest_of(entry) == 0.0; });
 }
 
 // Empty where the node has no mass.
-StencilRow make_row(const Assembly& from, int record) {
+StencilRow make_row(const State& state, const BinKinds& bins, const std::vector<Incidence>& around, int record) {
   StencilRow row;
   double m = 0.0;
-  from.visit(record, [&](const Bin& bin, int node, int kind) {
-    const BinKind& local = from.bins.kinds[static_cast<std::size_t>(kind)];
-    const Master& own = master_at(from.state, bin, node);
+  for (const auto& [bin, node] : around) {
+    const BinKind& local = bins.kinds[static_cast<std::size_t>(bins.of_bin[static_cast<std::size_t>(bin)])];
+    const Master& own = master_at(state, bin, node);
     m += local.m[static_cast<std::size_t>(node)];
     for (int n = 0; n < 9; ++n) {
       const auto block = local.K.block<2, 2>(2 * node, 2 * n);
       if (block.isZero(0.0)) continue;
-      const Master& other = master_at(from.state, bin, n);
+      const Master& other = master_at(state, bin, n);
       StencilEntry& entry = entry_at(row, other.record - record);
       entry.xx -= own.x * other.x * block(0, 0), entry.xy -= own.x * other.y * block(0, 1);
       entry.yx -= own.y * other.x * block(1, 0), entry.yy -= own.y * other.y * block(1, 1);
     }
-  });
+  }
   if (!(m > 0.0)) return {};
   for (StencilEntry& entry : row) entry.xx /= m, entry.xy /= m, entry.yx /= m, entry.yy /= m;
   drop_round_off(row);
@@ -221,7 +201,6 @@ StencilRow make_row(const Assembly& from, int record) {
 StencilRows make_stencil_rows(const Scene& scene, const Rocks& rocks, const State& state) {
   const BinKinds bins = find_bin_kinds(scene, rocks, state);
   const auto incidences = find_incidences(state);
-  const Assembly from{state, bins, incidences};
   StencilRows out;
   out.of_record.assign(state.masters.size(), -1);
   Kinds<std::int32_t> numbers;
@@ -229,9 +208,9 @@ StencilRows make_stencil_rows(const Scene& scene, const Rocks& rocks, const Stat
   for (std::size_t r = 0; r < incidences.size(); ++r) {
     if (incidences[r].empty()) continue;
     const auto record = static_cast<int>(r);
-    describe_row(from, record, tokens);
+    describe_row(state, bins, incidences[r], record, tokens);
     const auto [number, is_new] = numbers.try_emplace(tokens, static_cast<int>(numbers.size()));
-    if (is_new) out.rows.push_back(make_row(from, record));
+    if (is_new) out.rows.push_back(make_row(state, bins, incidences[r], record));
     if (!out.rows[static_cast<std::size_t>(number->second)].empty()) out.of_record[r] = number->second;
   }
   return out;
