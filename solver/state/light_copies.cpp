@@ -106,7 +106,11 @@ void join_corners(const Scene& scene, State& state) {
       cut.joined.push_back({keys[k], keys[into]});
       now[static_cast<std::size_t>(cut.records[k])] = cut.records[into];
     }
+    const auto serves = [&](SideWord key) {  // another corner as well
+      return std::ranges::any_of(cut.joined, [&](const auto& pair) { return pair[1] == key; });
+    };
     for (const auto& [small, into] : cut.joined) {
+      if (serves(small)) continue;
       const auto at = std::ranges::find(cut.keys, small) - cut.keys.begin();
       cut.keys.erase(cut.keys.begin() + at), cut.records.erase(cut.records.begin() + at);
     }

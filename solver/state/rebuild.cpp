@@ -393,12 +393,12 @@ void rebuild_copies(const Scene& scene, State& state) {
   std::vector<SortKey> keys = sort_keys(state, reach);
   if (!std::ranges::is_sorted(keys)) std::ranges::sort(keys);
   make_bins(state, reach, keys);
-  join_corners(scene, state);
   std::vector<std::size_t> order(keys.size());
-  std::transform(keys.begin(), keys.end(), order.begin(), [](const SortKey& key) { return key.from; });
-  if (scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics) number_along_rows(state.copies, state.bins);
-  if (scene.numerics.in_lanes()) make_blocks(state.particles.rock, state.bins, order);
+  std::ranges::transform(keys, order.begin(), &SortKey::from);
   sort_particles(state.particles, order);
+  join_corners(scene, state);
+  if (scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics) number_along_rows(state.copies, state.bins);
+  if (scene.numerics.in_lanes()) sort_particles(state.particles, make_blocks(state.particles.rock, state.bins));
   list_bins(reach, state);
   make_masters(scene, state);
   make_surface_stencils(state);
