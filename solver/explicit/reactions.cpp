@@ -73,11 +73,34 @@ auto& point_of(AnyState& state, const SplitPlace& place) {
                            : state.surfaces[static_cast<std::size_t>(place.surface)].points[place.point];
 }
 
+// What a traction at each place does to the jump rates of those that share nodes with it.
+void find_neighbours(SplitPlaces& split) {
+  std::vector<std::vector<std::pair<std::size_t, Vec2>>> of_node(split.nodes.size());  // places, and their c
+  for (std::size_t k = 0; k < split.places.size(); ++k) {
+    for (const SplitPlace::Entry& e : split.places[k].entries) of_node[e.node].emplace_back(k, e.c);
+  }
+  std::vector<std::size_t> at(split.places.size(), none);
+  for (SplitPlace& place : split.places) {
+    for (const SplitPlace::Entry& e : place.entries) {
+      for (const auto& [other, c] : of_node[e.node]) {
+        if (at[other] == none) at[other] = place.neighbours.size(), place.neighbours.push_back({other});
+        place.neighbours[at[other]].per += c.cwiseProduct(e.d);
+      }
+    }
+    for (const SplitPlace::Neighbour& neighbour : place.neighbours) at[neighbour.place] = none;
+  }
+}
+
 // Rate of a place's jump (m/s).
-Vec2 jump_rate(const SplitPlace& place, const State& state) {
+Vec2 rate_by_nodes(const SplitPlace& place, const State& state) {
   Vec2 rate = Vec2::Zero();
   for (const SplitPlace::Entry& e : place.entries) rate += e.c.cwiseProduct(state.split.nodes[e.node].v);
   return rate;
+}
+
+// The same within a step's sweeps: what stays for many steps knows what each place does to its neighbours.
+Vec2 jump_rate(const SplitPlace& place, const State& state) {
+  return place.neighbours.empty() ? rate_by_nodes(place, state) : place.rate;
 }
 
 // What a traction (Pa, on the + face) at a place gives its nodes in a step.
@@ -90,7 +113,9 @@ void push(const SplitPlace& place, const Vec2& traction, State& state) {
 
 // Adds `change` (Pa, on the + face) to the reaction of a place.
 void add_reaction(const SplitPlace& place, const Vec2& change, State& state) {
-  push(place, change, state);
+  for (const SplitPlace::Neighbour& other : place.neighbours)
+    state.split.places[other.place].rate += other.per.cwiseProduct(change);
+  if (place.neighbours.empty()) push(place, change, state);
   point_of(state, place).reaction += change;
 }
 
@@ -113,36 +138,30 @@ std::vector<Held> find_held(const State& state) {
     if (soft && law.shear_stiffness_Pa_m > 0.0) held.push_back({p, tangent, 1.0 / law.shear_stiffness_Pa_m, 0.0});
     constexpr double sticks = 1.0 - 1e-9;  // of the bound, at which sliding places stand but for round-off
     if (!soft && closed && std::abs(r_t) < sticks * (r_n * sliding_coefficient(law)))
-      held.push_back({p, tangent, 1.0 / k, s.w.dot(tangent) + place.r_t_start / k});
+      held.push_back({p, tangent, 1.0 / k, s.w.dot(tangent) + place.r_start.dot(tangent) / k});
   }
   return held;
 }
 
-// Of B M^-1 B^T + A/k, with a row A dt (along . c) of B for each component.
 std::shared_ptr<const HeldFactor> make_factor(const std::vector<Held>& held, const State& state) {
-  const SplitPlaces& split = state.split;
+  const std::vector<SplitPlace>& places = state.split.places;
   auto factor = std::make_shared<HeldFactor>();
   factor->of = held;
-  const auto rows = static_cast<Eigen::Index>(held.size()), columns = static_cast<Eigen::Index>(2 * split.nodes.size());
-  Eigen::SparseMatrix<double, Eigen::RowMajor> B(rows, columns), matrix(rows, rows);
-  Eigen::VectorXd compliance(rows), per_m(columns);
-  for (std::size_t n = 0; n < split.nodes.size(); ++n)
-    per_m.segment<2>(static_cast<Eigen::Index>(2 * n)).setConstant(1.0 / split.nodes[n].m);
+  std::vector<std::vector<int>> of_place(places.size());
+  for (std::size_t a = 0; a < held.size(); ++a) of_place[held[a].place].push_back(static_cast<int>(a));
   std::vector<Eigen::Triplet<double>> entries;
-  for (int row = 0; row < rows; ++row) {
-    const Held& h = held[static_cast<std::size_t>(row)];
-    const SplitPlace& place = split.places[h.place];
-    const double A = point_of(state, place).A;
-    compliance(row) = A * h.compliance;
-    for (const SplitPlace::Entry& e : place.entries) {
-      const auto column = static_cast<int>(2 * e.node);
-      const Vec2 weight = A * state.dt * h.along.cwiseProduct(e.c);
-      for (const int i : {0, 1}) entries.emplace_back(row, column + i, weight[i]);
+  for (std::size_t b = 0; b < held.size(); ++b) {
+    const auto column = static_cast<int>(b);
+    for (const SplitPlace::Neighbour& other : places[held[b].place].neighbours) {
+      const Vec2 moved = state.dt * point_of(state, places[other.place]).A * other.per.cwiseProduct(held[b].along);
+      for (const int a : of_place[other.place])
+        entries.emplace_back(a, column, held[static_cast<std::size_t>(a)].along.dot(moved));
     }
+    entries.emplace_back(column, column, point_of(state, places[held[b].place]).A * held[b].compliance);
   }
-  B.setFromTriplets(entries.begin(), entries.end());
-  matrix = B * per_m.asDiagonal() * B.transpose();
-  matrix.diagonal() += compliance;
+  const auto n = static_cast<Eigen::Index>(held.size());
+  Eigen::SparseMatrix<double> matrix(n, n);
+  matrix.setFromTriplets(entries.begin(), entries.end());
   factor->solve.compute(matrix);
   return factor;
 }
@@ -214,7 +233,7 @@ double relax(const SplitPlace& place, State& state) {
   const Reaction now{s.reaction.dot(s.n), s.reaction.dot(tangent)};
   const Reaction r = react(law, place.k,
                            {w.dot(s.n) - place.per_n * now.n, w.dot(tangent) - place.per_t * now.t, s.w.dot(tangent),
-                            place.r_t_start, place.per_n, place.per_t, s.closing_stress() - s.P});
+                            place.r_start.dot(tangent), place.per_n, place.per_t, s.closing_stress() - s.P});
   const Reaction next =
       admissible(law, {now.n + over_relaxation * (r.n - now.n), now.t + over_relaxation * (r.t - now.t)});
   if (next.n == now.n && next.t == now.t) return 0.0;
@@ -268,14 +287,21 @@ void add_jump(const InterfaceLaw& law, const Vec2& dw, SurfacePoint& s, State& s
 // Reactions and jumps of the step from the velocities without what places exert, which net tractions join under
 // kinematics = "total".
 void find_motion(bool total, State& state) {
-  for (SplitPlace& place : state.split.places) {
+  std::vector<SplitPlace>& places = state.split.places;
+  for (SplitPlace& place : places) {
     const SurfacePoint& s = point_of(std::as_const(state), place);
-    place.r_t_start = s.reaction.dot(tangent_of(s.n));
+    place.r_start = s.reaction;
     push(place, total ? Vec2{s.P * s.n - s.in_situ + s.reaction} : s.reaction, state);
   }
+  for (SplitPlace& place : places) place.rate = rate_by_nodes(place, state);
   find_reactions(total, state);
-  for (const SplitPlace& place : state.split.places)
-    add_jump(state.split.laws[place.law], state.dt * jump_rate(place, state), point_of(state, place), state);
+  for (const SplitPlace& place : places) {
+    if (total) push(place, point_of(state, place).reaction - place.r_start, state);
+  }
+  for (const SplitPlace& place : places) {
+    const Vec2 dw = state.dt * rate_by_nodes(place, state);
+    add_jump(state.split.laws[place.law], dw, point_of(state, place), state);
+  }
 }
 
 }  // namespace
@@ -293,7 +319,7 @@ void find_split_places(const Scene& scene, const Rocks& rocks, State& state) {
     if (found == out.places.size()) out.places.emplace_back();
     SplitPlace& place = out.places[found];
     place.surface = surface, place.point = point, place.law = law, place.k = k;
-    place.entries.clear();
+    place.entries.clear(), place.neighbours.clear();
     for (std::size_t n = 0; n < 9; ++n) {
       if (at.plus[n] == at.minus[n]) continue;
       weigh(at.plus[n], at.N[n], mass, place, state), weigh(at.minus[n], -at.N[n], mass, place, state);
@@ -318,6 +344,7 @@ void find_split_places(const Scene& scene, const Rocks& rocks, State& state) {
     }
   }
   out.places.resize(found);
+  if (state.total.op) find_neighbours(out);
 }
 
 void solve_reactions(const Scene& scene, const Rocks& rocks, State& state) {

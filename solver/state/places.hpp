@@ -68,13 +68,19 @@ struct SplitPlace {
     Vec2 c = Vec2::Zero();  // weights in the jump
     Vec2 d = Vec2::Zero();  // velocity that a traction of 1 Pa on the + face adds in a step (m/s/Pa)
   };
+  struct Neighbour {
+    std::size_t place = 0;
+    Vec2 per = Vec2::Zero();  // rate of its jump that a traction of 1 Pa here adds in a step (m/s/Pa)
+  };
   int surface = -1;                 // -1: a tip's spring
   std::size_t point = 0;            // of the surface, or which spring
   std::size_t law = 0;              // index into SplitPlaces::laws
   double k = 0.0;                   // contact stiffness (Pa/m)
   double per_n = 0.0, per_t = 0.0;  // change of the jump at the step's end per traction (m/Pa)
-  double r_t_start = 0.0;           // tangential reaction at the step's start (Pa)
+  Vec2 r_start = Vec2::Zero();      // reaction at the step's start (Pa)
+  Vec2 rate = Vec2::Zero();         // of its jump (m/s), where neighbours are known
   std::vector<Entry> entries;
+  std::vector<Neighbour> neighbours;  // under kinematics = "total": that share nodes with it, itself among them
 };
 
 // A master that split places reach: its mass (kg/m), its velocity and what the places have added to it (m/s).
