@@ -9,9 +9,8 @@
 namespace strata {
 
 /// The nodal field, by records, whose interpolation is that of the values (x, y) of the particles of some bins:
-/// `passes` of v_i += (1/m_i) sum_p N_ip m_p (v_p - sum_j N_jp v_j) from nothing. The first pass smooths a wave of
-/// number k by (kh)^2/8 along each axis; each further one leaves the square, the cube ... of that. Throws nothing but
-/// std::bad_alloc.
+/// `passes` of v_i += (1/m_i) sum_p N_ip m_p (v_p - sum_j N_jp v_j) from nothing; of a wave of number k the n-th leaves
+/// ((kh)^2/8)^n along each axis. Throws nothing but std::bad_alloc.
 std::vector<Vec2> nodes_from_particles(const Scene& scene, const State& state, const std::vector<Bin>& bins,
                                        const SpreadArray& x, const SpreadArray& y, int passes);
 
@@ -37,9 +36,8 @@ struct RecordVelocities {
   std::vector<Vec2> v;  // m/s
 };
 
-/// Gives the records of new copies their velocities: those of the same node and key before; where a copy has split, of
-/// the copy it was part of; where several have come together, their mean by the mass of the particles that each brings.
-/// Momentum is thereby kept to round-off.
+/// Gives the records of new copies their velocities: those of the same node before; where it was cut, the mean of its
+/// copies' by the mass of the particles that each brings. Momentum is thereby kept to round-off.
 void carry_velocities(const Scene& scene, const RecordVelocities& before, State& state);
 
 /// Ledger and nodal kinetic energy after an event: what the nodes lost (or gained) by it counts as lost in transfer.
@@ -53,9 +51,8 @@ std::vector<BondSensor> make_bond_sensors(const Scene& scene, const Rocks& rocks
 void forces_of_nodes(const State& state, std::vector<Vec2>& forces);
 
 /// Gives the fracture's new points and vertices (those whose jump is still exactly nothing) the jump that the
-/// displacements have there, w = D u: within a cell a tip grows into nodes that are split, whose sides have moved apart
-/// before. Without it faces would meet, and J would be too small, by what had opened. Copies must be built, and all
-/// particles up to date. Changes state.sums. Throws nothing but std::bad_alloc.
+/// displacements have there, w = D u: within a cell a tip grows into nodes whose sides have moved apart before. Copies
+/// must be built, and all particles up to date. Changes state.sums. Throws nothing but std::bad_alloc.
 void open_new_points(const Scene& scene, const Rocks& rocks, State& state);
 
 }  // namespace strata
