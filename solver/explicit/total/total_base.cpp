@@ -51,20 +51,6 @@ void fill_nodes(State& state) {
   t.a_x = t.base_x, t.a_y = t.base_y;
 }
 
-void move_surfaces(const NodalMotion& by, State& state) {
-  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
-    const auto move = [&](SurfacePoint& s, const SurfaceStencil& stencil, bool follows_jump) {
-      s.u += mean_velocity(stencil, by);
-      if (follows_jump) s.w += jump(stencil, by);
-    };
-    Surface& surface = state.surfaces[k];
-    for (std::size_t q = 0; q < surface.points.size(); ++q)
-      move(surface.points[q], state.point_stencils[k][q], !surface.points[q].split);
-    for (std::size_t q = 0; q < surface.vertices.size(); ++q)
-      move(surface.vertices[q], state.vertex_stencils[k][q], true);
-  }
-}
-
 }  // namespace
 
 std::vector<Vec2> nodes_from_particles(const Scene& scene, const State& state, const std::vector<Bin>& bins,
@@ -132,7 +118,16 @@ void bring_up_to_date(const Scene& scene, State& state) {
     p.v_x[q] = v.x(), p.v_y[q] = v.y();
     p.g_xx[q] += u_1.x(), p.g_xy[q] += u_2.x(), p.g_yx[q] += u_1.y(), p.g_yy[q] += u_2.y();
   });
-  move_surfaces(since, state);
+  const auto move = [&](std::vector<SurfacePoint>& places, const std::vector<SurfaceStencil>& stencils) {
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      places[k].u += mean_velocity(stencils[k], since);
+      if (!places[k].split) places[k].w += jump(stencils[k], since);  // vertices and what is whole
+    }
+  };
+  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
+    move(state.surfaces[k].points, state.point_stencils[k]);
+    move(state.surfaces[k].vertices, state.vertex_stencils[k]);
+  }
   t.based = false;
 }
 

@@ -16,14 +16,8 @@ namespace strata {
 namespace {
 
 constexpr int lanes = most_lanes;
+constexpr AllLanes all;
 constexpr int shortest_run = 8;  // records: below, a run needs more beside its sums than sharing them saves
-
-Lane load(const double* from) {
-  return AllLanes{}.load(from);
-}
-void store(double* to, const Lane& value) {
-  AllLanes{}.store(to, value);
-}
 
 // --- rows
 
@@ -41,18 +35,18 @@ struct StencilRows {
 // what a kernel's results may differ by.
 constexpr double same_place = 1.0 / (1LL << 36);
 
+using Tokens = std::vector<std::int64_t>;
+
 struct TokenHash {
-  template <class Tokens>
   std::size_t operator()(const Tokens& tokens) const {
     std::uint64_t hash = 0xcbf29ce484222325U;  // FNV-1a by words
-    for (const auto token : tokens) hash = (hash ^ static_cast<std::uint64_t>(token)) * 0x100000001b3U;
+    for (const std::int64_t token : tokens) hash = (hash ^ static_cast<std::uint64_t>(token)) * 0x100000001b3U;
     return static_cast<std::size_t>(hash ^ (hash >> 29));
   }
 };
 
 // Numbers of things by what they are made of.
-template <class Token>
-using Kinds = std::unordered_map<std::vector<Token>, int, TokenHash>;
+using Kinds = std::unordered_map<Tokens, int, TokenHash>;
 
 // What the particles of a bin do to the nine nodes around it.
 struct BinKind {
@@ -64,7 +58,7 @@ std::int64_t in_steps(double cells) {
   return std::llround(cells / same_place);
 }
 
-void describe_bin(const State& state, const Bin& bin, std::vector<std::int64_t>& tokens) {
+void describe_bin(const State& state, const Bin& bin, Tokens& tokens) {
   const Grid& g = state.grid;
   const Particles& p = state.particles;
   tokens.clear();
@@ -98,8 +92,8 @@ struct BinKinds {
 
 BinKinds find_bin_kinds(const Scene& scene, const Rocks& rocks, const State& state) {
   BinKinds out;
-  Kinds<std::int64_t> numbers;
-  std::vector<std::int64_t> tokens;
+  Kinds numbers;
+  Tokens tokens;
   for (const Bin& bin : state.bins) {
     describe_bin(state, bin, tokens);
     const auto [number, is_new] = numbers.try_emplace(tokens, static_cast<int>(numbers.size()));
@@ -122,7 +116,6 @@ std::vector<std::vector<Incidence>> find_incidences(const State& state) {
     for (std::size_t n = 0; n < 9; ++n) {
       const auto record = static_cast<std::size_t>(state.bins[b].record[n]);
       auto& at = of_master[static_cast<std::size_t>(state.masters[record].record)];
-      if (at.empty()) at.reserve(9);
       at.push_back({static_cast<int>(b), static_cast<int>(n)});
     }
   }
@@ -136,7 +129,7 @@ const Master& master_at(const State& state, int bin, int node) {
 
 // What the row of a master is made of.
 void describe_row(const State& state, const BinKinds& bins, const std::vector<Incidence>& around, int record,
-                  std::vector<std::int32_t>& tokens) {
+                  Tokens& tokens) {
   const auto code_of = [](const Master& m) { return 3 * static_cast<int>(m.x) + static_cast<int>(m.y) + 4; };
   tokens.clear();
   for (const auto& [bin, node] : around) {
@@ -203,8 +196,8 @@ StencilRows make_stencil_rows(const Scene& scene, const Rocks& rocks, const Stat
   const auto incidences = find_incidences(state);
   StencilRows out;
   out.of_record.assign(state.masters.size(), -1);
-  Kinds<std::int32_t> numbers;
-  std::vector<std::int32_t> tokens;
+  Kinds numbers;
+  Tokens tokens;
   for (std::size_t r = 0; r < incidences.size(); ++r) {
     if (incidences[r].empty()) continue;
     const auto record = static_cast<int>(r);
@@ -250,12 +243,13 @@ template <int count>
 void apply_block(const StencilEntry* entries, const StencilRun& run, std::size_t at, TotalMotion& t) {
   constexpr std::ptrdiff_t W = lanes;
   Lane x[count], y[count];
-  for (std::ptrdiff_t k = 0; k < count; ++k) x[k] = load(&t.base_x[at] + W * k), y[k] = load(&t.base_y[at] + W * k);
+  for (std::ptrdiff_t k = 0; k < count; ++k)
+    x[k] = all.load(&t.base_x[at] + W * k), y[k] = all.load(&t.base_y[at] + W * k);
   const double *u_x = t.u_x.data() + at, *u_y = t.u_y.data() + at;
   const StencilEntry *e = entries, *const full = entries + run.full, *const end = full + run.diagonal;
   for (; e != full; ++e) {
     for (std::ptrdiff_t k = 0; k < count; ++k) {
-      const Lane a = load(u_x + e->offset + W * k), b = load(u_y + e->offset + W * k);
+      const Lane a = all.load(u_x + e->offset + W * k), b = all.load(u_y + e->offset + W * k);
       x[k] += e->xx * a;
       y[k] += e->yx * a;
       x[k] += e->xy * b;
@@ -264,11 +258,11 @@ void apply_block(const StencilEntry* entries, const StencilRun& run, std::size_t
   }
   for (; e != end; ++e) {
     for (std::ptrdiff_t k = 0; k < count; ++k) {
-      x[k] += e->xx * load(u_x + e->offset + W * k);
-      y[k] += e->yy * load(u_y + e->offset + W * k);
+      x[k] += e->xx * all.load(u_x + e->offset + W * k);
+      y[k] += e->yy * all.load(u_y + e->offset + W * k);
     }
   }
-  for (std::ptrdiff_t k = 0; k < count; ++k) store(&t.a_x[at] + W * k, x[k]), store(&t.a_y[at] + W * k, y[k]);
+  for (std::ptrdiff_t k = 0; k < count; ++k) all.store(&t.a_x[at] + W * k, x[k]), all.store(&t.a_y[at] + W * k, y[k]);
 }
 
 void apply_run(const StencilOperator& op, const StencilRun& run, TotalMotion& t) {
@@ -296,11 +290,11 @@ void apply_single(const StencilOperator& op, const SingleRecord& single, TotalMo
   Lane x{}, y{};
   for (int s = single.first; s < single.last; ++s) {
     const StencilSegment& segment = op.segments[static_cast<std::size_t>(s)];
-    const Lane a = load(u_x + segment.offset), b = load(u_y + segment.offset);
-    x += load(segment.xx.data()) * a;
-    y += load(segment.yx.data()) * a;
-    x += load(segment.xy.data()) * b;
-    y += load(segment.yy.data()) * b;
+    const Lane a = all.load(u_x + segment.offset), b = all.load(u_y + segment.offset);
+    x += all.load(segment.xx.data()) * a;
+    y += all.load(segment.yx.data()) * a;
+    x += all.load(segment.xy.data()) * b;
+    y += all.load(segment.yy.data()) * b;
   }
   t.a_x[r] = t.base_x[r] + sum_of_lanes(x);
   t.a_y[r] = t.base_y[r] + sum_of_lanes(y);
