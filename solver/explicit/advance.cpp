@@ -37,7 +37,7 @@ void note_energies(const Scene& scene, double largest_speed2, State& state) {
 }
 
 // The motion of particles over the grid, kinematics = "updated".
-Moved move_particles(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+Moved move_particles(const Scene& scene, const Rocks& rocks, State& state) {
   Ledger& ledger = state.ledger;
   if (!state.gathered) particles_to_grid(scene, rocks, state);                  // m_i, mom_i, f_i
   add_body_force(scene, state);                                                 // f_i += sum N m b
@@ -49,7 +49,7 @@ Moved move_particles(const Scene& scene, const std::vector<Elasticity>& rocks, S
   solve_reactions(scene, rocks, state);  // contact, friction, springs at the step's end; w += dt D v
   watch_made(grid.mapped, grid.swing - 0.5 * (ledger.friction - friction), state);
   const GridEnergyAfter after = grid_energy(state);
-  take_damping(scene.numerics.damping_1_s, grid, state);  // as v_i at the step's start and end have it
+  take_damping(1.0 - scene.numerics.damping_1_s * state.dt, grid.mapped, after.product, ledger);
   spread_to_tied(state);
   ledger.body_work += body_work(state);
   const Uptake uptake = prepare_transfer(scene, state);  // FLIP, PIC or XPIC
@@ -75,21 +75,21 @@ double work_of_loads(const Ledger& ledger) {
 
 // The motion of nodes that keep their particles, kinematics = "total". Between events all that a step needs is fixed,
 // and particles stand still at the last base. look: leave what J needs in state.motion.
-Moved move_base(const Scene& scene, const std::vector<Elasticity>& rocks, bool look, State& state) {
+Moved move_base(const Scene& scene, const Rocks& rocks, bool look, State& state) {
   Ledger& ledger = state.ledger;
   const double keep = 1.0 - scene.numerics.damping_1_s * state.dt, loads = work_of_loads(ledger);
   push_body(scene, state);                           // a_i += sum N_ip m_p b_p / m_i
   double external = push_split_places(keep, state);  // a_i += tractions, contact, friction, springs; w += dt D v
   const NodeTotals moved = move_nodes(keep, state);  // v_i, u_i
-  external += note_body_work(state);
+  if (look || !state.body.empty()) note_motion(state);
+  const double body = body_work(state);
+  ledger.body_work += body;
+  external += body / state.dt;
   state.time += state.dt;
   ++state.step;
-  if (look) note_motion(state);
   const bool fail = bonds_fail(scene, rocks, state);
-  const double elastic = find_accelerations(scene, rocks, state);               // a_i = -(M^-1 K u)_i + ...
-  const double damped = (1.0 - keep) * (ledger.kinetic + 0.5 * moved.product);  // as take_damping() has it
-  ledger.damping += damped;
-  ledger.integration += (1.0 - keep * keep) * ledger.kinetic - damped;
+  const double elastic = find_accelerations(scene, rocks, state);  // a_i = -(M^-1 K u)_i + ...
+  take_damping(keep, ledger.kinetic, moved.product, ledger);
   ledger.kinetic = moved.kinetic;
   // What the rock stores and what its force of the step's start does differ by v K v dt^2/2, which follows from the
   // change of that force.
@@ -102,7 +102,7 @@ Moved move_base(const Scene& scene, const std::vector<Elasticity>& rocks, bool l
 }
 
 // Copies after an event. Under kinematics = "total" nodes go on with the velocities they had.
-void follow_event(const Scene& scene, const std::vector<Elasticity>& rocks, bool grown, State& state) {
+void follow_event(const Scene& scene, const Rocks& rocks, bool grown, State& state) {
   const bool total = scene.numerics.kinematics == Numerics::Kinematics::total;
   const RecordVelocities before = total ? RecordVelocities{state.copies, state.total.velocity} : RecordVelocities{};
   rebuild(scene, rocks, state);
@@ -122,8 +122,7 @@ bool any_runs(const State& state) {
 
 }  // namespace
 
-void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, const WeighGrowth& weigh,
-             bool look) {
+void advance(const Scene& scene, const Rocks& rocks, State& state, const WeighGrowth& weigh, bool look) {
   const bool total = scene.numerics.kinematics == Numerics::Kinematics::total;
   const bool grows = state.has_fracture && scene.fracture->growth != Fracture::Growth::none;
   const bool grow_now = grows && ((state.step + 1) % scene.numerics.tip_steps == 0 || any_runs(state));
@@ -153,7 +152,7 @@ void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& st
   require_finite(state);
 }
 
-bool bonds_fail(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+bool bonds_fail(const Scene& scene, const Rocks& rocks, State& state) {
   // At a Courant number of 0.5 a front of failure, which goes by a column a look, is then as fast as a P wave.
   constexpr std::int64_t steps_between_looks = 2;
   Bonds& bonds = state.bonds;

@@ -19,16 +19,15 @@ using WeighGrowth = std::function<void(State&)>;
 constexpr std::int64_t steps_between_rebuilds = 250, steps_between_bases = 500;
 
 /// Advances the state by one explicit step of state.dt. Update stress last: forces come from the stress at the start of
-/// the step, and stress, positions and jumps then take up the same new velocities, which makes the step symplectic in
-/// the linear elastic part and the pressure's work exactly p dV. Tips are measured and may grow at multiples of
-/// numerics.tip_steps, and in every step while they run (runs()); look: they are measured at the end of this step in
-/// any case, so that its K and J are known. Under kinematics = "total" particles stand still until
-/// bring_up_to_date(). weigh: see WeighGrowth. Throws NumericalFailure; `state` is then that of the failure.
-void advance(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, const WeighGrowth& weigh,
-             bool look = true);
+/// the step, and stress, positions and jumps take up the same new velocities, which makes the step symplectic in the
+/// linear elastic part and the pressure's work exactly p dV. Tips are measured and may grow at multiples of
+/// numerics.tip_steps, and in every step while they run (runs()); look: they are measured in any case. Under kinematics
+/// = "total" particles stand still until bring_up_to_date(). Throws NumericalFailure; `state` is then that of the
+/// failure.
+void advance(const Scene& scene, const Rocks& rocks, State& state, const WeighGrowth& weigh, bool look = true);
 
 /// Whether any bonded place of a run with inertia fails now, by judge_bonds(), which is left in state.bonds; looked at
 /// every other step. Throws NumericalFailure where what it carries is not finite.
-bool bonds_fail(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
+bool bonds_fail(const Scene& scene, const Rocks& rocks, State& state);
 
 }  // namespace strata

@@ -12,17 +12,10 @@ namespace strata {
 
 namespace {
 
-// The sum over all of n records, part by part.
-template <class Sum, class Work>
-Sum over_records(std::size_t n, Work work) {
-  return sum_by_lanes<Sum>(
-      record_parts, n, [&](std::size_t part) { return part_of(n, part); }, work);
-}
-
-struct LaneEnergies {
-  Lane first{}, second{};
-  LaneEnergies& operator+=(const LaneEnergies& other) {
-    first += other.first, second += other.second;
+struct LaneSums {
+  Lane first{}, second{}, third{};
+  LaneSums& operator+=(const LaneSums& other) {
+    first += other.first, second += other.second, third += other.third;
     return *this;
   }
 };
@@ -33,42 +26,33 @@ GridEnergy advance_momentum(double damping, State& state) {
   const double keep = 1.0 - damping * state.dt, dt = state.dt;
   const NodalSums& sums = state.sums;
   NodalMotion& motion = state.motion;
-  const auto energy = over_records<LaneEnergies>(sums.size(), [&](auto lanes, std::size_t r, LaneEnergies& sum) {
-    const Lane zero{}, m = lanes.load(sums.m.data() + r), per_m = m > 0.0 ? 1.0 / m : zero;
-    const Lane v_x = per_m * lanes.load(sums.mom_x.data() + r), v_y = per_m * lanes.load(sums.mom_y.data() + r);
-    const Lane dv_x = dt * per_m * lanes.load(sums.f_x.data() + r), dv_y = dt * per_m * lanes.load(sums.f_y.data() + r);
+  const auto energy = sum_over_records<LaneSums>(sums.size(), [&](auto lanes, std::size_t r, LaneSums& sum) {
+    const Lane zero{}, m = lanes.load(&sums.m[r]), per_m = m > 0.0 ? 1.0 / m : zero;
+    const Lane v_x = per_m * lanes.load(&sums.mom_x[r]), v_y = per_m * lanes.load(&sums.mom_y[r]);
+    const Lane dv_x = dt * per_m * lanes.load(&sums.f_x[r]), dv_y = dt * per_m * lanes.load(&sums.f_y[r]);
     sum.first += m * (v_x * v_x + v_y * v_y), sum.second += m * (v_x * dv_x + v_y * dv_y);
-    lanes.store(motion.dv_x.data() + r, dv_x), lanes.store(motion.dv_y.data() + r, dv_y);
-    lanes.store(motion.v_x.data() + r, keep * v_x + dv_x), lanes.store(motion.v_y.data() + r, keep * v_y + dv_y);
+    lanes.store(&motion.dv_x[r], dv_x), lanes.store(&motion.dv_y[r], dv_y);
+    lanes.store(&motion.v_x[r], keep * v_x + dv_x), lanes.store(&motion.v_y[r], keep * v_y + dv_y);
   });
-  const double mapped = 0.5 * sum_of_lanes(energy.first);
-  return {mapped, keep * keep * mapped, 0.5 * sum_of_lanes(energy.second)};
-}
-
-void take_damping(double damping, const GridEnergy& grid, State& state) {
-  if (damping == 0.0) return;
-  const NodalSums& sums = state.sums;
-  const NodalMotion& motion = state.motion;
-  const auto both = over_records<LaneEnergies>(sums.size(), [&](auto lanes, std::size_t r, LaneEnergies& sum) {
-    sum.first += lanes.load(sums.mom_x.data() + r) * lanes.load(motion.v_x.data() + r);
-    sum.second += lanes.load(sums.mom_y.data() + r) * lanes.load(motion.v_y.data() + r);
-  });
-  const double product = sum_of_lanes(both.first) + sum_of_lanes(both.second);
-  const double taken = damping * state.dt * (grid.mapped + 0.5 * product);
-  state.ledger.damping += taken;
-  state.ledger.integration += (grid.mapped - grid.damped) - taken;
+  return {0.5 * sum_of_lanes(energy.first), 0.5 * sum_of_lanes(energy.second)};
 }
 
 GridEnergyAfter grid_energy(const State& state) {
   const NodalSums& sums = state.sums;
   const NodalMotion& motion = state.motion;
-  const auto energy = over_records<LaneEnergies>(sums.size(), [&](auto lanes, std::size_t r, LaneEnergies& sum) {
-    const Lane m = lanes.load(sums.m.data() + r);
-    const Lane v_x = lanes.load(motion.v_x.data() + r), v_y = lanes.load(motion.v_y.data() + r);
-    const Lane dv_x = lanes.load(motion.dv_x.data() + r), dv_y = lanes.load(motion.dv_y.data() + r);
+  const auto energy = sum_over_records<LaneSums>(sums.size(), [&](auto lanes, std::size_t r, LaneSums& sum) {
+    const Lane m = lanes.load(&sums.m[r]), v_x = lanes.load(&motion.v_x[r]), v_y = lanes.load(&motion.v_y[r]);
+    const Lane dv_x = lanes.load(&motion.dv_x[r]), dv_y = lanes.load(&motion.dv_y[r]);
     sum.first += m * (v_x * v_x + v_y * v_y), sum.second += m * (dv_x * dv_x + dv_y * dv_y);
+    sum.third += lanes.load(&sums.mom_x[r]) * v_x + lanes.load(&sums.mom_y[r]) * v_y;
   });
-  return {0.5 * sum_of_lanes(energy.first), 0.5 * sum_of_lanes(energy.second)};
+  return {0.5 * sum_of_lanes(energy.first), 0.5 * sum_of_lanes(energy.second), sum_of_lanes(energy.third)};
+}
+
+void take_damping(double keep, double kinetic, double product, Ledger& ledger) {
+  const double taken = (1.0 - keep) * (kinetic + 0.5 * product);
+  ledger.damping += taken;
+  ledger.integration += (1.0 - keep * keep) * kinetic - taken;
 }
 
 void spread_to_tied(State& state) {
@@ -111,7 +95,7 @@ Uptake prepare_transfer(const Scene& scene, State& state) {
   return {0.0, &state.take_x, &state.take_y};
 }
 
-void require_stable(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
+void require_stable(const Scene& scene, const Rocks& rocks, const State& state) {
   constexpr double times_supplied = 10.0;  // 1/(1 - (omega dt/2)^2) at 0.95 of the largest stable step
   constexpr double rounding = 1e-10;       // of the speed of sound
   const Ledger& ledger = state.ledger;

@@ -9,35 +9,33 @@
 
 namespace strata {
 
-// Kinetic energy of the grid (J/m) at the start of a step, as mapped from the particles, and after damping.
+// Energies of the grid (J/m) at the start of a step: kinetic, as mapped from the particles, and sum m v . dv/2 of the
+// forces there (see watch_made()).
 struct GridEnergy {
-  double mapped = 0.0;
-  double damped = 0.0;
-  double swing = 0.0;  // sum m v . dv/2 of the forces at the step's start: see watch_made()
+  double mapped = 0.0, swing = 0.0;
 };
 
 /// Momentum balance at the masters: v_i = mom_i/m_i (1 - damping dt) + dt f_i/m_i, written to state.motion with the
-/// increment dt f_i/m_i beside it. Forces are those of the step's start, t, and places move with v_i at its end: v
-/// stands for the middle of the step, t + dt/2, and places are those of the central difference u(t + dt) - 2 u(t) + u(t
-/// - dt) = dt^2 f(t)/m, of second order in dt for any load that is taken at t. Ghosts must be folded before.
+/// increment dt f_i/m_i beside it. Forces are those of the step's start, t; v stands for t + dt/2, and places are those
+/// of the central difference u(t + dt) - 2 u(t) + u(t - dt) = dt^2 f(t)/m, of second order in dt for any load that is
+/// taken at t. Ghosts must be folded before.
 GridEnergy advance_momentum(double damping, State& state);
 
-/// Adds to the ledger what damping took in a step, its force damping m v at the step's start along the mean of the
-/// velocities there and at the end: damping dt sum m v_start . (v_start + v_end)/2 (J/m). A free oscillation of central
-/// differences, v_end = (1 - damping dt) v_start - omega^2 dt u, that starts at u = 0 and dies away gives all its
-/// energy to it, for any damping dt and omega dt that it is stable for; damping m v_start^2, for one, is off by damping
-/// dt/2. What this and the change by damping alone, of grid, differ by goes to the step itself (Ledger::integration).
-/// Reactions must be in state.motion, momenta still in state.sums. damping in 1/s. Throws nothing.
-void take_damping(double damping, const GridEnergy& grid, State& state);
-
-// Kinetic energy of the grid at the end of a step and that of the step's increments alone, sum m_i dv_i^2/2 (J/m).
+// Energies of the grid at the end of a step: kinetic, that of the step's increments alone, sum m dv^2/2, and the
+// product sum m v_start . v_end (J/m).
 struct GridEnergyAfter {
-  double kinetic = 0.0;
-  double increment = 0.0;
+  double kinetic = 0.0, increment = 0.0, product = 0.0;
 };
 
-/// Both over masters, once reactions have been added.
+/// These over masters, once reactions have been added to state.motion; momenta are those of the step's start.
 GridEnergyAfter grid_energy(const State& state);
+
+/// Adds to the ledger what damping took in a step, its force damping m v_start along the mean of the velocities at the
+/// step's start and end: with keep = 1 - damping dt, (1 - keep) sum m v_start . (v_start + v_end)/2 (J/m). A free
+/// oscillation of central differences that dies away gives all its energy to it, at any stable step. What this and the
+/// loss of kinetic energy by damping alone differ by goes to the step itself (Ledger::integration). kinetic: at the
+/// start; product: of grid_energy() (J/m). Throws nothing.
+void take_damping(double keep, double kinetic, double product, Ledger& ledger);
 
 /// Gives tied records the motion of their masters.
 void spread_to_tied(State& state);
@@ -53,16 +51,14 @@ Uptake prepare_transfer(const Scene& scene, State& state);
 /// Throws NumericalFailure where the motion has become unstable: where its kinetic energy is not finite, or more than
 /// 10 times all that loads have put in or drawn out and the block started with, and more than rounding makes, m (1e-10
 /// c_P)^2. A stable step keeps it below what was put in but for a factor 1/(1 - (omega dt/2)^2) of its fastest mode.
-void require_stable(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state);
+void require_stable(const Scene& scene, const Rocks& rocks, const State& state);
 
 /// Energy that the time step and the transfer have made, net (J/m), for the monitors. Velocities stand for the middle
-/// of a step and strain for its end, so that their energies' sum swings by a share omega dt/2 of itself though nothing
-/// is made; what steps of the central difference keep is v_(n-1/2) M v_(n+1/2)/2 + u_n K u_n/2 (e.g. Hairer, Lubich &
-/// Wanner 2003, Acta Numerica 12, 399), which is kinetic + swing + strain with swing = dt v_(n-1/2) . f_n/2 of the
-/// forces that are taken at t_n, friction's among them; springs' are not, as their implicit step keeps the sum itself
-/// from swinging. It is kept beyond the limit of the step as well, where kinetic + swing falls below zero without
-/// bound: velocities follow each other with opposite signs and growing. What it is below minus the largest energy
-/// exchanged so far counts as made. kinetic: at t_(n-1/2), J/m. Throws nothing.
+/// of a step and strain for its end, so that their energies' sum swings; what central differences keep is
+/// v_(n-1/2) M v_(n+1/2)/2 + u_n K u_n/2 (e.g. Hairer, Lubich & Wanner 2003, Acta Numerica 12, 399), which is kinetic +
+/// swing + strain with swing = dt v_(n-1/2) . f_n/2 of the forces taken at t_n, friction's among them; springs'
+/// implicit step does not swing. Beyond the stable step kinetic + swing falls below zero without bound: what it is
+/// below minus the largest energy exchanged so far counts as made. kinetic: at t_(n-1/2), J/m. Throws nothing.
 void watch_made(double kinetic, double swing, State& state);
 
 /// Expected momentum after one step of inertia: sum m v of its start, less what damping took, plus dt sum m b of the

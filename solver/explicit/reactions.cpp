@@ -39,115 +39,32 @@ using Kind = InterfaceLaw::Kind;
 // soft, to a tolerance of 1e-9, where 1.5 with today's tolerance takes 52. 1.5 was not tuned further.
 constexpr double over_relaxation = 1.5;
 
-// --- places
-
 constexpr std::size_t none = SIZE_MAX;
 
-// Gathers places over slots, where kinematics = "total" has its operator, or over records, in the memory of the last.
-struct PlaceFinder {
-  const State& state;
-  SplitPlaces& out;
-  const bool total = state.total.op != nullptr;
-  std::size_t found = 0;
-  std::vector<std::size_t> index = std::vector<std::size_t>(total ? state.total.m.size() : 0, none);  // of slots
-
-  double mass(const SplitPlace::Entry& e) const {
-    return total ? state.total.m[out.nodes[e.node]] : state.sums.m[e.node];
-  }
-
-  SplitPlace& begin(int surface, std::size_t point, std::size_t law, double k) {
-    if (found == out.places.size()) out.places.emplace_back();
-    SplitPlace& place = out.places[found];
-    place.surface = surface, place.point = point, place.law = law, place.k = k;
-    place.entries.clear(), place.neighbours.clear();
-    return place;
-  }
-
-  // Adds the weight N of a record in the jump.
-  void weigh(int record, double N, SplitPlace& place) {
-    const auto r = static_cast<std::size_t>(record);
-    const Master& master = state.masters[r];
-    auto node = static_cast<std::size_t>(master.record);
-    if (total) {
-      const auto slot = static_cast<std::size_t>(state.total.op->slots.of_record[r]);
-      if (index[slot] == none) index[slot] = out.nodes.size(), out.nodes.push_back(slot);
-      node = index[slot];
-    }
-    auto at = std::ranges::find(place.entries, node, &SplitPlace::Entry::node);
-    if (at == place.entries.end()) at = place.entries.insert(at, {node});
-    at->c += N * Vec2{master.x, master.y};
-  }
-
-  // What a traction at the place does to its nodes and its own jump; places that reach none are left out.
-  void finish(const SurfacePoint& s, SplitPlace& place) {
-    if (place.entries.empty()) return;
-    Vec2 a = Vec2::Zero();
-    for (SplitPlace::Entry& e : place.entries) {
-      const double per_mass = state.dt * s.A / mass(e);
-      e.d = per_mass * e.c;
-      a += (state.dt * per_mass * e.c).cwiseProduct(e.c);
-    }
-    place.per_n = s.n.x() * s.n.x() * a.x() + s.n.y() * s.n.y() * a.y();
-    place.per_t = s.n.y() * s.n.y() * a.x() + s.n.x() * s.n.x() * a.y();
-    ++found;
-  }
-};
-
-void find_ties(PlaceFinder& find) {
-  const State& state = find.state;
-  for (std::size_t k = 0; k < state.ties.size(); ++k) {
-    const TipTie& tie = state.ties[k];
-    SplitPlace& place = find.begin(-1, k, find.out.laws.size(), 0.0);
-    find.out.laws.push_back(tie_law(tie));
-    find.weigh(tie.plus, 1.0, place), find.weigh(tie.minus, -1.0, place);
-    const auto massless = [&](const SplitPlace::Entry& e) { return !(find.mass(e) > 0.0); };
-    if (!std::ranges::any_of(place.entries, massless)) find.finish(tie.s, place);
-  }
+// Adds the weight N of a record in the jump of a place.
+void weigh(int record, double N, const SpreadArray& mass, SplitPlace& place, State& state) {
+  SplitPlaces& split = state.split;
+  const auto r = static_cast<std::size_t>(record);
+  const Master& master = state.masters[r];
+  const auto at = static_cast<std::size_t>(master.record);
+  std::size_t& node = split.node_at[at];
+  if (node == none) node = split.nodes.size(), split.nodes.push_back({at, mass[at]});
+  auto entry = std::ranges::find(place.entries, node, &SplitPlace::Entry::node);
+  if (entry == place.entries.end()) entry = place.entries.insert(entry, {node});
+  entry->c += N * Vec2{master.x, master.y};
 }
 
-void find_points(const std::vector<Elasticity>& rocks, std::size_t face_law_at, PlaceFinder& find) {
-  const State& state = find.state;
-  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
-    const Surface& surface = state.surfaces[k];
-    const std::size_t law = surface.kind == Surface::Kind::fracture ? face_law_at : surface.law;
-    const double stiffness = contact_stiffness(find.out.laws[law], rocks, state.grid);
-    for (std::size_t q = 0; q < surface.points.size(); ++q) {
-      if (!surface.points[q].split) continue;
-      SplitPlace& place = find.begin(static_cast<int>(k), q, law, stiffness);
-      const SurfaceStencil& stencil = state.point_stencils[k][q];
-      for (std::size_t n = 0; n < 9; ++n) {
-        if (stencil.plus[n] == stencil.minus[n]) continue;
-        find.weigh(stencil.plus[n], stencil.N[n], place), find.weigh(stencil.minus[n], -stencil.N[n], place);
-      }
-      find.finish(surface.points[q], place);
-    }
+// What a traction at the place, whose point is s, does to its nodes and its own jump.
+void find_answers(const SurfacePoint& s, const State& state, SplitPlace& place) {
+  Vec2 a = Vec2::Zero();
+  for (SplitPlace::Entry& e : place.entries) {
+    const double per_mass = state.dt * s.A / state.split.nodes[e.node].m;
+    e.d = per_mass * e.c;
+    a += (state.dt * per_mass * e.c).cwiseProduct(e.c);
   }
+  place.per_n = s.n.x() * s.n.x() * a.x() + s.n.y() * s.n.y() * a.y();
+  place.per_t = s.n.y() * s.n.y() * a.x() + s.n.x() * s.n.x() * a.y();
 }
-
-// What a traction at each place does to the jump rates of those that share nodes with it.
-void find_neighbours(SplitPlaces& split) {
-  struct Reach {
-    std::size_t place = 0;
-    Vec2 c;
-  };
-  std::vector<std::vector<Reach>> of_node(split.nodes.size());
-  for (std::size_t k = 0; k < split.places.size(); ++k) {
-    for (const SplitPlace::Entry& e : split.places[k].entries) of_node[e.node].push_back({k, e.c});
-  }
-  std::vector<std::size_t> at(split.places.size(), none);
-  for (SplitPlace& place : split.places) {
-    for (const SplitPlace::Entry& e : place.entries) {
-      for (const Reach& reach : of_node[e.node]) {
-        std::size_t& index = at[reach.place];
-        if (index == none) index = place.neighbours.size(), place.neighbours.push_back({reach.place});
-        place.neighbours[index].per += reach.c.cwiseProduct(e.d);
-      }
-    }
-    for (const SplitPlace::Neighbour& neighbour : place.neighbours) at[neighbour.place] = none;
-  }
-}
-
-// --- what stiffnesses hold, solved together
 
 // The point of a surface, or the spring of a tip, that a place is.
 template <class AnyState>
@@ -156,32 +73,53 @@ auto& point_of(AnyState& state, const SplitPlace& place) {
                            : state.surfaces[static_cast<std::size_t>(place.surface)].points[place.point];
 }
 
-// Velocity that a traction (Pa, on the + face) at a place gives its nodes in a step; places are over records.
-void push(const SplitPlace& place, const Vec2& traction, NodalMotion& motion) {
-  for (const SplitPlace::Entry& e : place.entries) {
-    const Vec2 dv = e.d.cwiseProduct(traction);
-    const NodalMotion::Record node = motion[e.node];
-    node.v_x += dv.x(), node.v_y += dv.y(), node.dv_x += dv.x(), node.dv_y += dv.y();
+// What a traction at each place does to the jump rates of those that share nodes with it.
+void find_neighbours(SplitPlaces& split) {
+  std::vector<std::vector<std::pair<std::size_t, Vec2>>> of_node(split.nodes.size());  // places, and their c
+  for (std::size_t k = 0; k < split.places.size(); ++k) {
+    for (const SplitPlace::Entry& e : split.places[k].entries) of_node[e.node].emplace_back(k, e.c);
+  }
+  std::vector<std::size_t> at(split.places.size(), none);
+  for (SplitPlace& place : split.places) {
+    for (const SplitPlace::Entry& e : place.entries) {
+      for (const auto& [other, c] : of_node[e.node]) {
+        if (at[other] == none) at[other] = place.neighbours.size(), place.neighbours.push_back({other});
+        place.neighbours[at[other]].per += c.cwiseProduct(e.d);
+      }
+    }
+    for (const SplitPlace::Neighbour& neighbour : place.neighbours) at[neighbour.place] = none;
   }
 }
 
-// Rate of a place's jump (m/s): places that stay for many steps know what each does to those that share nodes with it.
-Vec2 jump_rate(std::size_t k, const State& state) {
-  const SplitPlace& place = state.split.places[k];
-  if (!place.neighbours.empty()) return state.split.rate[k];
+// Rate of a place's jump (m/s).
+Vec2 rate_by_nodes(const SplitPlace& place, const State& state) {
   Vec2 rate = Vec2::Zero();
-  for (const SplitPlace::Entry& e : place.entries)
-    rate += e.c.cwiseProduct(Vec2{state.motion.v_x[e.node], state.motion.v_y[e.node]});
+  for (const SplitPlace::Entry& e : place.entries) rate += e.c.cwiseProduct(state.split.nodes[e.node].v);
   return rate;
 }
 
-// Adds `change` (Pa, on the + face) to the reaction of a place, whose point is s, and what it does in a step to jumps.
-void add_reaction(const SplitPlace& place, const Vec2& change, SurfacePoint& s, State& state) {
-  for (const SplitPlace::Neighbour& other : place.neighbours)
-    state.split.rate[other.place] += other.per.cwiseProduct(change);
-  if (place.neighbours.empty()) push(place, change, state.motion);
-  s.reaction += change;
+// The same within a step's sweeps: what stays for many steps knows what each place does to its neighbours.
+Vec2 jump_rate(const SplitPlace& place, const State& state) {
+  return place.neighbours.empty() ? rate_by_nodes(place, state) : place.rate;
 }
+
+// What a traction (Pa, on the + face) at a place gives its nodes in a step.
+void push(const SplitPlace& place, const Vec2& traction, State& state) {
+  for (const SplitPlace::Entry& e : place.entries) {
+    const Vec2 dv = e.d.cwiseProduct(traction);
+    state.split.nodes[e.node].v += dv, state.split.nodes[e.node].dv += dv;
+  }
+}
+
+// Adds `change` (Pa, on the + face) to the reaction of a place.
+void add_reaction(const SplitPlace& place, const Vec2& change, State& state) {
+  for (const SplitPlace::Neighbour& other : place.neighbours)
+    state.split.places[other.place].rate += other.per.cwiseProduct(change);
+  if (place.neighbours.empty()) push(place, change, state);
+  point_of(state, place).reaction += change;
+}
+
+// --- what stiffnesses hold, solved together
 
 std::vector<Held> find_held(const State& state) {
   const SplitPlaces& split = state.split;
@@ -200,7 +138,7 @@ std::vector<Held> find_held(const State& state) {
     if (soft && law.shear_stiffness_Pa_m > 0.0) held.push_back({p, tangent, 1.0 / law.shear_stiffness_Pa_m, 0.0});
     constexpr double sticks = 1.0 - 1e-9;  // of the bound, at which sliding places stand but for round-off
     if (!soft && closed && std::abs(r_t) < sticks * (r_n * sliding_coefficient(law)))
-      held.push_back({p, tangent, 1.0 / k, s.w.dot(tangent) + split.r_t_start[p] / k});
+      held.push_back({p, tangent, 1.0 / k, s.w.dot(tangent) + place.r_start.dot(tangent) / k});
   }
   return held;
 }
@@ -215,10 +153,9 @@ std::shared_ptr<const HeldFactor> make_factor(const std::vector<Held>& held, con
   for (std::size_t b = 0; b < held.size(); ++b) {
     const auto column = static_cast<int>(b);
     for (const SplitPlace::Neighbour& other : places[held[b].place].neighbours) {
-      const Vec2 moved = state.dt * other.per.cwiseProduct(held[b].along);
-      const double A = point_of(state, places[other.place]).A;
+      const Vec2 moved = state.dt * point_of(state, places[other.place]).A * other.per.cwiseProduct(held[b].along);
       for (const int a : of_place[other.place])
-        entries.emplace_back(a, column, A * held[static_cast<std::size_t>(a)].along.dot(moved));
+        entries.emplace_back(a, column, held[static_cast<std::size_t>(a)].along.dot(moved));
     }
     entries.emplace_back(column, column, point_of(state, places[held[b].place]).A * held[b].compliance);
   }
@@ -237,15 +174,14 @@ bool solve(const std::vector<Held>& held, State& state) {
   Eigen::VectorXd off(static_cast<Eigen::Index>(held.size()));
   for (std::size_t a = 0; a < held.size(); ++a) {
     const Held& h = held[a];
-    const SurfacePoint& s = point_of(state, split.places[h.place]);
-    const Vec2 w = s.w + state.dt * split.rate[h.place];
+    const SplitPlace& place = split.places[h.place];
+    const SurfacePoint& s = point_of(std::as_const(state), place);
+    const Vec2 w = s.w + state.dt * jump_rate(place, state);
     off[static_cast<Eigen::Index>(a)] = s.A * (h.rest - h.compliance * s.reaction.dot(h.along) - w.dot(h.along));
   }
   const Eigen::VectorXd change = split.held->solve.solve(off);
-  for (std::size_t a = 0; a < held.size(); ++a) {
-    const SplitPlace& place = split.places[held[a].place];
-    add_reaction(place, change[static_cast<Eigen::Index>(a)] * held[a].along, point_of(state, place), state);
-  }
+  for (std::size_t a = 0; a < held.size(); ++a)
+    add_reaction(split.places[held[a].place], change[static_cast<Eigen::Index>(a)] * held[a].along, state);
   return true;
 }
 
@@ -257,7 +193,7 @@ bool release_inadmissible(const std::vector<Held>& held, State& state) {
   for (const Held& h : held) {
     const SplitPlace& place = split.places[h.place];
     const InterfaceLaw& law = split.laws[place.law];
-    SurfacePoint& s = point_of(state, place);
+    const SurfacePoint& s = point_of(std::as_const(state), place);
     const Vec2 tangent = tangent_of(s.n);
     const Reaction now{s.reaction.dot(s.n), s.reaction.dot(tangent)};
     Reaction allowed = admissible(law, now);
@@ -265,7 +201,7 @@ bool release_inadmissible(const std::vector<Held>& held, State& state) {
     if (parts && law.normal_stiffness_Pa_m == 0.0) allowed.n = 0.0;  // else on to its spring
     const bool beyond = allowed.n != now.n || allowed.t != now.t;
     any = any || parts || beyond;
-    if (beyond) add_reaction(place, allowed.n * s.n + allowed.t * tangent - s.reaction, s, state);
+    if (beyond) add_reaction(place, allowed.n * s.n + allowed.t * tangent - s.reaction, state);
   }
   return any;
 }
@@ -277,7 +213,7 @@ bool release_inadmissible(const std::vector<Held>& held, State& state) {
 // along the normal, the tangent or both. Places that then pull or are beyond friction's bound open or slide, and the
 // rest is solved again (an active set that only shrinks, Nocedal & Wright 2006, 16.5; 8 times at most). Sweeps from
 // here find out where a place closes or sticks again. (A D M^-1 D^T + A/k, small, banded and positive definite, is
-// factored anew only where a place changes.) Changes reactions of the state's points and the jumps' rates.
+// factored anew only where a place changes.)
 void solve_held_reactions(State& state) {
   constexpr int most_rounds = 8;  // bounds the work of a step: sweeps go on from what is then held
   for (int round = 0; round < most_rounds; ++round) {
@@ -286,39 +222,23 @@ void solve_held_reactions(State& state) {
   }
 }
 
-// --- reactions
-
-// Velocities that net tractions and reactions give, and the jump rates, of places that stay.
-void push_all(State& state) {
-  SplitPlaces& split = state.split;
-  split.v = split.free;
-  for (const SplitPlace& place : split.places) {
-    const SurfacePoint& s = point_of(std::as_const(state), place);
-    const Vec2 t = s.P * s.n - s.in_situ + s.reaction;
-    for (const SplitPlace::Entry& e : place.entries) split.v[e.node] += e.d.cwiseProduct(t);
-  }
-  for (std::size_t k = 0; k < split.places.size(); ++k) {
-    split.rate[k] = Vec2::Zero();
-    for (const SplitPlace::Entry& e : split.places[k].entries) split.rate[k] += e.c.cwiseProduct(split.v[e.node]);
-  }
-}
+// --- sweeps
 
 // One visit of successive over-relaxation: past react(), the reaction given all others, but never out of what the law
 // allows; returns how much the reaction changed (Pa).
-double relax(std::size_t k, SurfacePoint& s, State& state) {
-  const SplitPlaces& split = state.split;
-  const SplitPlace& place = split.places[k];
-  const InterfaceLaw& law = split.laws[place.law];
-  const Vec2 tangent = tangent_of(s.n), w = s.w + state.dt * jump_rate(k, state);
+double relax(const SplitPlace& place, State& state) {
+  const SurfacePoint& s = point_of(std::as_const(state), place);
+  const InterfaceLaw& law = state.split.laws[place.law];
+  const Vec2 tangent = tangent_of(s.n), w = s.w + state.dt * jump_rate(place, state);
   const Reaction now{s.reaction.dot(s.n), s.reaction.dot(tangent)};
   const Reaction r = react(law, place.k,
                            {w.dot(s.n) - place.per_n * now.n, w.dot(tangent) - place.per_t * now.t, s.w.dot(tangent),
-                            split.r_t_start[k], place.per_n, place.per_t, s.closing_stress() - s.P});
+                            place.r_start.dot(tangent), place.per_n, place.per_t, s.closing_stress() - s.P});
   const Reaction next =
       admissible(law, {now.n + over_relaxation * (r.n - now.n), now.t + over_relaxation * (r.t - now.t)});
   if (next.n == now.n && next.t == now.t) return 0.0;
   const Vec2 change = next.n * s.n + next.t * tangent - s.reaction;
-  add_reaction(place, change, s, state);
+  add_reaction(place, change, state);
   return change.norm();
 }
 
@@ -330,7 +250,7 @@ void find_reactions(bool stays, State& state) {
   // What holds is solved again after some sweeps: solved once, 96 steps of Experiment 6 soft and 2895 of friction run
   // out of sweeps, so 0 and 441. Places that open and close in turn are left to the sweeps in the end.
   constexpr int solved_every = 8, solved_until = 64;
-  SplitPlaces& split = state.split;
+  const SplitPlaces& split = state.split;
   if (split.places.empty()) return;
   int sweeps = 0;
   const auto goes_on = [&](double change, double largest) {
@@ -341,10 +261,9 @@ void find_reactions(bool stays, State& state) {
   for (; goes_on(change, largest); ++sweeps) {
     if (stays && sweeps % solved_every == 0 && sweeps <= solved_until) solve_held_reactions(state);
     change = largest = 0.0;
-    for (std::size_t k = 0; k < split.places.size(); ++k) {
-      SurfacePoint& s = point_of(state, split.places[k]);
-      change = std::max(change, relax(k, s, state));
-      largest = std::max(largest, s.reaction.norm());
+    for (const SplitPlace& place : split.places) {
+      change = std::max(change, relax(place, state));
+      largest = std::max(largest, point_of(state, place).reaction.norm());
     }
   }
   note_sweeps(sweeps, change, largest, state.monitors);
@@ -365,67 +284,90 @@ void add_jump(const InterfaceLaw& law, const Vec2& dw, SurfacePoint& s, State& s
   note_largest(state.monitors.largest_contact_Pa, s.reaction.dot(s.n));
 }
 
-void note_start(State& state) {
-  SplitPlaces& split = state.split;
-  split.r_t_start.resize(split.places.size());
-  for (std::size_t k = 0; k < split.places.size(); ++k) {
-    const SurfacePoint& s = point_of(std::as_const(state), split.places[k]);
-    split.r_t_start[k] = s.reaction.dot(tangent_of(s.n));
+// Reactions and jumps of the step from the velocities without what places exert, which net tractions join under
+// kinematics = "total".
+void find_motion(bool total, State& state) {
+  std::vector<SplitPlace>& places = state.split.places;
+  for (SplitPlace& place : places) {
+    const SurfacePoint& s = point_of(std::as_const(state), place);
+    place.r_start = s.reaction;
+    push(place, total ? Vec2{s.P * s.n - s.in_situ + s.reaction} : s.reaction, state);
   }
-}
-
-void add_jumps(State& state) {
-  for (std::size_t k = 0; k < state.split.places.size(); ++k) {
-    const SplitPlace& place = state.split.places[k];
-    add_jump(state.split.laws[place.law], state.dt * jump_rate(k, state), point_of(state, place), state);
+  for (SplitPlace& place : places) place.rate = rate_by_nodes(place, state);
+  find_reactions(total, state);
+  for (const SplitPlace& place : places) {
+    if (total) push(place, point_of(state, place).reaction - place.r_start, state);
+  }
+  for (const SplitPlace& place : places) {
+    const Vec2 dw = state.dt * rate_by_nodes(place, state);
+    add_jump(state.split.laws[place.law], dw, point_of(state, place), state);
   }
 }
 
 }  // namespace
 
-void find_split_places(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+void find_split_places(const Scene& scene, const Rocks& rocks, State& state) {
   SplitPlaces& out = state.split;
-  PlaceFinder find{state, out};
+  const SpreadArray& mass = state.total.op ? state.total.m : state.sums.m;
   out.nodes.clear();
+  out.node_at.assign(mass.size(), none);
   out.laws = scene.laws;
   out.laws.push_back(face_law(scene));
-  find_ties(find);
-  find_points(rocks, scene.laws.size(), find);
-  out.places.resize(find.found);
-  if (!find.total) return;
-  find_neighbours(out);
-  out.free.assign(out.nodes.size(), Vec2::Zero());
-  out.rate.assign(out.places.size(), Vec2::Zero());
   out.held.reset();
+  std::size_t found = 0;  // places keep the memory of the last ones
+  const auto add = [&](int surface, std::size_t point, std::size_t law, double k, const SurfaceStencil& at) {
+    if (found == out.places.size()) out.places.emplace_back();
+    SplitPlace& place = out.places[found];
+    place.surface = surface, place.point = point, place.law = law, place.k = k;
+    place.entries.clear(), place.neighbours.clear();
+    for (std::size_t n = 0; n < 9; ++n) {
+      if (at.plus[n] == at.minus[n]) continue;
+      weigh(at.plus[n], at.N[n], mass, place, state), weigh(at.minus[n], -at.N[n], mass, place, state);
+    }
+    const auto massless = [&](const SplitPlace::Entry& e) { return !(out.nodes[e.node].m > 0.0); };
+    if (place.entries.empty() || std::ranges::any_of(place.entries, massless)) return;
+    find_answers(point_of(std::as_const(state), place), state, place);
+    ++found;
+  };
+  for (std::size_t k = 0; k < state.ties.size(); ++k) {
+    SurfaceStencil pair;  // one node's two copies
+    pair.plus[0] = state.ties[k].plus, pair.minus[0] = state.ties[k].minus, pair.N[0] = 1.0;
+    out.laws.push_back(tie_law(state.ties[k]));
+    add(-1, k, out.laws.size() - 1, 0.0, pair);
+  }
+  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
+    const Surface& surface = state.surfaces[k];
+    const std::size_t law = surface.kind == Surface::Kind::fracture ? scene.laws.size() : surface.law;
+    const double stiffness = contact_stiffness(out.laws[law], rocks, state.grid);
+    for (std::size_t q = 0; q < surface.points.size(); ++q) {
+      if (surface.points[q].split) add(static_cast<int>(k), q, law, stiffness, state.point_stencils[k][q]);
+    }
+  }
+  out.places.resize(found);
+  if (state.total.op) find_neighbours(out);
 }
 
-void solve_reactions(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+void solve_reactions(const Scene& scene, const Rocks& rocks, State& state) {
   find_split_places(scene, rocks, state);
-  note_start(state);
-  for (const SplitPlace& place : state.split.places)
-    push(place, point_of(std::as_const(state), place).reaction, state.motion);
-  find_reactions(false, state);
-  add_jumps(state);
+  NodalMotion& motion = state.motion;
+  for (SplitNode& n : state.split.nodes)
+    n.v = {motion.v_x[n.at], motion.v_y[n.at]}, n.dv = {motion.dv_x[n.at], motion.dv_y[n.at]};
+  find_motion(false, state);
+  for (const SplitNode& n : state.split.nodes) motion[n.at] = NodeMotion{n.v.x(), n.v.y(), n.dv.x(), n.dv.y()};
 }
 
 double push_split_places(double keep, State& state) {
   TotalMotion& t = state.total;
-  SplitPlaces& split = state.split;
-  for (std::size_t k = 0; k < split.nodes.size(); ++k) {
-    const std::size_t slot = split.nodes[k];
-    split.free[k] = {keep * t.v_x[slot] + state.dt * t.a_x[slot], keep * t.v_y[slot] + state.dt * t.a_y[slot]};
+  for (SplitNode& n : state.split.nodes) {
+    n.v = {keep * t.v_x[n.at] + state.dt * t.a_x[n.at], keep * t.v_y[n.at] + state.dt * t.a_y[n.at]};
+    n.dv.setZero();
   }
-  note_start(state);
-  push_all(state);
-  find_reactions(true, state);
-  push_all(state);
-  add_jumps(state);
+  find_motion(true, state);
   double power = 0.0;
-  for (std::size_t k = 0; k < split.nodes.size(); ++k) {
-    const std::size_t slot = split.nodes[k];
-    const Vec2 a = (split.v[k] - split.free[k]) / state.dt;
-    t.a_x[slot] += a.x(), t.a_y[slot] += a.y();
-    power += t.m[slot] * split.v[k].dot(a);
+  for (const SplitNode& n : state.split.nodes) {
+    const Vec2 a = n.dv / state.dt;
+    t.a_x[n.at] += a.x(), t.a_y[n.at] += a.y();
+    power += n.m * n.v.dot(a);
   }
   return power;
 }

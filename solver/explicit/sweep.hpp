@@ -61,12 +61,6 @@ template <bool Move, bool Gather>
   }
 }
 
-// Sums and maxima over the particles of a lane.
-template <class Real>
-struct LaneReport {
-  Real before{}, after{}, step_strain{}, largest_speed2{}, farthest_cells{};
-};
-
 // A span of one axis: its node's coordinate (m), 1/length (1/m), and 1/(1 + length of the span beside/own length).
 template <class Real>
 struct Span {
@@ -166,7 +160,7 @@ template <class Lanes>
                                         const BlockSpans<Lanes>& at, const Coefficients<typename Lanes::Real>& c,
                                         const PlaceWeights<typename Lanes::Real>& w, const Elasticity& rock,
                                         std::size_t q, ParticleState<typename Lanes::Real>& is,
-                                        LaneReport<typename Lanes::Real>& report) {
+                                        MotionReport<typename Lanes::Real>& report) {
   using Real = typename Lanes::Real;
   const auto change = [&](double* array, Real& value, const Real& by) {
     value += by;
@@ -294,9 +288,8 @@ template <class Lanes>
 /// records follow that bin's one by one. Moves them (Move) by node_v and take over a step, and adds what they then give
 /// to the nodes' sums (Gather); rocks: of all particles, the same in all lanes. Throws nothing.
 template <class Shape, bool Move, bool Gather, class Lanes>
-void sweep_block(const Lanes lanes, const std::vector<Elasticity>& rocks, const SweepStep& step,
-                 const BlockSpans<Lanes>& at, const Bin& bin, const SweepArrays& arrays,
-                 LaneReport<typename Lanes::Real>& report) {
+void sweep_block(const Lanes lanes, const Rocks& rocks, const SweepStep& step, const BlockSpans<Lanes>& at,
+                 const Bin& bin, const SweepArrays& arrays, MotionReport<typename Lanes::Real>& report) {
   using Real = typename Lanes::Real;
   constexpr int together = 4;  // particles of a lane whose weights are kept until their sums are formed
   constexpr bool block = !std::is_same_v<Lanes, OneLane>;

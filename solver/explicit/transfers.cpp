@@ -54,20 +54,21 @@ BlockSpans<Lanes> spans_of(const Lanes lanes, const SpanTable& x, const SpanTabl
           {y.node[j], y.per_length[j], {y.share_before[j], y.share_after[j]}}};
 }
 
+// Takes up a report with its energies times `share`.
 template <class Real>
-void add_lanes(const LaneReport<Real>& lanes, ParticleReport& to) {
-  to.before += 0.5 * sum_of_lanes(lanes.before), to.after += 0.5 * sum_of_lanes(lanes.after);
-  to.step_strain += 0.5 * sum_of_lanes(lanes.step_strain);
-  to.largest_speed2 = std::max(to.largest_speed2, largest_lane(lanes.largest_speed2));
-  to.farthest_cells = std::max(to.farthest_cells, largest_lane(lanes.farthest_cells));
+void add(const MotionReport<Real>& more, double share, ParticleReport& to) {
+  to.before += share * sum_of_lanes(more.before), to.after += share * sum_of_lanes(more.after);
+  to.step_strain += share * sum_of_lanes(more.step_strain);
+  to.largest_speed2 = std::max(to.largest_speed2, largest_lane(more.largest_speed2));
+  to.farthest_cells = std::max(to.farthest_cells, largest_lane(more.farthest_cells));
 }
 
 // A strip's bins, block by block; those that stand alone one by one.
 template <class Shape, bool Move, bool Gather>
-ParticleReport sweep_strip(const std::vector<Elasticity>& rocks, const SweepStep& step, const State& state,
-                           const SweepArrays& arrays, const Strip& strip) {
-  LaneReport<Lane> of_blocks;
-  LaneReport<double> of_bins;
+ParticleReport sweep_strip(const Rocks& rocks, const SweepStep& step, const State& state, const SweepArrays& arrays,
+                           const Strip& strip) {
+  MotionReport<Lane> of_blocks;
+  ParticleReport of_bins;
   for (int b = strip.first; b < strip.last;) {
     const Bin& bin = state.bins[static_cast<std::size_t>(b)];
     fetch(&bin, bins_ahead);
@@ -85,23 +86,12 @@ ParticleReport sweep_strip(const std::vector<Elasticity>& rocks, const SweepStep
     b += bin.stride;
   }
   ParticleReport report;
-  add_lanes(of_blocks, report), add_lanes(of_bins, report);
+  add(of_blocks, 0.5, report), add(of_bins, 0.5, report);
   return report;
 }
 
-// The sum over strips, one by one, so that its digits do not depend on the number of threads.
-ParticleReport total_of(const std::vector<ParticleReport>& strips) {
-  ParticleReport total;
-  for (const ParticleReport& e : strips) {
-    total.before += e.before, total.after += e.after, total.step_strain += e.step_strain;
-    total.largest_speed2 = std::max(total.largest_speed2, e.largest_speed2);
-    total.farthest_cells = std::max(total.farthest_cells, e.farthest_cells);
-  }
-  return total;
-}
-
 template <bool Move, bool Gather>
-ParticleReport sweep(const Scene& scene, const std::vector<Elasticity>& rocks, const Uptake& uptake, State& state) {
+ParticleReport sweep(const Scene& scene, const Rocks& rocks, const Uptake& uptake, State& state) {
   state.reports.assign(state.strips.size(), {});
   const SweepArrays arrays = arrays_of(uptake, state);
   const SweepStep step{state.dt, uptake.keep};
@@ -110,7 +100,9 @@ ParticleReport sweep(const Scene& scene, const std::vector<Elasticity>& rocks, c
       state.reports[k] = sweep_strip<decltype(shape), Move, Gather>(rocks, step, state, arrays, state.strips[k]);
     });
   });
-  return total_of(state.reports);
+  ParticleReport total;  // strip by strip: its digits do not depend on the number of threads
+  for (const ParticleReport& of_strip : state.reports) add(of_strip, 1.0, total);
+  return total;
 }
 
 // Sets `sums` to 0 and then calls visit(q, N, record) for each particle q of each bin, strip by strip, with its weights
@@ -132,20 +124,18 @@ void for_each_stencil(const Scene& scene, NodalSums& sums, State& state, Visit v
 
 }  // namespace
 
-void particles_to_grid(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+void particles_to_grid(const Scene& scene, const Rocks& rocks, State& state) {
   const Uptake none{1.0, &state.motion.dv_x, &state.motion.dv_y};
   sweep<false, true>(scene, rocks, none, state);
   state.gathered = false;  // the caller goes on from them
 }
 
-ParticleReport grid_to_particles(const Scene& scene, const std::vector<Elasticity>& rocks, const Uptake& uptake,
-                                 State& state) {
+ParticleReport grid_to_particles(const Scene& scene, const Rocks& rocks, const Uptake& uptake, State& state) {
   state.gathered = false;
   return sweep<true, false>(scene, rocks, uptake, state);
 }
 
-ParticleReport sweep_particles(const Scene& scene, const std::vector<Elasticity>& rocks, const Uptake& uptake,
-                               State& state) {
+ParticleReport sweep_particles(const Scene& scene, const Rocks& rocks, const Uptake& uptake, State& state) {
   const ParticleReport report = sweep<true, true>(scene, rocks, uptake, state);
   state.gathered = true;
   return report;

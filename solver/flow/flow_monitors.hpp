@@ -6,17 +6,16 @@
 
 namespace strata {
 
-/// What the pressure falls by in a cell, on average from the inlet to where it no longer exceeds the closing stress or,
-/// where it does all along, to the tip (Pa): (P_inlet - t_n)/n with n cells, or parts of them, on the way; of two sides
-/// of the inlet the steeper. 0 where the inlet's pressure does not exceed the closing stress. Throws nothing.
+/// What the pressure falls by in a cell, on average from the inlet to where it no longer exceeds the closing stress, or
+/// to the tip (Pa): (P_inlet - t_n)/n with n cells, or parts of them, on the way; of two sides of the inlet the
+/// steeper. 0 where the inlet's pressure does not exceed the closing stress. Throws nothing.
 double fall_in_a_cell(const State& state);
 
 /// What the fracture's pressure owes to minimum_opening_m, as the even pressure that would change K_I of a straight
-/// crack as much, over the inlet's net pressure: had the same flow to pass where the openings w are below the floor
-/// w_f, it would lose DP ((w_f/w)^n - 1) more where it now loses DP (n = 2 by the study's diffusion, 3 by lubrication;
-/// at most what leaves the cavitation pressure), and a pressure missing beyond x in a crack of length a is worth
-/// (2/pi) acos(x/a) of one missing everywhere (from K_I of point forces, e.g. Tada, Paris & Irwin). Faces that touch
-/// are left out: what they conduct is a property of theirs. Of two sides of the inlet the larger. Throws nothing.
+/// crack as much, over the inlet's net pressure: where openings w are below the floor w_f the same flow would lose
+/// DP ((w_f/w)^n - 1) more (n = 2 by the study's diffusion, 3 by lubrication; at most what leaves the cavitation
+/// pressure), and a pressure missing beyond x in a crack of length a is worth (2/pi) acos(x/a) of one missing
+/// everywhere (e.g. Tada, Paris & Irwin). Faces that touch are left out. Of two sides the larger. Throws nothing.
 double floor_share(const Scene& scene, const State& state);
 
 /// Notes both at the end of a step of the load. Where the inlet's pressure is given, what the flow lags behind is in

@@ -57,12 +57,12 @@ Dual conducting(const Fluid& fluid, const Place& at) {
   return at.w.value() > floor ? at.w : Dual(floor);
 }
 
-// Opening within a cell (m) by a fluid that comes from P and has parted its faces over less than that. The rock's
-// equilibrium, which knows the pressure at the cell's middle alone, still holds them closed, and the cell would fill no
-// faster than the floor lets through. A fracture without toughness that reaches from the cell's end to its middle, L =
-// A/2, with a net pressure p at its inlet takes q = L^2 p^4/(2 g^2 Pi^4 12 mu E'^3) (g = 0.6155, Pi = 0.5448: viscosity
-// vertex of the plane-strain fracture, Adachi & Detournay 2002): as much as a channel of 1.233 A p/E' under p/L. p is
-// what of the fall from P to the cell's pressure is above the closing stress; the opening vanishes with the cell.
+// Opening within a cell (m) by a fluid that comes from P and has parted its faces over less than that: the rock's
+// equilibrium, which knows the pressure at the cell's middle alone, still holds them closed. A fracture without
+// toughness from the cell's end to its middle, L = A/2, with a net pressure p at its inlet takes q = L^2 p^4/(2 g^2
+// Pi^4 12 mu E'^3) (g = 0.6155, Pi = 0.5448: viscosity vertex of the plane-strain fracture, Adachi & Detournay 2002):
+// as much as a channel of 1.233 A p/E' under p/L. p is what of the fall from P to the cell's pressure is above the
+// closing stress.
 Dual parted(const Dual& P, const Place& at) {
   const Dual below = at.P.value() > at.closing ? at.P : Dual(at.closing);
   constexpr double of_fracture = 1.233;

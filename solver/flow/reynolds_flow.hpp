@@ -31,18 +31,15 @@ struct RockResponse {
 };
 using RockModel = std::function<RockResponse(const Eigen::VectorXd& P)>;  // P absolute, one a point (Pa)
 
-// What rough faces hold between them when they just touch (m), 1e-4 of the study's openings. Under load they hold less,
-// nothing at the closing stress: the fluid can then enter a closed cell little by little. A cell between rigid faces
-// would go from no pressure to that which parts them without taking up any fluid, and its balance could not tell how
-// far it is.
+// What rough faces hold between them when they just touch (m), 1e-4 of the study's openings; under load less, nothing
+// at the closing stress. Between rigid faces a closed cell would take up no fluid on the way from no pressure to that
+// which parts them, and its balance could not tell how far it is.
 constexpr double roughness = 1e-7;
 
 // The opening (m) whose cube stands for all between the middles of two cells, the mean of the arithmetic and the
-// harmonic mean of theirs. The exact one is 1/int 12 mu/w^3 ds: between half a cell and one and a half behind a tip
-// this one is 3.5 % below it for w ~ x^(1/2) and 0.7 % above for x^(2/3), where the cube of the arithmetic mean is 8
-// and 22 % above, and a wedge's (w linear between the two) 7 % below both. But a wedge's vanishes with either opening:
-// a cell that growth has just added is still closed and would be filled no faster than the floor lets through, and the
-// speed of a fracture would be the floor's doing. Here it gets 1/64 of its neighbour's cube.
+// harmonic mean of theirs. Against the exact 1/int 12 mu/w^3 ds behind a tip it is 3.5 % low for w ~ x^(1/2) and 0.7 %
+// high for x^(2/3), where the cube of the arithmetic mean is 8 and 22 % high. A cell that growth has just added, still
+// closed, gets 1/64 of its neighbour's cube: a wedge's would leave it to the floor, and the fracture's speed with it.
 template <class Opening>
 Opening opening_between(const Opening& a, const Opening& b) {
   return 0.25 * (a + b) + a * b / (a + b);

@@ -6,12 +6,12 @@
 
 namespace strata {
 
-/// What decides about a tip. With growth = "energy" always energy; with crossing = "J" always J. Else, of interfaces
+/// What decides about a tip: with growth = "energy" always energy, with crossing = "J" always J. Else, of interfaces
 /// with a law or another rock beyond:
 ///   one whose faces are apart at the tip itself: energy, since a tip there has no length in the rock ahead;
-///   one ahead of the tip, nearer than the crossing increment: energy;
-///   one behind it whose faces are apart, nearer than rings need: K. Within three cells of it the interaction integral
-///   is some per cent off where rocks differ, and the slope is taken;
+///   one ahead, nearer than the crossing increment: energy;
+///   one behind whose faces are apart, nearer than rings need: K or, within three cells, where K is some per cent off
+///   between unlike rocks, the slope of the energy;
 ///   any other one nearer than the crossing increment: energy; else J. Throws nothing.
 Criterion criterion_of(const Scene& scene, const State& state, const Tip& tip);
 
@@ -40,12 +40,10 @@ double past_open_interface(const Scene& scene, const State& state, const Tip& ti
 /// Whether the faces of an interface (index into Scene::strata) are apart within a cell of a place (m). Throws nothing.
 bool apart_at(const Scene& scene, const State& state, std::size_t interface, const Vec2& x);
 
-/// What drives a tip (N/m), by its criterion.
-///   energy: tip.G_trial. slope: the same, 0 for a closed tip.
-///   K: (K_I^2 + K_II^2)/E', 0 for a closed tip.
-///   J: J, but no more than twice that, 0 for a closed tip. Where faces have just touched, or stand under a dry fluid,
-///   J may be several J_c while K is next to nothing: such a J is no energy release rate. Near interfaces K itself is
-///   not to be trusted and J stands alone.
+/// What drives a tip (N/m), by its criterion; 0 for a closed tip but by energy.
+///   energy, slope: tip.G_trial. K: (K_I^2 + K_II^2)/E'.
+///   J: J, but away from interfaces no more than twice that of K: where faces have just touched, or stand under a dry
+///   fluid, J may be several J_c while K is next to nothing, and is no energy release rate.
 /// Throws nothing.
 double driving(const Elasticity& rock, const Tip& tip);
 

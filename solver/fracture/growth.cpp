@@ -51,7 +51,7 @@ bool near_edge(const Scene& scene, const Vec2& x, const Vec2& direction, double 
   return near(scene.domain.along_x(), x.x(), direction.x()) || near(scene.domain.along_y(), x.y(), direction.y());
 }
 
-bool ready(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Tip& tip) {
+bool ready(const Scene& scene, const Rocks& rocks, const State& state, const Tip& tip) {
   const Elasticity& ahead = rocks[rock_ahead(scene, state, tip)];
   const double G = driving(ahead, tip);
   const bool may = scene.fracture->growth != Fracture::Growth::none && tip.growing && state.time >= tip.due_s;
@@ -126,49 +126,48 @@ bool off_grid(const SurfacePoint& s, double h) {
   return true;
 }
 
-// In-situ stress at a place: that of the particles around it, which is exact where it is uniform.
-Stress in_situ_at(const Scene& scene, const State& state, const Vec2& x) {
-  if (scene.in_situ.initialise == InSitu::Initialise::uniform)
-    return {-scene.in_situ.horizontal_Pa, -scene.in_situ.vertical_Pa, 0.0};
-  const Particles& p = state.particles;
-  const Grid& g = state.grid;
-  const double s_x = g.span_x(std::clamp(g.column_at(x.x()), 0, g.nx));
-  const double s_y = g.span_y(std::clamp(g.row_at(x.y()), 0, g.ny));
-  Stress sum;
+// Mean of what the particles around a place say of it, of those that count and are nearer than `reach` (m): by their
+// areas and hat functions of their distance.
+template <class Value, class Counts, class Of>
+Value mean_around(const Particles& p, const Vec2& x, const Vec2& reach, Value sum, Counts counts, Of of) {
   double weights = 0.0;
   for (std::size_t q = 0; q < p.size(); ++q) {
-    const double d_x = std::abs(p.x[q] - x.x()) / s_x, d_y = std::abs(p.y[q] - x.y()) / s_y;
-    if (d_x >= 1.0 || d_y >= 1.0 || p.rock[q] != rock_at(scene, x)) continue;
-    const double weight = (1.0 - d_x) * (1.0 - d_y) * p.V[q];
-    sum = sum + weight * p.in_situ[q];
+    const double near_x = 1.0 - std::abs(p.x[q] - x.x()) / reach.x(),
+                 near_y = 1.0 - std::abs(p.y[q] - x.y()) / reach.y();
+    if (near_x <= 0.0 || near_y <= 0.0 || !counts(q)) continue;
+    const double weight = near_x * near_y * p.V[q];
+    sum = sum + weight * of(q);
     weights += weight;
   }
   return (1.0 / weights) * sum;
 }
 
-// Displacement of the rock around a place, from what each particle near it says of that place.
-Vec2 displacement_at(const State& state, const Vec2& x) {
+// In-situ stress at a place: that of the particles of its rock around it, which is exact where it is uniform.
+Stress in_situ_at(const Scene& scene, const State& state, const Vec2& x) {
+  if (scene.in_situ.initialise == InSitu::Initialise::uniform)
+    return {-scene.in_situ.horizontal_Pa, -scene.in_situ.vertical_Pa, 0.0};
   const Particles& p = state.particles;
-  Vec2 sum = Vec2::Zero();
-  double weights = 0.0;
-  for (std::size_t q = 0; q < p.size(); ++q) {
-    const Vec2 d = x - Vec2{p.x[q], p.y[q]};
-    const double near_x = 1.0 - std::abs(d.x()) / state.grid.h, near_y = 1.0 - std::abs(d.y()) / state.grid.h;
-    if (near_x <= 0.0 || near_y <= 0.0) continue;
-    const double weight = near_x * near_y * p.V[q];
-    sum += weight *
-           Vec2{p.u_x[q] + p.g_xx[q] * d.x() + p.g_xy[q] * d.y(), p.u_y[q] + p.g_yx[q] * d.x() + p.g_yy[q] * d.y()};
-    weights += weight;
-  }
-  return sum / weights;
+  const Grid& g = state.grid;
+  const Vec2 spans{g.span_x(std::clamp(g.column_at(x.x()), 0, g.nx)), g.span_y(std::clamp(g.row_at(x.y()), 0, g.ny))};
+  const std::size_t rock = rock_at(scene, x);
+  return mean_around(
+      p, x, spans, Stress{}, [&](std::size_t q) { return p.rock[q] == rock; },
+      [&](std::size_t q) { return p.in_situ[q]; });
 }
 
 // New vertices and points have moved with the rock that they now part.
 void displace_new(State& state, bool at_back, std::size_t pieces) {
-  Surface& fracture = state.fracture();
-  for (auto* places : {&fracture.vertices, &fracture.points}) {
+  const Particles& p = state.particles;
+  for (auto* places : {&state.fracture().vertices, &state.fracture().points}) {
     const std::size_t first = at_back ? places->size() - pieces : 0;
-    for (std::size_t k = first; k < first + pieces; ++k) (*places)[k].u = displacement_at(state, (*places)[k].x);
+    for (SurfacePoint& s : std::span(*places).subspan(first, pieces)) {
+      const auto continued = [&](std::size_t q) -> Vec2 {
+        const Vec2 d = s.x - Vec2{p.x[q], p.y[q]};
+        return {p.u_x[q] + p.g_xx[q] * d.x() + p.g_xy[q] * d.y(), p.u_y[q] + p.g_yx[q] * d.x() + p.g_yy[q] * d.y()};
+      };
+      s.u = mean_around(
+          p, s.x, Vec2::Constant(state.grid.h), Vec2{Vec2::Zero()}, [](std::size_t) { return true; }, continued);
+    }
   }
 }
 
@@ -185,21 +184,6 @@ bool near_point(const Particles& p, std::size_t q, const SurfacePoint& s, double
 bool passes_through(const Particles& p, std::size_t q, const SurfacePoint& s, double h) {
   const Vec2 off = Vec2{p.x[q], p.y[q]} - s.x;
   return std::abs(off.dot(s.n)) < 1e-3 * h && std::abs(off.dot(tangent_of(s.n))) - 0.5 * s.A <= 1.5 * h;
-}
-
-// Particles that passes_through() or near_point(1.5 h) may hold for, for any of these points: those in a box around
-// them.
-std::vector<std::size_t> particles_beside(const Particles& p, std::span<const SurfacePoint> points, double h) {
-  Vec2 low = Vec2::Constant(HUGE_VAL), high = Vec2::Constant(-HUGE_VAL);
-  for (const SurfacePoint& s : points) {
-    const Vec2 reach = Vec2::Constant(0.5 * s.A + 3.0 * h);
-    low = low.cwiseMin(s.x - reach), high = high.cwiseMax(s.x + reach);
-  }
-  std::vector<std::size_t> beside;
-  for (std::size_t q = 0; q < p.size(); ++q) {
-    if (p.x[q] > low.x() && p.x[q] < high.x() && p.y[q] > low.y() && p.y[q] < high.y()) beside.push_back(q);
-  }
-  return beside;
 }
 
 // Divides particle q into its quarters, which continue its displacement linearly. The lower left one keeps its place in
@@ -228,19 +212,16 @@ void split_in_four(Particles& p, std::size_t q) {
 void refine_particles(const Scene& scene, State& state, std::size_t first, std::size_t last) {
   const double h = state.grid.h, sixteenth = 1.01 * h * h / 16.0;
   Particles& p = state.particles;
-  const std::vector<std::size_t> beside =
-      particles_beside(p, std::span(state.fracture().points).subspan(first, last - first), h);
+  const std::size_t n = p.size();
   std::vector<std::size_t> split;
   std::vector<char> whole(last - first, 0);  // of points: whether they leave fine particles as they are
-  if (scene.numerics.mechanics == Numerics::Mechanics::quasistatic) {
-    for (std::size_t k = first; k < last; ++k) {
-      const auto hit = std::ranges::count_if(beside, [&](std::size_t q) {
-        return p.V[q] <= sixteenth && passes_through(p, q, state.fracture().points[k], h);
-      });
-      whole[k - first] = hit <= now_and_then ? 1 : 0;
-    }
+  for (std::size_t k = first; k < last && scene.numerics.mechanics == Numerics::Mechanics::quasistatic; ++k) {
+    int hit = 0;
+    for (std::size_t q = 0; q < n; ++q)
+      hit += p.V[q] <= sixteenth && passes_through(p, q, state.fracture().points[k], h) ? 1 : 0;
+    whole[k - first] = hit <= now_and_then ? 1 : 0;
   }
-  for (const std::size_t q : beside) {
+  for (std::size_t q = 0; q < n; ++q) {
     const bool fine = p.V[q] <= sixteenth;
     for (std::size_t k = first; k < last; ++k) {
       const SurfacePoint& s = state.fracture().points[k];
@@ -371,11 +352,11 @@ bool runs(const Tip& tip, double time) {
   return tip.growing && time >= tip.due_s && time <= tip.runs_until_s;
 }
 
-bool ready_to_grow(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
+bool ready_to_grow(const Scene& scene, const Rocks& rocks, const State& state) {
   return std::ranges::any_of(state.tips, [&](const Tip& tip) { return ready(scene, rocks, state, tip); });
 }
 
-bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+bool grow(const Scene& scene, const Rocks& rocks, State& state) {
   bool moved = false;
   for (Tip& tip : state.tips) {
     if (!ready(scene, rocks, state, tip) || stop_at_edge(scene, state, tip)) continue;

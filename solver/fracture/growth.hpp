@@ -9,19 +9,15 @@
 
 namespace strata {
 
-/// Moves every tip at which what decides about it (tip.criterion; of energy tip.G_trial) has reached J_c = K_Ic^2/E' of
-/// the rock ahead by an increment, along its own direction or that of maximum hoop stress. A tip moves no faster than
-/// the Rayleigh speed of that rock: the next increment waits for the last one's length over c_R. Where more than one
-/// has become due in the step after that of the last, they come at once, but for those that energy decides about. What
-/// would cross an interface, or end less than a quarter of an increment short of it, ends on it; what starts on it, or
-/// less than a quarter of an increment before a bonded one, goes on. A tip that has grown to within 3 cells of an edge,
-/// or whose next increment would end within 1.5 cells of one, or within 5 cells of the coarse cells of a graded grid,
-/// stops for good and says so. A closed tip (K_I = 0) does not grow, unless energy has it slide on. Returns true if any
-/// tip moved: the copies must then be rebuilt. Throws nothing.
-bool grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
+/// Moves every tip whose driving() has reached J_c of the rock ahead by an increment, along its own direction or that
+/// of maximum hoop stress, no faster than the Rayleigh speed of that rock: increments due since the last step come at
+/// once, but for those that energy decides about. What would cross an interface, or end less than a quarter of an
+/// increment short of it, ends on it; what starts on it, or so near to a bonded one, goes on. A tip that has no room
+/// (what_stops()) stops for good. Returns true if any tip moved: the copies must then be rebuilt. Throws nothing.
+bool grow(const Scene& scene, const Rocks& rocks, State& state);
 
-/// Whether grow() would look at any tip more closely now: its J has reached J_c and its wait is over. Throws nothing.
-bool ready_to_grow(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state);
+/// Whether grow() would look at any tip more closely now: it has reached J_c and its wait is over. Throws nothing.
+bool ready_to_grow(const Scene& scene, const Rocks& rocks, const State& state);
 
 /// Whether a tip runs at a time (s), so that it is looked at in every step: its next increment is due, and waves of its
 /// last one have not yet crossed the rings that J is measured in. Throws nothing.
@@ -31,8 +27,8 @@ bool runs(const Tip& tip, double time);
 std::size_t rock_ahead(const Scene& scene, const State& state, const Tip& tip);
 
 /// What leaves a tip no room to grow or to measure J in, "" where nothing does: an edge that it heads for, nearer than
-/// 3 cells, once it has grown; the coarse cells of a graded grid, nearer than a cell beyond its rings. Throws nothing
-/// but std::bad_alloc.
+/// 3 cells or than 1.5 after the next increment, once it has grown; the coarse cells of a graded grid, nearer than a
+/// cell beyond its rings. Throws nothing but std::bad_alloc.
 std::string what_stops(const Scene& scene, const State& state, const Tip& tip);
 
 /// Stops a tip for good, with the reason, where something stops it so; whether it did. Throws nothing but
@@ -53,12 +49,10 @@ void note_growth(State& state, Tip& tip);
 /// Appends the events reach_interface and arrest as they become true; start and restart come with grow().
 void watch_tips(const Scene& scene, State& state);
 
-/// Splits particles within 1.5 cells of the fracture's points [first, last) into four where a cell has fewer than 16
-/// and the fracture lies neither on a grid line nor at mid-cell, or where it passes through a particle: 2 x 2 points a
-/// cell do not resolve the sides of such a fracture. Without inertia a particle of a sixteenth of a cell that a
-/// fracture passes through stays whole, on the + side, unless there are more than two along a piece: a line of
-/// particles would go astray, but an inclined fracture meets one now and then, and the stiffness of the intact block
-/// stays as it was factored.
+/// Splits particles in four: within 1.5 cells of the fracture's points [first, last) where a cell has fewer than 16 and
+/// the fracture lies neither on a grid line nor at mid-cell, since 2 x 2 do not resolve its sides; and where it passes
+/// through one. Without inertia a sixteenth of a cell that it passes through stays whole, on the + side, unless a piece
+/// has more than two: the intact block keeps the stiffness that was factored.
 void refine_particles(const Scene& scene, State& state, std::size_t first, std::size_t last);
 
 /// Spacing of the points of surfaces (m): two a cell.

@@ -59,8 +59,7 @@ RingParticle ring_particle(const Elasticity& rock, const State& state, const Fra
 
 // Calls visit(RingParticle) for the particles of all bins that count: at rest those where q is 1 all around do not.
 template <class Visit>
-void weigh_particles(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
-                     const TipGeometry& at, Visit visit) {
+void weigh_particles(const Scene& scene, const Rocks& rocks, const State& state, const TipGeometry& at, Visit visit) {
   const bool at_rest = scene.numerics.mechanics == Numerics::Mechanics::quasistatic && !scene.body.acceleration_m_s2;
   const auto flat = [](const std::array<double, 9>& q, double value) { return std::ranges::count(q, value) == 9; };
   const Particles& p = state.particles;
@@ -150,8 +149,8 @@ ParticleFields fields_at(const Scene& scene, const State& state, const Vec2& e, 
   return f;
 }
 
-void sum_particle(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Vec2& e,
-                  const RingParticle& of, TipSums& sums) {
+void sum_particle(const Scene& scene, const Rocks& rocks, const State& state, const Vec2& e, const RingParticle& of,
+                  TipSums& sums) {
   const Elasticity& rock = rocks[state.particles.rock[of.particle]];
   const ParticleFields f = fields_at(scene, state, e, of.bin, of.particle);
   const double g_xx = f.g(0, 0), g_xy = f.g(0, 1), g_yx = f.g(1, 0), g_yy = f.g(1, 1);
@@ -169,7 +168,7 @@ void sum_particle(const Scene& scene, const std::vector<Elasticity>& rocks, cons
 
 }  // namespace
 
-std::vector<TipRule> make_tip_rules(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
+std::vector<TipRule> make_tip_rules(const Scene& scene, const Rocks& rocks, const State& state) {
   std::vector<TipRule> rules;
   for (const Tip& tip : state.tips) {
     TipRule& rule = rules.emplace_back();
@@ -180,8 +179,7 @@ std::vector<TipRule> make_tip_rules(const Scene& scene, const std::vector<Elasti
   return rules;
 }
 
-void measure_tips(const Scene& scene, const std::vector<Elasticity>& rocks, const std::vector<TipRule>& rules,
-                  State& state) {
+void measure_tips(const Scene& scene, const Rocks& rocks, const std::vector<TipRule>& rules, State& state) {
   for (std::size_t t = 0; t < rules.size(); ++t) {
     const Frame& frame = rules[t].at.frame;
     TipSums sums;
@@ -192,7 +190,7 @@ void measure_tips(const Scene& scene, const std::vector<Elasticity>& rocks, cons
 }
 
 // Without rules, which would take memory in each step.
-void measure_tips(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+void measure_tips(const Scene& scene, const Rocks& rocks, State& state) {
   for (Tip& tip : state.tips) {
     const TipGeometry at = tip_geometry(scene, rocks, state, tip);
     TipSums sums;

@@ -35,21 +35,19 @@ struct TipRule {
 };
 
 /// The rules of all tips, good as long as particles and surfaces stay where they are. Throws nothing.
-std::vector<TipRule> make_tip_rules(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state);
+std::vector<TipRule> make_tip_rules(const Scene& scene, const Rocks& rocks, const State& state);
 
 /// Computes J, K_I, K_II, the next growth direction and how far they can be trusted for every tip, from the fields at
 /// the end of a step (state.motion holds the motion of that step).
 ///   J = int [sigma_ij u_i,1 - (W + T) d_1j] q_,j + rho ((a_i - b_i) u_i,1 - v_i v_i,1) q dA + int w . d(t q)/ds ds
-/// (Shih, Moran & Nakamura 1986, with inertia and the body force b per mass; face term by parts, t the net face
-/// traction), q falling from 1 to 0 over a ring; K_I and K_II by the interaction integral with Williams' fields (Yau,
-/// Wang & Corten 1980), whose face term, t 4/E' q/sqrt(2 pi r) dr, is exact up to the tip for t constant on a piece.
-/// Several rings: J is their mean, J_spread their (max - min)/mean. Kink angle by maximum hoop stress (Erdogan & Sih
-/// 1963). Throws NumericalFailure where K is not finite.
-void measure_tips(const Scene& scene, const std::vector<Elasticity>& rocks, const std::vector<TipRule>& rules,
-                  State& state);
+/// (Shih, Moran & Nakamura 1986; b the body force per mass, t the net face traction, by parts), the mean over rings,
+/// and J_spread their (max - min)/mean; K_I and K_II by the interaction integral with Williams' fields (Yau, Wang &
+/// Corten 1980), whose face term, t 4/E' q/sqrt(2 pi r) dr, is exact up to the tip for t constant on a piece. Kink
+/// angle by maximum hoop stress (Erdogan & Sih 1963). Throws NumericalFailure where J or K is not finite.
+void measure_tips(const Scene& scene, const Rocks& rocks, const std::vector<TipRule>& rules, State& state);
 
 /// The same where particles have moved.
-void measure_tips(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
+void measure_tips(const Scene& scene, const Rocks& rocks, State& state);
 
 /// Maximum hoop stress: tan(th/2) = (K_I - sqrt(K_I^2 + 8 K_II^2))/(4 K_II) (rad); 0 for K_II = 0.
 double kink_angle(double K_I, double K_II);

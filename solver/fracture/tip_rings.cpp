@@ -91,19 +91,17 @@ Room ring_room(const Scene& scene, const State& state, const Tip& tip, const Vec
 }
 
 // The share of the maximum-hoop kink that a growth by `length` (m) turns by. A kink over less than about three cells is
-// not resolved: particles beside it keep their sides, and K_II is read off a fracture that has hardly turned. K_II/K_I
-// answers a turn with about 0.9 of it, and the kink is twice K_II/K_I: a path that takes the whole of it overshoots by
-// 0.8 and comes to rest slowly; where the new point is dry it zigzags ever more. About half of the kink ends with K_II
-// = 0 at once. The path of local symmetry does not depend on the share (Cotterell & Rice 1980); the length in which it
-// is reached does.
+// not resolved: K_II is then read off a fracture that has hardly turned. K_II/K_I answers a turn with about 0.9 of it,
+// and the kink is twice K_II/K_I: a path that takes the whole of it overshoots, and about half ends with K_II = 0 at
+// once. The path of local symmetry does not depend on the share (Cotterell & Rice 1980), only the length to reach it.
 double turn_taken(const Scene& scene, double length) {
   constexpr double resolved_cells = 3.0;
   return std::min(scene.fracture->turn_share, length / (resolved_cells * scene.numerics.cell_m));
 }
 
-// Direction from the place a distance `back` (m) behind the tip to the tip. K is a property of the fracture as the
-// rings see it: measured in the frame of the last increment alone, a kink of the size of a ring's inner part comes back
-// twice too large with the opposite sign, and a path that follows it zigzags ever more.
+// Direction from the place a distance `back` (m) behind the tip to the tip: K is a property of the fracture as the
+// rings see it. In the frame of the last increment alone a kink comes back twice too large, and the path zigzags ever
+// more.
 Vec2 mean_direction(const Surface& fracture, bool at_back, double back) {
   const auto& v = fracture.vertices;
   const Vec2 tip = at_back ? v.back().x : v.front().x;
@@ -123,7 +121,7 @@ double Ring::at_node(double r) const {
   return 0.5 + 0.5 * std::cos(pi * (r - inner) / (outer - inner));
 }
 
-TipGeometry tip_geometry(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Tip& tip) {
+TipGeometry tip_geometry(const Scene& scene, const Rocks& rocks, const State& state, const Tip& tip) {
   const Surface& fracture = state.fracture();
   TipGeometry at;
   at.frame.tip = tip_position(state, tip);
@@ -199,9 +197,8 @@ AuxiliaryFields williams(const Elasticity& rock, int mode, double r, double thet
 
 namespace {
 
-// Faces that touch at the tip, and so do not open there, have no K_I; what drives such a tip is their sliding alone, J
-// = K_II^2/E'. What the rings see of faces that open farther back is no release of energy at the tip. A K_I below zero
-// says the same as touching faces.
+// Faces that touch at the tip have no K_I; what drives such a tip is their sliding alone, J = K_II^2/E'. A K_I below
+// zero says the same.
 void close_where_faces_touch(const Scene& scene, const State& state, const TipGeometry& at, Tip& tip) {
   constexpr double slides = 1e-6;  // of the largest jump: above the round-off of a symmetric block
   const auto& points = state.fracture().points;

@@ -13,10 +13,9 @@ namespace strata {
 // enough to leave the tip's own error inside.
 constexpr std::array<double, 3> ring_fractions{0.8, 0.9, 1.0};
 
-// No ring is smaller than this, since the tip's own error would fill it: what is nearer lies within the rings. J and K
-// are trusted where a ring of that size ends a cell before it, as far as a node's functions reach, and half a cell more
-// before an interface. Between, K_I is off by up to 0.3 % near rocks, springs and edges (0.4 % where it is trusted);
-// within, by 0.3 to 0.7 % at 2 cells, 2 to 17 % at 1, and by any amount nearer.
+// No ring is smaller than this, since the tip's own error would fill it. J and K are trusted where a ring of that size
+// ends a cell before what is nearest, as far as a node's functions reach, and half a cell more before an interface:
+// nearer, K_I is off by 0.3 %, within the ring by 0.3 to 0.7 % at 2 cells and by 2 to 17 % at 1.
 constexpr double narrowest_ring_cells = 2.5;
 constexpr double trusted_cells = narrowest_ring_cells + 1.0;
 constexpr double trusted_cells_at_interface = trusted_cells + 0.5;
@@ -27,9 +26,8 @@ struct Frame {
   Vec2 local(const Vec2& a) const { return {a.dot(e_1), a.dot(e_2)}; }
 };
 
-// The weight q: 1 at nodes inside the inner radius, 0 beyond the outer one, a cosine between, and between nodes the
-// same B-splines as the fields. An analytic q on the same particles scatters J by 3 % from ring to ring, since their
-// stress is in equilibrium in the sense of the grid's functions only.
+// The weight q: 1 at nodes inside the inner radius, 0 beyond the outer one, a cosine between; between nodes the same
+// B-splines as the fields, whose stress is in equilibrium in their sense only: an analytic q scatters J by 3 %.
 struct Ring {
   double inner = 0.0, outer = 0.0;
   double at_node(double r) const;
@@ -64,7 +62,7 @@ struct TipGeometry {
 };
 
 /// Frame, rings and rock of a tip. Throws nothing.
-TipGeometry tip_geometry(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Tip& tip);
+TipGeometry tip_geometry(const Scene& scene, const Rocks& rocks, const State& state, const Tip& tip);
 
 /// q at the nodes around the grid's node (i, j); nothing where no ring reaches them. Throws nothing.
 std::optional<RingNodes> ring_nodes(const Grid& g, const TipGeometry& at, int i, int j);
@@ -72,8 +70,8 @@ std::optional<RingNodes> ring_nodes(const Grid& g, const TipGeometry& at, int i,
 /// q at a place x (m) whose spans are those of that node. Throws nothing.
 RingWeights ring_weights(const Grid& g, const RingNodes& nodes, int i, int j, const Vec2& x);
 
-/// Angle of a place from the tip (rad), in the tip's frame (m), on the side of the fracture that the particle belongs
-/// to: behind a kink the straight extension and the fracture differ, and the side, not the angle, tells the face.
+/// Angle of a place from the tip (rad), in the tip's frame (m), on the particle's side of the fracture: behind a kink
+/// the side and not the angle tells the face.
 double angle_at(const Vec2& local, bool above);
 
 /// Williams' field of mode I (mode = 0) or II (1) for unit K, plane strain, in the tip's frame at r (m), theta (rad).

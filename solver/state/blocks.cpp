@@ -25,14 +25,11 @@ bool beside(const Bin& bin, const Bin& next) {
 }
 
 struct BlockBuilder {
-  const std::vector<std::uint8_t>& rock;
-  const std::vector<std::size_t>& from;  // the particles, bin by bin
+  const std::vector<std::uint8_t>& rock;  // of the particles, bin by bin
   std::vector<Bin> bins{};
   std::vector<std::size_t> order{};
 
-  std::uint8_t rock_of(const Bin& bin, int k) const {
-    return rock[from[static_cast<std::size_t>(bin.first) + static_cast<std::size_t>(k)]];
-  }
+  std::uint8_t rock_of(const Bin& bin, int k) const { return rock[static_cast<std::size_t>(bin.first + k)]; }
 
   // How many particles, from the first one on, all bins have with the same rocks.
   int shared(const Bin* run, int lanes) const {
@@ -47,8 +44,7 @@ struct BlockBuilder {
   void add_block(const Bin* run, int lanes, int n) {
     const auto start = static_cast<int>(order.size());
     for (int k = 0; k < n; ++k) {
-      for (int l = 0; l < lanes; ++l)
-        order.push_back(from[static_cast<std::size_t>(run[l].first) + static_cast<std::size_t>(k)]);
+      for (int l = 0; l < lanes; ++l) order.push_back(static_cast<std::size_t>(run[l].first + k));
     }
     for (int l = 0; l < lanes; ++l) {
       Bin bin = run[l];
@@ -104,6 +100,7 @@ void number_along_rows(Copies& copies, std::vector<Bin>& bins) {
     number[static_cast<std::size_t>(further[k].record)] = nodes + static_cast<int>(k);
     copies.node_of_record[static_cast<std::size_t>(nodes) + k] = further[k].node;
   }
+  copies.node_of_record.resize(static_cast<std::size_t>(nodes) + further.size());  // without what has been joined
   for (CutNode& cut : copies.cut) {
     for (int& record : cut.records) record = number[static_cast<std::size_t>(record)];
   }
@@ -112,9 +109,8 @@ void number_along_rows(Copies& copies, std::vector<Bin>& bins) {
   }
 }
 
-void make_blocks(const std::vector<std::uint8_t>& rock, std::vector<Bin>& bins, std::vector<std::size_t>& order) {
-  BlockBuilder builder{rock, order};
-  builder.order.reserve(order.size());
+std::vector<std::size_t> make_blocks(const std::vector<std::uint8_t>& rock, std::vector<Bin>& bins) {
+  BlockBuilder builder{rock};
   // At cut nodes there are bins of one place on both sides of a surface: a row at a time, sorted so that those beside
   // each other, whose records less their columns are the same, follow each other.
   const auto order_of = [](const Bin& bin) {
@@ -131,7 +127,8 @@ void make_blocks(const std::vector<std::uint8_t>& rock, std::vector<Bin>& bins, 
     builder.add_bins(row);
     b = end;
   }
-  bins.swap(builder.bins), order.swap(builder.order);
+  bins.swap(builder.bins);
+  return builder.order;
 }
 
 }  // namespace strata

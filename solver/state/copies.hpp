@@ -35,9 +35,9 @@ struct Copies {
 };
 
 // Neighbouring bins of a row whose records are neighbours too may form a block: each is a lane of vectors (see
-// lanes.hpp), the k-th particles of all of them stand side by side and are of the same rock. A bin of a block of n has
-// every n-th particle from its first one on; the block's bins stand side by side too, each with stride n. A bin takes a
-// line of memory of its own: sweeps read the first of each block alone, one of eight lines, which they ask for in time.
+// lanes.hpp), and the k-th particles of all of them, of the same rock, stand side by side. A bin of a block of n has
+// every n-th particle from its first one on; its bins follow each other, each with stride n. A bin takes a line of
+// memory of its own: sweeps read the first of each block alone.
 struct alignas(line_bytes) Bin {
   int first = 0, last = 0;      // particles first, first + stride, ... below last
   int stride = 1;               // bins of its block

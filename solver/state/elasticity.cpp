@@ -34,8 +34,8 @@ Elasticity make_elasticity(const Rock& rock) {
   return e;
 }
 
-std::vector<Elasticity> make_elasticities(const Scene& scene) {
-  std::vector<Elasticity> all;
+Rocks make_elasticities(const Scene& scene) {
+  Rocks all;
   for (const Rock& rock : scene.rocks) all.push_back(make_elasticity(rock));
   return all;
 }
@@ -48,7 +48,7 @@ std::size_t rock_at(const Scene& scene, const Vec2& x) {
   return scene.strata.layers.back().rock;
 }
 
-double strain_energy(const std::vector<Elasticity>& rocks, const Particles& p) {
+double strain_energy(const Rocks& rocks, const Particles& p) {
   double energy = 0.0;
   for (std::size_t q = 0; q < p.size(); ++q) {
     const Stress s = stress_of(rocks[p.rock[q]], p.g_xx[q], p.g_xy[q], p.g_yx[q], p.g_yy[q]);

@@ -22,18 +22,20 @@ struct Elasticity {
   double J_c = 0.0;      // K_Ic^2/E' (N/m)
 };
 
+using Rocks = std::vector<Elasticity>;  // of all rocks of a scene, in their order
+
 /// Constants of one rock in plane strain; c_R solves the Rayleigh equation
 /// (2 - q)^2 - 4 sqrt(1 - q) sqrt(1 - q c_S^2/c_P^2) = 0, q = (c_R/c_S)^2, by bisection to round-off.
 Elasticity make_elasticity(const Rock& rock);
 
-/// The same for all rocks of a scene, in their order.
-std::vector<Elasticity> make_elasticities(const Scene& scene);
+/// The same for all rocks of a scene.
+Rocks make_elasticities(const Scene& scene);
 
 /// Index of the rock of the layer at a place (m).
 std::size_t rock_at(const Scene& scene, const Vec2& x);
 
 /// Strain energy of the change from the in-situ state, sum V_p sigma_p : e_p / 2 (J/m).
-double strain_energy(const std::vector<Elasticity>& rocks, const Particles& particles);
+double strain_energy(const Rocks& rocks, const Particles& particles);
 
 // s = lambda tr(e) I + 2 mu e, e = sym(g): stress of a displacement gradient g (Pa).
 inline Stress stress_of(const Elasticity& rock, double g_xx, double g_xy, double g_yx, double g_yy) {

@@ -2,10 +2,8 @@
 // quadratic B-splines reach.
 //
 // Each node stands in the middle of its span of both axes, [t_i, t_i+1] with knots t: those of quadratic B-splines, of
-// which node i's lives on the spans i - 1, i and i + 1. On a uniform grid t_i = (i - 1/2) h. On a graded one spans grow
-// (see scene/graded_cells.hpp) and a cell, from node to node, is the mean of two spans; the first and the last node
-// stand on the block's edges, so that their spans reach half over them, and the ghosts' spans are those that they
-// mirror.
+// which node i's lives on the spans i - 1, i and i + 1. On a uniform grid t_i = (i - 1/2) h; on a graded one spans grow
+// (scene/graded_cells.hpp). The first and the last node stand on the block's edges; ghosts' spans mirror those inside.
 #pragma once
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 #include "state/light_copies.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "state/shape_functions.hpp"
 
@@ -13,11 +13,6 @@ namespace {
 
 std::size_t master_of(const State& state, int record) {
   return static_cast<std::size_t>(state.masters[static_cast<std::size_t>(record)].record);
-}
-
-// |grad N_n| (1/m).
-double slope(const Gradients& g, std::size_t n) {
-  return std::sqrt(g.N_x[n] * g.N_x[n] + g.N_y[n] * g.N_y[n]);
 }
 
 // int N_i ds over a surface's split points (m) of each record that they part, -1 for all others.
@@ -40,25 +35,24 @@ std::vector<double> reached_by_points(const Scene& scene, const State& state, st
   return reached;
 }
 
-// sum_p V_p |grad N_i| (m) of each record that a surface reaches.
-std::vector<double> worth_of_particles(const Scene& scene, const State& state, const std::vector<double>& reached) {
-  std::vector<double> worth(state.masters.size(), 0.0);
+// sum_p V_p |grad N_i| (m) of the records r of all bins, added up at index(r); negative ones are left out.
+template <class Index>
+std::vector<double> worth_of_particles(const Scene& scene, const State& state, std::size_t size, Index index) {
+  std::vector<double> worth(size, 0.0);
   const Particles& p = state.particles;
-  for (const std::size_t b : state.cut_bins) {
-    const Bin& bin = state.bins[b];
-    if (std::none_of(bin.record.begin(), bin.record.end(), [&](int r) { return reached[master_of(state, r)] >= 0.0; }))
-      continue;
+  for (const Bin& bin : state.bins) {
+    std::array<int, 9> at{};
+    std::ranges::transform(bin.record, at.begin(), index);
+    if (std::ranges::all_of(at, [](int r) { return r < 0; })) continue;
     for (const std::size_t q : bin) {
       const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
-      for (std::size_t n = 0; n < 9; ++n) worth[master_of(state, bin.record[n])] += p.V[q] * slope(g, n);
+      for (std::size_t n = 0; n < 9; ++n) {
+        const double slope = std::sqrt(g.N_x[n] * g.N_x[n] + g.N_y[n] * g.N_y[n]);  // |grad N_n| (1/m)
+        if (at[n] >= 0) worth[static_cast<std::size_t>(at[n])] += p.V[q] * slope;
+      }
     }
   }
   return worth;
-}
-
-// Cut nodes that a fracture and an interface part: the only ones with corners.
-bool has_corners(const CutNode& cut) {
-  return cut.fracture != 0 && cut.mask != cut.fracture;
 }
 
 // Whether the fracture is not along the grid where it is nearest to a node.
@@ -72,87 +66,57 @@ bool leans_at(const State& state, int node) {
   return std::abs(after->n.x()) < along_grid && std::abs(after->n.y()) < along_grid;
 }
 
-struct Corner {
-  SideWord key = 0;
-  double worth = 0.0;
-};
-
-bool larger(const Corner& a, const Corner& b) {
-  return a.worth > b.worth || (a.worth == b.worth && a.key > b.key);
-}
-
-using Corners = std::vector<Corner>;  // of a cut node
-
-// The cut nodes with corners that a leaning fracture makes, and the rock whose particles reach them.
-struct LeaningCorners {
-  std::vector<char> at;  // of each cut node: whether it is one
-  Eigen::AlignedBox2d rock;
-};
-
-LeaningCorners leaning_corners(const State& state) {
-  const Grid& g = state.grid;
-  LeaningCorners leaning{std::vector<char>(state.copies.cut.size(), 0), {}};
-  for (int node = 0; node < g.nodes(); ++node) {
-    const int c = state.copies.cut_of_node[static_cast<std::size_t>(node)];
-    if (c < 0 || !has_corners(state.copies.cut[static_cast<std::size_t>(c)]) || !leans_at(state, node)) continue;
-    leaning.at[static_cast<std::size_t>(c)] = 1;
-    const int i = g.column(node), j = g.row(node);
-    leaning.rock.extend(Vec2{g.x(std::max(i - 2, -1)), g.y(std::max(j - 2, -1))});
-    leaning.rock.extend(Vec2{g.x(std::min(i + 2, g.nx + 1)), g.y(std::min(j + 2, g.ny + 1))});
+// The corner that a small one is to be part of, or itself.
+std::size_t corner_for(const CutNode& cut, const std::vector<double>& worth, std::size_t small) {
+  const auto less = [&](std::size_t a, std::size_t b) {
+    return std::pair(worth[a], cut.keys[a]) < std::pair(worth[b], cut.keys[b]);
+  };
+  std::size_t into = small;
+  for (std::size_t other = 0; other < worth.size(); ++other) {
+    const SideWord parted = cut.keys[small] ^ cut.keys[other];
+    if (std::popcount(parted) == 1 && parted != cut.fracture && less(into, other)) into = other;
   }
-  return leaning;
-}
-
-// sum_p V_p |grad N_i| of each corner of each cut node that has some.
-std::vector<Corners> corners_of(const Scene& scene, const State& state, const LeaningCorners& leaning) {
-  std::vector<Corners> corners(state.copies.cut.size());
-  const Particles& p = state.particles;
-  const Grid& grid = state.grid;
-  for (std::size_t q = 0; q < p.size(); ++q) {
-    if (!leaning.rock.contains(Vec2{p.x[q], p.y[q]})) continue;
-    const int i = grid.column_at(p.x[q]), j = grid.row_at(p.y[q]);
-    if (i < 0 || i > grid.nx || j < 0 || j > grid.ny) continue;
-    std::array<int, 9> cut = grid.around(i, j);
-    for (int& c : cut) {
-      c = state.copies.cut_of_node[static_cast<std::size_t>(c)];
-      if (c >= 0 && leaning.at[static_cast<std::size_t>(c)] == 0) c = -1;
-    }
-    if (std::ranges::count(cut, -1) == 9) continue;
-    const Gradients g = gradients_at(scene, grid, i, j, {p.x[q], p.y[q]}, p.half(q));
-    for (std::size_t n = 0; n < 9; ++n) {
-      if (cut[n] < 0) continue;
-      const auto c = static_cast<std::size_t>(cut[n]);
-      const SideWord key = state.copies.cut[c].key(p.sides[q]);
-      auto at = std::ranges::find(corners[c], key, &Corner::key);
-      if (at == corners[c].end()) at = corners[c].insert(at, Corner{key});
-      at->worth += p.V[q] * slope(g, n);
-    }
-  }
-  return corners;
+  return into;
 }
 
 }  // namespace
 
 void join_corners(const Scene& scene, State& state) {
-  auto& cuts = state.copies.cut;
-  const LeaningCorners leaning = leaning_corners(state);
-  if (leaning.rock.isEmpty()) return;
-  const std::vector<Corners> corners = corners_of(scene, state, leaning);
-  for (std::size_t c = 0; c < cuts.size(); ++c) {
-    const Corners& own = corners[c];
-    if (own.size() < 3) continue;
-    double all = 0.0;
-    for (const Corner& corner : own) all += corner.worth;
-    for (const Corner& small : own) {
-      if (small.worth >= least_corner * all) continue;
-      const Corner* into = nullptr;
-      for (const Corner& other : own) {
-        const SideWord parted = small.key ^ other.key;
-        const bool beside = std::popcount(parted) == 1 && parted != cuts[c].fracture;
-        if (beside && larger(other, into == nullptr ? small : *into)) into = &other;
-      }
-      if (into != nullptr) cuts[c].joined.push_back({small.key, into->key});
+  Copies& copies = state.copies;
+  std::vector<char> leans(static_cast<std::size_t>(copies.records()), 0);  // of corners' records
+  for (const CutNode& cut : copies.cut) {                                  // without particles a ghost has no corner
+    if (cut.fracture == 0 || cut.mask == cut.fracture || cut.keys.size() < 3) continue;
+    if (!leans_at(state, copies.node_of_record[static_cast<std::size_t>(cut.records.front())])) continue;
+    for (const int record : cut.records) leans[static_cast<std::size_t>(record)] = 1;
+  }
+  if (std::ranges::count(leans, 1) == 0) return;
+  const auto index = [&](int record) { return leans[static_cast<std::size_t>(record)] != 0 ? record : -1; };
+  const std::vector<double> worth_of_record = worth_of_particles(scene, state, leans.size(), index);
+  std::vector<int> now(leans.size());
+  std::iota(now.begin(), now.end(), 0);
+  for (CutNode& cut : copies.cut) {
+    if (cut.keys.empty() || index(cut.records.front()) < 0) continue;
+    std::vector<double> worth;
+    for (const int record : cut.records) worth.push_back(worth_of_record[static_cast<std::size_t>(record)]);
+    const double all = std::accumulate(worth.begin(), worth.end(), 0.0);
+    const auto keys = cut.keys;
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      const std::size_t into = worth[k] < least_corner * all ? corner_for(cut, worth, k) : k;
+      if (into == k) continue;
+      cut.joined.push_back({keys[k], keys[into]});
+      now[static_cast<std::size_t>(cut.records[k])] = cut.records[into];
     }
+    const auto serves = [&](SideWord key) {  // another corner as well
+      return std::ranges::any_of(cut.joined, [&](const auto& pair) { return pair[1] == key; });
+    };
+    for (const auto& [small, into] : cut.joined) {
+      if (serves(small)) continue;
+      const auto at = std::ranges::find(cut.keys, small) - cut.keys.begin();
+      cut.keys.erase(cut.keys.begin() + at), cut.records.erase(cut.records.begin() + at);
+    }
+  }
+  for (Bin& bin : state.bins) {
+    for (int& record : bin.record) record = now[static_cast<std::size_t>(record)];
   }
 }
 
@@ -160,7 +124,10 @@ void join_light_copies(const Scene& scene, State& state) {
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
     const std::vector<double> reached = reached_by_points(scene, state, k);
     if (std::all_of(reached.begin(), reached.end(), [](double sum) { return sum < 0.0; })) continue;
-    const std::vector<double> worth = worth_of_particles(scene, state, reached);
+    const std::vector<double> worth = worth_of_particles(scene, state, reached.size(), [&](int record) {
+      const std::size_t master = master_of(state, record);
+      return reached[master] < 0.0 ? -1 : static_cast<int>(master);
+    });
     const auto is_light = [&](int record) {
       const double load = reached[master_of(state, record)];
       return load > (load < least_reach * state.grid.h ? 1.0 : most_load) * worth[master_of(state, record)];

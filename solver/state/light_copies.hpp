@@ -7,34 +7,31 @@
 namespace strata {
 
 // What faces exert on a copy is balanced by the stress in its rock: int grad N_i dV = -+ int N_i n ds, of which
-// particles and points are quadratures. Under a uniform pressure their ratio is the stress of the copy's rock in
-// pressures. Where whole columns of 4 x 4 particles a cell belong to a copy it is at most 2.25 (a fracture just before
-// the next column), and 1 for 2 x 2 at a grid line or mid-cell. More of it means that a corner with few particles is
-// all there is.
+// particles and points are quadratures. Their ratio is at most 2.25 where whole columns of 4 x 4 particles a cell
+// belong to a copy, and 1 for 2 x 2 at a grid line or mid-cell. More of it: a corner with few particles is all there
+// is.
 constexpr double most_load = 2.5;
 
 // int N_i ds in cells from which on a straight fracture finds a column of 4 x 4 particles in the copy: (1/2) (1/8)^2. A
-// copy that less reaches is of no use to a fracture, and may not bear more than its particles are worth.
+// copy that less reaches may not bear more than its particles are worth.
 constexpr double least_reach = 1.0 / 128.0;
 
 /// Where int N_i ds over a surface's split points is more than most_load (of copies below least_reach: 1) times sum_p
-/// V_p |grad N_i| over the particles of a copy, the surface's stencils no longer tell its two sides apart at that node,
-/// as if the copy had no particles: neither tractions nor jumps reach it (D and D^T alike), its particles follow the
-/// rock beside. Needs bins, masters and stencils of `state` (rebuild.hpp), changes its stencils. Throws nothing.
+/// V_p |grad N_i| over the particles of a copy, the surface's stencils no longer tell its two sides apart at that node:
+/// neither tractions nor jumps reach it (D and D^T alike). Needs bins, masters and stencils of `state`, changes its
+/// stencils. Throws nothing.
 void join_light_copies(const Scene& scene, State& state);
 
-// Of sum_p V_p |grad N_i| of all particles around a node, what a corner between a leaning fracture and an interface
-// needs to be a copy. With more, corners of soft interfaces that do slip are held: K_I of a crack at 45 degrees through
-// springs of E'/a is 1.4 % off with 1/128, 2.3 % with 1/16 (1 m cells, a = 5 m). With as little, stiff springs hold the
-// thin wedges of a crack at 20 degrees: K_I is 2 % too small.
+// Of sum_p V_p |grad N_i| around a node, what a corner between a leaning fracture and an interface needs to be a copy.
+// With more, corners of soft interfaces that do slip are held: K_I of a crack at 45 degrees through springs of E'/a is
+// 1.4 % off with 1/128, 2.3 % with 1/16. With less, stiff springs hold the thin wedges of a crack at 20 degrees.
 constexpr double least_corner = 1.0 / 128.0;
 
 /// Where a fracture that does not lie along the grid crosses an interface, nodes have a copy for each of up to four
-/// corners, and several nodes may have the same one or two particles at the point of such a corner: too few to hold all
-/// these copies. A corner that has less than least_corner of its node's sum_p V_p |grad N_i| becomes part of the
-/// largest one on the same side of the fracture that a single interface parts from it (CutNode::joined), if that is
-/// larger than itself: where both are small, a single particle may be all there is of either. Needs the cut nodes of
-/// `state`, before any record of theirs. Throws nothing.
+/// corners, and the one or two particles at the point of a corner cannot hold those of several nodes. A corner that has
+/// less than least_corner of its node's sum_p V_p |grad N_i| becomes part of the largest one that a single interface
+/// parts from it (CutNode::joined), if that is larger. Changes the cut nodes and bins of `state`, before blocks,
+/// masters and stencils are made. Throws nothing.
 void join_corners(const Scene& scene, State& state);
 
 }  // namespace strata

@@ -29,15 +29,14 @@ struct Particles {
   Vec2 half(std::size_t q) const { return {half_x[q], half_y[q]}; }
 };
 
-// What particles say of a step: their kinetic energy (J/m) before and after they took up the grid's motion, the
-// square of their largest speed (m^2/s^2), and how far any is from the middle node of its bin (spans, along x or y).
-struct ParticleReport {
-  double before = 0.0;
-  double after = 0.0;
-  double step_strain = 0.0;  // energy of the step's own strain, sum V dsigma : de/2 (J/m)
-  double largest_speed2 = 0.0;
-  double farthest_cells = 0.0;
+// What particles say of a step: their kinetic energy (J/m) before and after they took up the grid's motion, the energy
+// of the step's own strain, sum V dsigma : de/2 (J/m), the square of their largest speed (m^2/s^2), and how far any is
+// from the middle node of its bin (spans, along x or y). Real: a number, or lanes of them, with twice the energies.
+template <class Real>
+struct MotionReport {
+  Real before{}, after{}, step_strain{}, largest_speed2{}, farthest_cells{};
 };
+using ParticleReport = MotionReport<double>;
 
 // Calls visit(array ...) for each array of some particles side by side, so that reordering, copying and saving are
 // written once.

@@ -14,7 +14,7 @@
 namespace strata {
 
 constexpr std::size_t record_parts = 32;  // enough to even out the work of a few threads
-// Records (slots): loops over fewer are one thread's, since others would wait longer than they work. Of blocks of
+// Loops over fewer records are one thread's, since others would wait longer than they work. Of blocks of
 // 80 x 80 cells, 6561, two threads gain.
 constexpr std::size_t worth_threads = 2048;
 
@@ -36,23 +36,19 @@ void for_each_part(std::size_t n, Work work) {
   for (std::size_t part = 0; part < record_parts; ++part) work(part, part_of(n, part));
 }
 
-/// Calls work(lanes, r, sum) for all of n ranges, range(k), some lanes from r on at a time, and returns the sum, part
-/// by part, so that its digits do not depend on the number of threads that share `size` records. Allocates nothing.
-template <class Sum, class Range, class Work>
-Sum sum_by_lanes(std::size_t n, std::size_t size, Range range, Work work) {
-  constexpr std::size_t W = most_lanes;
+/// Calls work(lanes, r, sum) for all of n records, some lanes from r on at a time, and returns the sum, part by part,
+/// so that its digits do not depend on the number of threads. Allocates nothing.
+template <class Sum, class Work>
+Sum sum_over_records(std::size_t n, Work work) {
   std::array<Sum, record_parts> sums{};
-#pragma omp parallel for schedule(static) if (size > worth_threads)
-  for (std::size_t part = 0; part < record_parts; ++part) {
+  for_each_part(n, [&](std::size_t part, const Part& of) {
+    constexpr std::size_t W = most_lanes;
     Sum sum{};
-    for (std::size_t k = n * part / record_parts; k < n * (part + 1) / record_parts; ++k) {
-      const Part of = range(k);
-      std::size_t r = of.first;
-      for (; r + W <= of.last; r += W) work(AllLanes{}, r, sum);
-      if (r < of.last) work(FirstLanes{static_cast<int>(of.last - r)}, r, sum);
-    }
+    std::size_t r = of.first;
+    for (; r + W <= of.last; r += W) work(AllLanes{}, r, sum);
+    if (r < of.last) work(FirstLanes{static_cast<int>(of.last - r)}, r, sum);
     sums[part] = sum;
-  }
+  });
   Sum total{};
   for (const Sum& sum : sums) total += sum;
   return total;

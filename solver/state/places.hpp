@@ -77,20 +77,26 @@ struct SplitPlace {
   std::size_t law = 0;              // index into SplitPlaces::laws
   double k = 0.0;                   // contact stiffness (Pa/m)
   double per_n = 0.0, per_t = 0.0;  // change of the jump at the step's end per traction (m/Pa)
+  Vec2 r_start = Vec2::Zero();      // reaction at the step's start (Pa)
+  Vec2 rate = Vec2::Zero();         // of its jump (m/s), where neighbours are known
   std::vector<Entry> entries;
-  std::vector<Neighbour> neighbours;  // itself among them
+  std::vector<Neighbour> neighbours;  // under kinematics = "total": that share nodes with it, itself among them
+};
+
+// A master that split places reach: its mass (kg/m), its velocity and what the places have added to it (m/s).
+struct SplitNode {
+  std::size_t at = 0;  // record
+  double m = 0.0;
+  Vec2 v = Vec2::Zero(), dv = Vec2::Zero();
 };
 
 struct HeldFactor;
 
-// All of them. Nodes are records or, under kinematics = "total", slots.
 struct SplitPlaces {
-  std::vector<std::size_t> nodes;  // that places reach
   std::vector<SplitPlace> places;
-  std::vector<InterfaceLaw> laws;          // the scene's, of tips' springs, and of the fracture's faces
-  std::vector<Vec2> free, v;               // of these nodes: velocity without and with what places exert (m/s)
-  std::vector<Vec2> rate;                  // of each place's jump (m/s)
-  std::vector<double> r_t_start;           // tangential reaction at the step's start (Pa)
+  std::vector<SplitNode> nodes;
+  std::vector<std::size_t> node_at;        // index into nodes of each record
+  std::vector<InterfaceLaw> laws;          // the scene's, that of the fracture's faces, and of tips' springs
   std::shared_ptr<const HeldFactor> held;  // of the places held last (solve_held_reactions())
 };
 

@@ -232,25 +232,6 @@ std::vector<SortKey> sort_keys(const State& state, const std::vector<SideWord>& 
   return keys;
 }
 
-// Keys in their order. Particles stay in or near their cells, so that most often nothing is to be done, and a count of
-// each cell's tells where those of another begin.
-std::vector<SortKey> sorted(const Grid& g, std::vector<SortKey> keys) {
-  if (std::ranges::is_sorted(keys)) return keys;
-  const auto cell = [&](const SortKey& key) { return static_cast<std::size_t>(key.j * (g.nx + 1) + key.i); };
-  std::vector<std::size_t> next(static_cast<std::size_t>((g.nx + 1) * (g.ny + 1)) + 1, 0);
-  for (const SortKey& key : keys) ++next[cell(key) + 1];
-  std::partial_sum(next.begin(), next.end(), next.begin());
-  std::vector<SortKey> out(keys.size());
-  for (const SortKey& key : keys) out[next[cell(key)]++] = key;
-  auto from = out.begin();
-  for (std::size_t c = 0; c + 1 < next.size(); ++c) {  // next is now where the cell's keys end
-    const auto to = out.begin() + static_cast<std::ptrdiff_t>(next[c]);
-    if (!std::is_sorted(from, to)) std::sort(from, to);
-    from = to;
-  }
-  return out;
-}
-
 void sort_particles(Particles& particles, const std::vector<std::size_t>& order) {
   std::vector<std::size_t> moved;
   for (std::size_t k = 0; k < order.size(); ++k) {
@@ -408,17 +389,16 @@ SideWord sides_at(const State& state, const Vec2& x, int except) {
 void rebuild_copies(const Scene& scene, State& state) {
   const NodeMasks masks = node_masks(scene, state);
   make_cut_nodes(state, masks, state.copies);
-  join_corners(scene, state);
   const std::vector<SideWord> reach = reach_of(state.grid, masks.word);
-  const std::vector<SortKey> keys = sorted(state.grid, sort_keys(state, reach));
+  std::vector<SortKey> keys = sort_keys(state, reach);
+  if (!std::ranges::is_sorted(keys)) std::ranges::sort(keys);
   make_bins(state, reach, keys);
   std::vector<std::size_t> order(keys.size());
-  std::transform(keys.begin(), keys.end(), order.begin(), [](const SortKey& key) { return key.from; });
-  if (scene.numerics.in_lanes()) {
-    number_along_rows(state.copies, state.bins);
-    make_blocks(state.particles.rock, state.bins, order);
-  }
+  std::ranges::transform(keys, order.begin(), &SortKey::from);
   sort_particles(state.particles, order);
+  join_corners(scene, state);
+  if (scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics) number_along_rows(state.copies, state.bins);
+  if (scene.numerics.in_lanes()) sort_particles(state.particles, make_blocks(state.particles.rock, state.bins));
   list_bins(reach, state);
   make_masters(scene, state);
   make_surface_stencils(state);

@@ -109,21 +109,16 @@ Weights uniform_weights(double f, double half) {
   return graded_weights<Shape>(f, 1.0, 1.0, half);
 }
 
-/// Weights at the coordinate x (m) of the nodes of columns i - 1, i and i + 1, where i (0 ... nx) is the one whose span
-/// holds x; half: half the size of a uGIMP particle (m). Derivatives are per span: divide by grid.span_x(i).
+/// Weights at the coordinate x (m) of the nodes i - 1, i and i + 1 of an axis with knots t (none: uniform, of cells h),
+/// where i (0 ... n) is the one whose span holds x; half: half the size of a uGIMP particle (m). Derivatives are per
+/// span.
 template <class Shape>
-Weights weights_x(const Grid& grid, int i, double x, double half) {
-  if (grid.x_knots.empty()) return uniform_weights<Shape>(x / grid.h - i, half / grid.h);
-  const double s = grid.span_x(i);
-  return graded_weights<Shape>((x - grid.x(i)) / s, grid.span_x(i - 1) / s, grid.span_x(i + 1) / s, half / s);
-}
-
-/// The same along y, of row j.
-template <class Shape>
-Weights weights_y(const Grid& grid, int j, double y, double half) {
-  if (grid.y_knots.empty()) return uniform_weights<Shape>(y / grid.h - j, half / grid.h);
-  const double s = grid.span_y(j);
-  return graded_weights<Shape>((y - grid.y(j)) / s, grid.span_y(j - 1) / s, grid.span_y(j + 1) / s, half / s);
+Weights weights_along(const std::vector<double>& t, double h, int i, double x, double half) {
+  if (t.empty()) return uniform_weights<Shape>(x / h - i, half / h);
+  const auto k = static_cast<std::size_t>(i) + 1;  // t[k] is t_i
+  const double s = t[k + 1] - t[k];
+  return graded_weights<Shape>((x - 0.5 * (t[k] + t[k + 1])) / s, (t[k] - t[k - 1]) / s, (t[k + 2] - t[k + 1]) / s,
+                               half / s);
 }
 
 /// Calls f with the type of the scene's shape function, so that loops are compiled for each of them.
@@ -149,7 +144,8 @@ struct Gradients {
 /// particle (m). Throws nothing.
 template <class Shape>
 Gradients gradients_of(const Grid& grid, int i, int j, const Vec2& x, const Vec2& half) {
-  const Weights X = weights_x<Shape>(grid, i, x.x(), half.x()), Y = weights_y<Shape>(grid, j, x.y(), half.y());
+  const Weights X = weights_along<Shape>(grid.x_knots, grid.h, i, x.x(), half.x());
+  const Weights Y = weights_along<Shape>(grid.y_knots, grid.h, j, x.y(), half.y());
   const double s_x = grid.span_x(i), s_y = grid.span_y(j);
   Gradients out;
   for (std::size_t n = 0; n < 9; ++n) {

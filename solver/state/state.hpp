@@ -213,12 +213,12 @@ inline Vec2 place_ahead(const State& state, const Tip& tip) {
   return tip_position(state, tip) + ahead_cells * state.grid.h * tip_direction(state.fracture(), tip.at_back);
 }
 
-/// Displacement of a record since the base (m), under kinematics = "total", or velocity (m/s): of v_x and v_y by slots.
+/// Displacement of a record since the base (m), under kinematics = "total", or velocity (m/s): its master's of x and y.
 /// Throws nothing.
 inline Vec2 of_master(const State& state, int record, const SpreadArray& x, const SpreadArray& y) {
   const Master& master = state.masters[static_cast<std::size_t>(record)];
-  const auto slot = static_cast<std::size_t>(state.total.op->slots.of_record[static_cast<std::size_t>(record)]);
-  return {master.x * x[slot], master.y * y[slot]};
+  const auto at = static_cast<std::size_t>(master.record);
+  return {master.x * x[at], master.y * y[at]};
 }
 inline Vec2 total_displacement(const State& state, int record) {
   return of_master(state, record, state.total.u_x, state.total.u_y);

@@ -19,8 +19,8 @@ void add_stiffness(const Elasticity& rock, const Gradients& g, double V, LocalSt
   }
 }
 
-Eigen::SparseMatrix<double> assemble_stiffness(const Scene& scene, const std::vector<Elasticity>& rocks,
-                                               const State& state, const std::vector<Master>& masters) {
+Eigen::SparseMatrix<double> assemble_stiffness(const Scene& scene, const Rocks& rocks, const State& state,
+                                               const std::vector<Master>& masters) {
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(state.bins.size() * 171 + 2 * masters.size());
   const Particles& p = state.particles;

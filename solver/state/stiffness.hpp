@@ -31,7 +31,7 @@ inline Unknown unknown_of(const std::vector<Master>& masters, int record, int co
 
 /// The lower triangle of K = sum_p V_p B^T C B over the state's bins, with records tied by `masters`; unknowns that
 /// nothing touches have 1 on the diagonal. Throws nothing.
-Eigen::SparseMatrix<double> assemble_stiffness(const Scene& scene, const std::vector<Elasticity>& rocks,
-                                               const State& state, const std::vector<Master>& masters);
+Eigen::SparseMatrix<double> assemble_stiffness(const Scene& scene, const Rocks& rocks, const State& state,
+                                               const std::vector<Master>& masters);
 
 }  // namespace strata

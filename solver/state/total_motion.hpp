@@ -16,58 +16,40 @@
 
 namespace strata {
 
-// Nodal arrays are indexed by slots. Slots of a plane are laid out as the grid is, with two more rings of nodes around
-// the block than it has cells' corners; the k-th copy of a node stands in plane k. Neighbours are thus the same number
-// of slots away wherever the same surfaces are beside them.
-struct Slots {
-  static constexpr int ring = 2;
-  int stride = 0;              // slots of a row
-  int plane = 0;               // slots of a plane
-  int size = 0;                // of all planes and what vectors may read beyond
-  std::vector<int> of_record;  // slot of each record's master
-};
-
-struct SlotRange {
-  int first = 0, last = 0;  // slots [first, last)
-};
-
-// A 2 x 2 block of -M^-1 K (1/s^2), of the slot `offset` slots ahead of its row's.
+// A 2 x 2 block of -M^-1 K (1/s^2), of the record `offset` ahead of its row's.
 struct StencilEntry {
   int offset = 0;
   double xx = 0.0, xy = 0.0, yx = 0.0, yy = 0.0;
 };
 
-// Slots in a row that share the blocks [entry, entry + full) and, without xy and yx, the next `diagonal` ones.
+// Records [first, last) that share the blocks [entry, entry + full) and, without xy and yx, the next `diagonal` ones.
 struct StencilRun {
-  SlotRange slots;
-  int entry = 0, full = 0, diagonal = 0;
+  int first = 0, last = 0, entry = 0, full = 0, diagonal = 0;
 };
 
-// Blocks of as many slots in a row as there are lanes, from `offset` slots ahead on.
+// Blocks of as many records in a row as there are lanes, from `offset` ahead on.
 struct alignas(64) StencilSegment {
   std::array<double, most_lanes> xx{}, xy{}, yx{}, yy{};
   int offset = 0;
 };
 
-// A slot in no run, with the segments [first, last) of its row, which all slots with the same row share.
-struct SingleSlot {
-  int slot = 0, first = 0, last = 0;
+// A record in no run, with the segments [first, last) of its row, which all records with the same row share.
+struct SingleRecord {
+  int record = 0, first = 0, last = 0;
 };
 
-// -M^-1 K of the masters, by slots.
+// -M^-1 K of the masters.
 struct StencilOperator {
-  Slots slots;
   std::vector<StencilEntry> entries;
   std::vector<StencilRun> runs;
   std::vector<StencilSegment> segments;
-  std::vector<SingleSlot> singles;
-  std::vector<SlotRange> ranges;  // slots in use, a row of a plane each
+  std::vector<SingleRecord> singles;
 };
 
-// The force of the rock of a sample of bonded places (see BondSample): `base` + sum of T u + m a over slots.
+// The force of the rock of a sample of bonded places (see BondSample): `base` + sum of T u + m a over masters.
 struct BondSensor {
   struct Entry {
-    int slot = 0;
+    std::size_t master = 0;
     double xx = 0.0, xy = 0.0, yx = 0.0, yy = 0.0;  // Pa
     double m = 0.0;                                 // kg/m
   };
@@ -82,7 +64,7 @@ struct TotalMotion {
   // Derived.
   bool based = false;                         // whether what follows belongs to the particles as they are
   std::shared_ptr<const StencilOperator> op;  // none: the copies have changed
-  SpreadArray m;                              // kg/m, by slots as all that follows
+  SpreadArray m;                              // kg/m, of the masters, as all that follows
   SpreadArray base_x, base_y;                 // acceleration at the base (m/s^2)
   SpreadArray a_x, a_y;                       // and now
   SpreadArray v_x, v_y;                       // velocity (m/s)

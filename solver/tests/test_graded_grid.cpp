@@ -30,7 +30,7 @@ struct AxisMoments {
 template <class Shape>
 AxisMoments axis_moments(const Grid& g, double x) {
   const int i = g.column_at(x);
-  const Weights w = weights_x<Shape>(g, i, x, 0.0);
+  const Weights w = weights_along<Shape>(g.x_knots, g.h, i, x, 0.0);
   AxisMoments sum;
   for (int a = 0; a < 3; ++a) {
     const auto k = static_cast<std::size_t>(a);
@@ -45,7 +45,7 @@ template <class Shape>
 double function_of(const Grid& g, int c, double x, bool derivative) {
   const int i = std::clamp(g.column_at(x), 0, g.nx);
   if (std::abs(i - c) > 1) return 0.0;
-  const Weights w = weights_x<Shape>(g, i, x, 0.0);
+  const Weights w = weights_along<Shape>(g.x_knots, g.h, i, x, 0.0);
   const auto k = static_cast<std::size_t>(c - i + 1);
   return derivative ? w.dN[k] / g.span_x(i) : w.N[k];
 }

@@ -1,4 +1,4 @@
-// Parts of records and slots that threads share a step by: each is done once, and blocks with enough nodes for threads
+// Parts of records that threads share a step by: each is done once, and blocks with enough nodes for threads
 // end with the same digits on any number of them.
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -71,28 +71,23 @@ TEST_CASE("tied records are in the part of their master") {
   }
 }
 
-// Mutations that fail: the last slot of a run or of a range left out, a run's slots among the single ones, too.
-TEST_CASE("runs and single slots of the operator are all nodes, each once") {
+// Mutations that fail: the last record of a run left out, a run's records among the single ones, too.
+TEST_CASE("runs and single records of the operator are all nodes, each once") {
   Scene scene = busy_block();
   scene.numerics.kinematics = Numerics::Kinematics::total;
   Run run(scene);
   start_base(run.scene, run.rocks, run.state);
   const StencilOperator& op = *run.state.total.op;
-  std::vector<int> written(static_cast<std::size_t>(op.slots.size), 0), moved = written;
-  for (const StencilRun& of : op.runs) {
-    for (int s = of.slots.first; s < of.slots.last; ++s) ++written[static_cast<std::size_t>(s)];
-  }
-  for (const SingleSlot& single : op.singles) ++written[static_cast<std::size_t>(single.slot)];
-  for (const SlotRange& range : op.ranges) {
-    for (int s = range.first; s < range.last; ++s) ++moved[static_cast<std::size_t>(s)];
-  }
   const State& state = run.state;
+  std::vector<int> written(state.masters.size(), 0);
+  for (const StencilRun& of : op.runs) {
+    for (int r = of.first; r < of.last; ++r) ++written[static_cast<std::size_t>(r)];
+  }
+  for (const SingleRecord& single : op.singles) ++written[static_cast<std::size_t>(single.record)];
   for (std::size_t r = 0; r < state.masters.size(); ++r) {
-    const auto s = static_cast<std::size_t>(op.slots.of_record[r]);
     const Master& master = state.masters[r];
-    if (master.record != static_cast<int>(r) || !(state.total.m[s] > 0.0)) continue;
-    CHECK(written[s] == (master.x == 0.0 && master.y == 0.0 ? 0 : 1));  // corners are held
-    CHECK(moved[s] == 1);
+    if (master.record != static_cast<int>(r) || !(state.total.m[r] > 0.0)) continue;
+    CHECK(written[r] == (master.x == 0.0 && master.y == 0.0 ? 0 : 1));  // corners are held
   }
   CHECK(std::ranges::count(written, 1) > 3000);
   CHECK(std::ranges::none_of(written, [](int times) { return times > 1; }));

@@ -30,12 +30,11 @@ void stir_nodes(State& state, unsigned seed) {
   TotalMotion& t = state.total;
   Dice dice(seed);
   for (std::size_t r = 0; r < state.masters.size(); ++r) {
-    const auto slot = static_cast<std::size_t>(t.op->slots.of_record[r]);
-    if (state.masters[r].record != static_cast<int>(r) || !(t.m[slot] > 0.0)) continue;
-    t.u_x[slot] = state.masters[r].x * dice.uniform(-1e-3, 1e-3);
-    t.u_y[slot] = state.masters[r].y * dice.uniform(-1e-3, 1e-3);
-    t.v_x[slot] = state.masters[r].x * dice.uniform(-1.0, 1.0);
-    t.v_y[slot] = state.masters[r].y * dice.uniform(-1.0, 1.0);
+    if (!(t.m[r] > 0.0)) continue;
+    t.u_x[r] = state.masters[r].x * dice.uniform(-1e-3, 1e-3);
+    t.u_y[r] = state.masters[r].y * dice.uniform(-1e-3, 1e-3);
+    t.v_x[r] = state.masters[r].x * dice.uniform(-1.0, 1.0);
+    t.v_y[r] = state.masters[r].y * dice.uniform(-1.0, 1.0);
   }
 }
 
@@ -51,9 +50,9 @@ double largest_difference(const SpreadArray& a, const SpreadArray& b) {
   return most;
 }
 
-double of_slots_in_runs(const StencilOperator& op) {
+double of_records_in_runs(const StencilOperator& op) {
   double count = 0.0;
-  for (const StencilRun& run : op.runs) count += run.slots.last - run.slots.first;
+  for (const StencilRun& run : op.runs) count += run.last - run.first;
   return count;
 }
 
@@ -69,8 +68,8 @@ Vec2 nodal_momentum(const State& state) {
 
 // Requires that the composed stencils give random nodal displacements the forces that the particles give them, to 1e-11
 // of the largest, in 150 random blocks with cracks at any angle, interfaces and contrasts, layers of either direction,
-// edges of every kind: both by runs and by single slots. Mutations that fail: the last vectors of a run left out, the
-// base left out of runs, K_xy of the other sign, single slots twice.
+// edges of every kind: both by runs and by single records. Mutations that fail: the last vectors of a run left out, the
+// base left out of runs, K_xy of the other sign, single records twice.
 TEST_CASE("composed stencils are the particles' operator") {
   double in_runs = 0.0, in_singles = 0.0, worst = 0.0;
   for (unsigned seed = 0; seed < 150; ++seed) {
@@ -91,7 +90,7 @@ TEST_CASE("composed stencils are the particles' operator") {
     CHECK(off < 1e-11 * most);
     CHECK(fast_power == Approx(plain_power).epsilon(1e-9));
     worst = std::max(worst, off / most);
-    in_runs += of_slots_in_runs(*t.op), in_singles += static_cast<double>(t.op->singles.size());
+    in_runs += of_records_in_runs(*t.op), in_singles += static_cast<double>(t.op->singles.size());
   }
   CAPTURE(worst, in_runs, in_singles);
   CHECK(in_runs > 5000.0);

@@ -9,16 +9,15 @@
 namespace strata {
 
 /// The nodal field, by records, whose interpolation is that of the values (x, y) of the particles of some bins:
-/// `passes` of v_i += (1/m_i) sum_p N_ip m_p (v_p - sum_j N_jp v_j) from nothing. The first pass smooths a wave of
-/// number k by (kh)^2/8 along each axis; each further one leaves the square, the cube ... of that. Throws nothing but
-/// std::bad_alloc.
+/// `passes` of v_i += (1/m_i) sum_p N_ip m_p (v_p - sum_j N_jp v_j) from nothing; of a wave of number k the n-th leaves
+/// ((kh)^2/8)^n along each axis. Throws nothing but std::bad_alloc.
 std::vector<Vec2> nodes_from_particles(const Scene& scene, const State& state, const std::vector<Bin>& bins,
                                        const SpreadArray& x, const SpreadArray& y, int passes);
 
 /// Makes the particles as they are the base: masses, accelerations a_i = f_i/m_i of their stress, operator, surfaces.
 /// Nodes take up state.total.velocity or, where a run starts, the velocity field that gives the particles theirs.
 /// Does nothing where the base stands.
-void start_base(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
+void start_base(const Scene& scene, const Rocks& rocks, State& state);
 
 /// Brings particles (u, grad u, v = sum N_ip v_i) and surfaces (u, and the jumps of what is not split) up to date from
 /// the nodes' displacements since the base, keeps the nodes' velocities in state.total.velocity and ends the base. Does
@@ -31,18 +30,14 @@ void note_motion(State& state);
 /// Adds sum_p N_ip m_p b_p / m_i for the body force state.body, if any, to the nodes' accelerations.
 void push_body(const Scene& scene, State& state);
 
-/// Adds the body force's work of the step to the ledger, sum m b . v dt at the step's end; returns its power (W/m).
-double note_body_work(State& state);
-
 // Velocities of the records of copies that an event is about to change.
 struct RecordVelocities {
   Copies copies;
   std::vector<Vec2> v;  // m/s
 };
 
-/// Gives the records of new copies their velocities: those of the same node and key before; where a copy has split, of
-/// the copy it was part of; where several have come together, their mean by the mass of the particles that each brings.
-/// Momentum is thereby kept to round-off.
+/// Gives the records of new copies their velocities: those of the same node before; where it was cut, the mean of its
+/// copies' by the mass of the particles that each brings. Momentum is thereby kept to round-off.
 void carry_velocities(const Scene& scene, const RecordVelocities& before, State& state);
 
 /// Ledger and nodal kinetic energy after an event: what the nodes lost (or gained) by it counts as lost in transfer.
@@ -50,15 +45,14 @@ void recount_kinetic(State& state);
 
 /// The forces of the rock of the samples of bonded places as linear functions of the nodal displacements since the base
 /// and accelerations; particles must be up to date. Throws nothing but std::bad_alloc.
-std::vector<BondSensor> make_bond_sensors(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state);
+std::vector<BondSensor> make_bond_sensors(const Scene& scene, const Rocks& rocks, const State& state);
 
 /// What find_forces() gives, from the nodes (N/m). Throws nothing.
 void forces_of_nodes(const State& state, std::vector<Vec2>& forces);
 
 /// Gives the fracture's new points and vertices (those whose jump is still exactly nothing) the jump that the
-/// displacements have there, w = D u: within a cell a tip grows into nodes that are split, whose sides have moved apart
-/// before. Without it faces would meet, and J would be too small, by what had opened. Copies must be built, and all
-/// particles up to date. Changes state.sums. Throws nothing but std::bad_alloc.
-void open_new_points(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
+/// displacements have there, w = D u: within a cell a tip grows into nodes whose sides have moved apart before. Copies
+/// must be built, and all particles up to date. Changes state.sums. Throws nothing but std::bad_alloc.
+void open_new_points(const Scene& scene, const Rocks& rocks, State& state);
 
 }  // namespace strata

@@ -16,42 +16,37 @@ namespace strata {
 namespace {
 
 constexpr int lanes = most_lanes;
-constexpr std::size_t shortest_run = 8;  // slots: below, a run needs more beside its sums than sharing them saves
-
-Lane load(const double* from) {
-  return AllLanes{}.load(from);
-}
-void store(double* to, const Lane& value) {
-  AllLanes{}.store(to, value);
-}
+constexpr AllLanes all;
+constexpr int shortest_run = 8;  // records: below, a run needs more beside its sums than sharing them saves
 
 // --- rows
 
 // A row of -M^-1 K: its blocks by ascending offset.
 using StencilRow = std::vector<StencilEntry>;
 
-// The rows of all masters. Slots whose surroundings are the same (particles, weights and copies around them) share one.
+// The rows of all masters. Records whose surroundings are the same (particles, weights and copies around them) share
+// one.
 struct StencilRows {
   std::vector<StencilRow> rows;
-  std::vector<int> row_of_slot;  // -1: no master of a mass stands there
+  std::vector<int> of_record;  // -1: no master of a mass
 };
 
 // Places within a cell are told apart by multiples of this (cells): far above the round-off of a coordinate, far below
 // what a kernel's results may differ by.
 constexpr double same_place = 1.0 / (1LL << 36);
 
+using Tokens = std::vector<std::int64_t>;
+
 struct TokenHash {
-  template <class Tokens>
   std::size_t operator()(const Tokens& tokens) const {
     std::uint64_t hash = 0xcbf29ce484222325U;  // FNV-1a by words
-    for (const auto token : tokens) hash = (hash ^ static_cast<std::uint64_t>(token)) * 0x100000001b3U;
+    for (const std::int64_t token : tokens) hash = (hash ^ static_cast<std::uint64_t>(token)) * 0x100000001b3U;
     return static_cast<std::size_t>(hash ^ (hash >> 29));
   }
 };
 
 // Numbers of things by what they are made of.
-template <class Token>
-using Kinds = std::unordered_map<std::vector<Token>, int, TokenHash>;
+using Kinds = std::unordered_map<Tokens, int, TokenHash>;
 
 // What the particles of a bin do to the nine nodes around it.
 struct BinKind {
@@ -63,7 +58,7 @@ std::int64_t in_steps(double cells) {
   return std::llround(cells / same_place);
 }
 
-void describe_bin(const State& state, const Bin& bin, std::vector<std::int64_t>& tokens) {
+void describe_bin(const State& state, const Bin& bin, Tokens& tokens) {
   const Grid& g = state.grid;
   const Particles& p = state.particles;
   tokens.clear();
@@ -79,7 +74,7 @@ void describe_bin(const State& state, const Bin& bin, std::vector<std::int64_t>&
   }
 }
 
-BinKind make_kind(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const Bin& bin) {
+BinKind make_kind(const Scene& scene, const Rocks& rocks, const State& state, const Bin& bin) {
   const Particles& p = state.particles;
   BinKind kind;
   for (const std::size_t q : bin) {
@@ -95,10 +90,10 @@ struct BinKinds {
   std::vector<int> of_bin;
 };
 
-BinKinds find_bin_kinds(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
+BinKinds find_bin_kinds(const Scene& scene, const Rocks& rocks, const State& state) {
   BinKinds out;
-  Kinds<std::int64_t> numbers;
-  std::vector<std::int64_t> tokens;
+  Kinds numbers;
+  Tokens tokens;
   for (const Bin& bin : state.bins) {
     describe_bin(state, bin, tokens);
     const auto [number, is_new] = numbers.try_emplace(tokens, static_cast<int>(numbers.size()));
@@ -114,54 +109,37 @@ struct Incidence {
   int node = 0;
 };
 
-// Those of each slot, in the order of bins.
-std::vector<std::vector<Incidence>> find_incidences(const State& state, const Slots& slots) {
-  std::vector<std::vector<Incidence>> of_slot(static_cast<std::size_t>(slots.size));
+// Those of each master, in the order of bins.
+std::vector<std::vector<Incidence>> find_incidences(const State& state) {
+  std::vector<std::vector<Incidence>> of_master(state.masters.size());
   for (std::size_t b = 0; b < state.bins.size(); ++b) {
     for (std::size_t n = 0; n < 9; ++n) {
       const auto record = static_cast<std::size_t>(state.bins[b].record[n]);
-      auto& at = of_slot[static_cast<std::size_t>(slots.of_record[record])];
-      if (at.empty()) at.reserve(9);
+      auto& at = of_master[static_cast<std::size_t>(state.masters[record].record)];
       at.push_back({static_cast<int>(b), static_cast<int>(n)});
     }
   }
-  return of_slot;
+  return of_master;
 }
 
-const Master& master_at(const State& state, const Bin& bin, int node) {
-  return state.masters[static_cast<std::size_t>(bin.record[static_cast<std::size_t>(node)])];
+const Master& master_at(const State& state, int bin, int node) {
+  const Bin& of = state.bins[static_cast<std::size_t>(bin)];
+  return state.masters[static_cast<std::size_t>(of.record[static_cast<std::size_t>(node)])];
 }
 
-int code_of(const Master& master) {
-  return 3 * (static_cast<int>(master.x) + 1) + static_cast<int>(master.y) + 1;
-}
-
-// What a row is assembled from.
-struct Assembly {
-  const State& state;
-  const Slots& slots;
-  const BinKinds& bins;
-  const std::vector<std::vector<Incidence>>& incidences;
-
-  template <class Visit>
-  void visit(int slot, Visit visit_one) const {
-    for (const Incidence& at : incidences[static_cast<std::size_t>(slot)]) {
-      const auto b = static_cast<std::size_t>(at.bin);
-      visit_one(state.bins[b], at.node, bins.of_bin[b]);
+// What the row of a master is made of.
+void describe_row(const State& state, const BinKinds& bins, const std::vector<Incidence>& around, int record,
+                  Tokens& tokens) {
+  const auto code_of = [](const Master& m) { return 3 * static_cast<int>(m.x) + static_cast<int>(m.y) + 4; };
+  tokens.clear();
+  for (const auto& [bin, node] : around) {
+    tokens.push_back(bins.of_bin[static_cast<std::size_t>(bin)]);
+    tokens.push_back(16 * node + code_of(master_at(state, bin, node)));
+    for (int n = 0; n < 9; ++n) {
+      const Master& other = master_at(state, bin, n);
+      tokens.push_back(16 * (other.record - record) + code_of(other));
     }
   }
-};
-
-void describe_row(const Assembly& from, int slot, std::vector<std::int32_t>& tokens) {
-  tokens.clear();
-  from.visit(slot, [&](const Bin& bin, int node, int kind) {
-    tokens.push_back(kind);
-    tokens.push_back(16 * node + code_of(master_at(from.state, bin, node)));
-    for (int n = 0; n < 9; ++n) {
-      const int column = from.slots.of_record[static_cast<std::size_t>(bin.record[static_cast<std::size_t>(n)])];
-      tokens.push_back(16 * (column - slot) + code_of(master_at(from.state, bin, n)));
-    }
-  });
 }
 
 StencilEntry& entry_at(StencilRow& row, int offset) {
@@ -175,113 +153,74 @@ double largest_of(const StencilEntry& e) {
   return std::max({std::abs(e.xx), std::abs(e.xy), std::abs(e.yx), std::abs(e.yy)});
 }
 
-double largest_of(const StencilRow& row) {
-  double most = 0.0;
-  for (const StencilEntry& entry : row) most = std::max(most, largest_of(entry));
-  return most;
-}
-
 // Coefficients that are round-off of sums that cancel.
 void drop_round_off(StencilRow& row) {
   constexpr double nothing = 1e-15;
-  const double small = nothing * largest_of(row);
+  double most = 0.0;
+  for (const StencilEntry& entry : row) most = std::max(most, largest_of(entry));
   for (StencilEntry& entry : row) {
     for (double* value : {&entry.xx, &entry.xy, &entry.yx, &entry.yy}) {
-      if (std::abs(*value) <= small) *value = 0.0;
+      if (std::abs(*value) <= nothing * most) *value = 0.0;
     }
   }
   std::erase_if(row, [](const StencilEntry& entry) { return largest_of(entry) == 0.0; });
 }
 
 // Empty where the node has no mass.
-StencilRow make_row(const Assembly& from, int slot) {
+StencilRow make_row(const State& state, const BinKinds& bins, const std::vector<Incidence>& around, int record) {
   StencilRow row;
   double m = 0.0;
-  from.visit(slot, [&](const Bin& bin, int node, int kind) {
-    const BinKind& local = from.bins.kinds[static_cast<std::size_t>(kind)];
-    const Master& own = master_at(from.state, bin, node);
+  for (const auto& [bin, node] : around) {
+    const BinKind& local = bins.kinds[static_cast<std::size_t>(bins.of_bin[static_cast<std::size_t>(bin)])];
+    const Master& own = master_at(state, bin, node);
     m += local.m[static_cast<std::size_t>(node)];
     for (int n = 0; n < 9; ++n) {
       const auto block = local.K.block<2, 2>(2 * node, 2 * n);
       if (block.isZero(0.0)) continue;
-      const Master& other = master_at(from.state, bin, n);
-      const int column = from.slots.of_record[static_cast<std::size_t>(bin.record[static_cast<std::size_t>(n)])];
-      StencilEntry& entry = entry_at(row, column - slot);
+      const Master& other = master_at(state, bin, n);
+      StencilEntry& entry = entry_at(row, other.record - record);
       entry.xx -= own.x * other.x * block(0, 0), entry.xy -= own.x * other.y * block(0, 1);
       entry.yx -= own.y * other.x * block(1, 0), entry.yy -= own.y * other.y * block(1, 1);
     }
-  });
+  }
   if (!(m > 0.0)) return {};
   for (StencilEntry& entry : row) entry.xx /= m, entry.xy /= m, entry.yx /= m, entry.yy /= m;
   drop_round_off(row);
   return row;
 }
 
-// Where the nodal quantities of a state stand.
-Slots make_slots(const State& state) {
-  const Grid& g = state.grid;
-  Slots slots;
-  const int width = g.nx + 1 + 2 * Slots::ring, rows = g.ny + 1 + 2 * Slots::ring;
-  slots.stride = (width + 7) / 8 * 8 + 8;  // vectors that begin in a row's last slots end before the next row's first
-  slots.plane = slots.stride * rows;
-  int planes = 1;
-  const auto place = [&](int record) {
-    const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
-    const int c = state.copies.cut_of_node[static_cast<std::size_t>(node)];
-    int copy = 0;
-    if (c >= 0) {
-      const auto& records = state.copies.cut[static_cast<std::size_t>(c)].records;
-      const auto at = std::find(records.begin(), records.end(), record);
-      if (at != records.end()) copy = static_cast<int>(at - records.begin());
-    }
-    planes = std::max(planes, copy + 1);
-    return copy * slots.plane + (g.row(node) + Slots::ring) * slots.stride + g.column(node) + Slots::ring;
-  };
-  for (const Master& master : state.masters) slots.of_record.push_back(place(master.record));
-  slots.size = planes * slots.plane + 16;
-  return slots;
-}
-
 // Rows of -M^-1 K with K = sum_p V_p B^T C B (add_stiffness()) and lumped masses, rows and columns folded to masters.
 // Surroundings count as the same where they agree to 1.5e-11 of a cell.
-StencilRows make_stencil_rows(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
-                              const Slots& slots) {
+StencilRows make_stencil_rows(const Scene& scene, const Rocks& rocks, const State& state) {
   const BinKinds bins = find_bin_kinds(scene, rocks, state);
-  const auto incidences = find_incidences(state, slots);
-  const Assembly from{state, slots, bins, incidences};
+  const auto incidences = find_incidences(state);
   StencilRows out;
-  out.row_of_slot.assign(static_cast<std::size_t>(slots.size), -1);
-  Kinds<std::int32_t> numbers;
-  std::vector<std::int32_t> tokens;
-  for (int slot = 0; slot < slots.size; ++slot) {
-    const auto s = static_cast<std::size_t>(slot);
-    if (incidences[s].empty()) continue;
-    describe_row(from, slot, tokens);
+  out.of_record.assign(state.masters.size(), -1);
+  Kinds numbers;
+  Tokens tokens;
+  for (std::size_t r = 0; r < incidences.size(); ++r) {
+    if (incidences[r].empty()) continue;
+    const auto record = static_cast<int>(r);
+    describe_row(state, bins, incidences[r], record, tokens);
     const auto [number, is_new] = numbers.try_emplace(tokens, static_cast<int>(numbers.size()));
-    if (is_new) out.rows.push_back(make_row(from, slot));
-    if (!out.rows[static_cast<std::size_t>(number->second)].empty()) out.row_of_slot[s] = number->second;
+    if (is_new) out.rows.push_back(make_row(state, bins, incidences[r], record));
+    if (!out.rows[static_cast<std::size_t>(number->second)].empty()) out.of_record[r] = number->second;
   }
   return out;
 }
 
 // --- building
 
-// Runs of slots with the same row.
-void find_runs(const StencilRows& rows, StencilOperator& op) {
-  const std::vector<int>& row = rows.row_of_slot;
-  for (std::size_t first = 0, last = 0; first < row.size(); first = last) {
-    for (last = first + 1; last < row.size() && row[last] == row[first];) ++last;
-    if (row[first] < 0 || last - first < shortest_run) continue;
-    StencilRun run{{static_cast<int>(first), static_cast<int>(last)}, static_cast<int>(op.entries.size())};
-    for (const bool diagonal : {false, true}) {
-      for (const StencilEntry& entry : rows.rows[static_cast<std::size_t>(row[first])]) {
-        if ((entry.xy == 0.0 && entry.yx == 0.0) != diagonal) continue;
-        op.entries.push_back(entry);
-        ++(diagonal ? run.diagonal : run.full);
-      }
+StencilRun make_run(int first, int last, const StencilRow& row, std::vector<StencilEntry>& entries) {
+  StencilRun run{first, last, static_cast<int>(entries.size())};
+  for (const bool diagonal : {false, true}) {
+    for (const StencilEntry& entry : row) {
+      if ((entry.xy == 0.0 && entry.yx == 0.0) != diagonal) continue;
+      entries.push_back(entry);
+      ++(diagonal ? run.diagonal : run.full);
     }
-    op.runs.push_back(run);
   }
+  return run;
 }
 
 void add_segments(const StencilRow& row, std::vector<StencilSegment>& segments) {
@@ -297,48 +236,20 @@ void add_segments(const StencilRow& row, std::vector<StencilSegment>& segments) 
   }
 }
 
-// A row of a plane each, from its first slot in use to its last.
-void find_ranges(StencilOperator& op) {
-  std::vector<int> used = op.slots.of_record;
-  std::sort(used.begin(), used.end());
-  for (const int slot : used) {
-    const bool same = !op.ranges.empty() && slot / op.slots.stride == op.ranges.back().first / op.slots.stride;
-    if (!same) op.ranges.push_back({slot, slot + 1});
-    op.ranges.back().last = std::max(op.ranges.back().last, slot + 1);
-  }
-}
-
-// All slots that no run has, with the segments of their rows.
-void find_singles(const StencilRows& rows, StencilOperator& op) {
-  std::vector<SlotRange> segments;
-  for (const StencilRow& row : rows.rows) {
-    const auto first = static_cast<int>(op.segments.size());
-    add_segments(row, op.segments);
-    segments.push_back({first, static_cast<int>(op.segments.size())});
-  }
-  auto run = op.runs.begin();
-  for (int slot = 0; slot < op.slots.size; ++slot) {
-    while (run != op.runs.end() && run->slots.last <= slot) ++run;
-    const int row = rows.row_of_slot[static_cast<std::size_t>(slot)];
-    if (row < 0 || (run != op.runs.end() && run->slots.first <= slot)) continue;
-    const SlotRange& of_row = segments[static_cast<std::size_t>(row)];
-    op.singles.push_back({slot, of_row.first, of_row.last});
-  }
-}
-
 // --- applying
 
-// `count` vectors of slots from `at` on.
+// `count` vectors of records from `at` on.
 template <int count>
 void apply_block(const StencilEntry* entries, const StencilRun& run, std::size_t at, TotalMotion& t) {
   constexpr std::ptrdiff_t W = lanes;
   Lane x[count], y[count];
-  for (std::ptrdiff_t k = 0; k < count; ++k) x[k] = load(&t.base_x[at] + W * k), y[k] = load(&t.base_y[at] + W * k);
+  for (std::ptrdiff_t k = 0; k < count; ++k)
+    x[k] = all.load(&t.base_x[at] + W * k), y[k] = all.load(&t.base_y[at] + W * k);
   const double *u_x = t.u_x.data() + at, *u_y = t.u_y.data() + at;
   const StencilEntry *e = entries, *const full = entries + run.full, *const end = full + run.diagonal;
   for (; e != full; ++e) {
     for (std::ptrdiff_t k = 0; k < count; ++k) {
-      const Lane a = load(u_x + e->offset + W * k), b = load(u_y + e->offset + W * k);
+      const Lane a = all.load(u_x + e->offset + W * k), b = all.load(u_y + e->offset + W * k);
       x[k] += e->xx * a;
       y[k] += e->yx * a;
       x[k] += e->xy * b;
@@ -347,22 +258,22 @@ void apply_block(const StencilEntry* entries, const StencilRun& run, std::size_t
   }
   for (; e != end; ++e) {
     for (std::ptrdiff_t k = 0; k < count; ++k) {
-      x[k] += e->xx * load(u_x + e->offset + W * k);
-      y[k] += e->yy * load(u_y + e->offset + W * k);
+      x[k] += e->xx * all.load(u_x + e->offset + W * k);
+      y[k] += e->yy * all.load(u_y + e->offset + W * k);
     }
   }
-  for (std::ptrdiff_t k = 0; k < count; ++k) store(&t.a_x[at] + W * k, x[k]), store(&t.a_y[at] + W * k, y[k]);
+  for (std::ptrdiff_t k = 0; k < count; ++k) all.store(&t.a_x[at] + W * k, x[k]), all.store(&t.a_y[at] + W * k, y[k]);
 }
 
 void apply_run(const StencilOperator& op, const StencilRun& run, TotalMotion& t) {
   const StencilEntry* entries = op.entries.data() + run.entry;
-  auto at = static_cast<std::size_t>(run.slots.first);
-  const auto last = static_cast<std::size_t>(run.slots.last);
+  auto at = static_cast<std::size_t>(run.first);
+  const auto last = static_cast<std::size_t>(run.last);
   constexpr std::size_t W = lanes, four = 4 * W;
   for (; at + four <= last; at += four) apply_block<4>(entries, run, at, t);
   // What is left in as few vectors as hold it; they begin before it where it does not fill them.
   const std::size_t vectors = (last - at + lanes - 1) / lanes;
-  if (last - static_cast<std::size_t>(run.slots.first) < vectors * lanes) {
+  if (last - static_cast<std::size_t>(run.first) < vectors * lanes) {
     for (; at + lanes <= last; at += lanes) apply_block<1>(entries, run, at, t);
     if (at < last) apply_block<1>(entries, run, last - lanes, t);
     return;
@@ -373,23 +284,23 @@ void apply_run(const StencilOperator& op, const StencilRun& run, TotalMotion& t)
   if (vectors == 1) apply_block<1>(entries, run, last - lanes, t);
 }
 
-void apply_single(const StencilOperator& op, const SingleSlot& single, TotalMotion& t) {
-  const auto slot = static_cast<std::size_t>(single.slot);
-  const double *u_x = t.u_x.data() + slot, *u_y = t.u_y.data() + slot;
+void apply_single(const StencilOperator& op, const SingleRecord& single, TotalMotion& t) {
+  const auto r = static_cast<std::size_t>(single.record);
+  const double *u_x = t.u_x.data() + r, *u_y = t.u_y.data() + r;
   Lane x{}, y{};
   for (int s = single.first; s < single.last; ++s) {
     const StencilSegment& segment = op.segments[static_cast<std::size_t>(s)];
-    const Lane a = load(u_x + segment.offset), b = load(u_y + segment.offset);
-    x += load(segment.xx.data()) * a;
-    y += load(segment.yx.data()) * a;
-    x += load(segment.xy.data()) * b;
-    y += load(segment.yy.data()) * b;
+    const Lane a = all.load(u_x + segment.offset), b = all.load(u_y + segment.offset);
+    x += all.load(segment.xx.data()) * a;
+    y += all.load(segment.yx.data()) * a;
+    x += all.load(segment.xy.data()) * b;
+    y += all.load(segment.yy.data()) * b;
   }
-  t.a_x[slot] = t.base_x[slot] + sum_of_lanes(x);
-  t.a_y[slot] = t.base_y[slot] + sum_of_lanes(y);
+  t.a_x[r] = t.base_x[r] + sum_of_lanes(x);
+  t.a_y[r] = t.base_y[r] + sum_of_lanes(y);
 }
 
-// A thread has the same runs and slots in each step, so that nodes stay in its cache.
+// A thread has the same runs and records in each step, so that nodes stay in its cache.
 void apply_stencils(TotalMotion& t) {
   const StencilOperator& op = *t.op;
 #pragma omp parallel if (t.m.size() > worth_threads)
@@ -397,14 +308,13 @@ void apply_stencils(TotalMotion& t) {
 #pragma omp for schedule(static) nowait
     for (const StencilRun& run : op.runs) apply_run(op, run, t);
 #pragma omp for schedule(static)
-    for (const SingleSlot& single : op.singles) apply_single(op, single, t);
+    for (const SingleRecord& single : op.singles) apply_single(op, single, t);
   }
 }
 
 // The same by particles: f_i = -sum_p V_p sigma(grad u) grad N_ip, folded to masters.
-void apply_particles(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+void apply_particles(const Scene& scene, const Rocks& rocks, State& state) {
   TotalMotion& t = state.total;
-  const Slots& slots = t.op->slots;
   NodalSums sums(state.masters.size());
   const Particles& p = state.particles;
   for (const Bin& bin : state.bins) {
@@ -424,24 +334,13 @@ void apply_particles(const Scene& scene, const std::vector<Elasticity>& rocks, S
   }
   fold_to_masters(state, sums);
   for (std::size_t r = 0; r < sums.size(); ++r) {
-    const auto slot = static_cast<std::size_t>(slots.of_record[r]);
-    if (state.masters[r].record != static_cast<int>(r) || !(t.m[slot] > 0.0)) continue;
-    t.a_x[slot] = t.base_x[slot] + sums[r].f_x / t.m[slot];
-    t.a_y[slot] = t.base_y[slot] + sums[r].f_y / t.m[slot];
+    if (!(t.m[r] > 0.0)) continue;
+    t.a_x[r] = t.base_x[r] + sums[r].f_x / t.m[r];
+    t.a_y[r] = t.base_y[r] + sums[r].f_y / t.m[r];
   }
 }
 
-// The sum over the slots in use.
-template <class Sum, class Work>
-Sum over_slots(const TotalMotion& t, Work work) {
-  const std::vector<SlotRange>& ranges = t.op->ranges;
-  const auto range = [&](std::size_t k) {
-    return Part{static_cast<std::size_t>(ranges[k].first), static_cast<std::size_t>(ranges[k].last)};
-  };
-  return sum_by_lanes<Sum>(ranges.size(), t.m.size(), range, work);
-}
-
-// Of vectors of slots: see NodeTotals.
+// Of lanes: see NodeTotals.
 struct LaneTotals {
   Lane kinetic{}, increment{}, power{}, product{}, fastest{};
   LaneTotals& operator+=(const LaneTotals& other) {
@@ -453,20 +352,33 @@ struct LaneTotals {
 
 }  // namespace
 
-StencilOperator make_operator(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state) {
+StencilOperator make_operator(const Scene& scene, const Rocks& rocks, const State& state) {
+  const StencilRows rows = make_stencil_rows(scene, rocks, state);
   StencilOperator op;
-  op.slots = make_slots(state);
-  const StencilRows rows = make_stencil_rows(scene, rocks, state, op.slots);
-  find_runs(rows, op);
-  find_singles(rows, op);
-  find_ranges(op);
+  std::vector<int> segment{0};  // where those of each row begin and the last end
+  for (const StencilRow& row : rows.rows) {
+    add_segments(row, op.segments);
+    segment.push_back(static_cast<int>(op.segments.size()));
+  }
+  const std::vector<int>& of = rows.of_record;
+  for (std::size_t first = 0, last = 0; first < of.size(); first = last) {
+    for (last = first + 1; last < of.size() && of[last] == of[first];) ++last;
+    if (of[first] < 0) continue;
+    const auto row = static_cast<std::size_t>(of[first]);
+    const int from = static_cast<int>(first), to = static_cast<int>(last);
+    if (to - from >= shortest_run) {
+      op.runs.push_back(make_run(from, to, rows.rows[row], op.entries));
+    } else {
+      for (int record = from; record < to; ++record) op.singles.push_back({record, segment[row], segment[row + 1]});
+    }
+  }
   return op;
 }
 
 NodeTotals move_nodes(double keep, State& state) {
   TotalMotion& t = state.total;
   const double dt = state.dt;
-  const auto sum = over_slots<LaneTotals>(t, [&](auto lane, std::size_t s, LaneTotals& to) {
+  const auto sum = sum_over_records<LaneTotals>(state.masters.size(), [&](auto lane, std::size_t s, LaneTotals& to) {
     const Lane a_x = lane.load(&t.a_x[s]), a_y = lane.load(&t.a_y[s]), m = lane.load(&t.m[s]);
     const Lane before_x = lane.load(&t.v_x[s]), before_y = lane.load(&t.v_y[s]);
     const Lane v_x = keep * before_x + dt * a_x, v_y = keep * before_y + dt * a_y;
@@ -483,11 +395,11 @@ NodeTotals move_nodes(double keep, State& state) {
           sum_of_lanes(sum.product), largest_lane(sum.fastest)};
 }
 
-double find_accelerations(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+double find_accelerations(const Scene& scene, const Rocks& rocks, State& state) {
   const bool fast = scene.numerics.kernels == Numerics::Kernels::fast;
   fast ? apply_stencils(state.total) : apply_particles(scene, rocks, state);
   const TotalMotion& t = state.total;
-  return sum_of_lanes(over_slots<Lane>(t, [&](auto lane, std::size_t s, Lane& power) {
+  return sum_of_lanes(sum_over_records<Lane>(state.masters.size(), [&](auto lane, std::size_t s, Lane& power) {
     const Lane v_a = lane.load(&t.v_x[s]) * lane.load(&t.a_x[s]) + lane.load(&t.v_y[s]) * lane.load(&t.a_y[s]);
     power += lane.load(&t.m[s]) * v_a;
   }));

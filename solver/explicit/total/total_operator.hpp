@@ -8,9 +8,9 @@
 
 namespace strata {
 
-/// -M^-1 K of a state as runs of slots that share a stencil and groups of others: rows are assembled from the
-/// particles' own weights, and slots with the same surroundings share them. Its copies and masters must be built.
-StencilOperator make_operator(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state);
+/// -M^-1 K of a state as runs of records that share a stencil, and single ones: rows are assembled from the particles'
+/// own weights, and records with the same surroundings share them. Its copies and masters must be built.
+StencilOperator make_operator(const Scene& scene, const Rocks& rocks, const State& state);
 
 // Sums over the nodes of a step, taken part by part so that they do not depend on the number of threads.
 struct NodeTotals {
@@ -26,6 +26,6 @@ NodeTotals move_nodes(double keep, State& state);
 
 /// a_i = a_i at the base - (M^-1 K u)_i, by numerics.kernels through the composed stencils or by a loop over all
 /// particles. Returns the power sum m v . a of these forces.
-double find_accelerations(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
+double find_accelerations(const Scene& scene, const Rocks& rocks, State& state);
 
 }  // namespace strata
