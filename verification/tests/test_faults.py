@@ -14,21 +14,19 @@ from pathlib import Path
 
 import pytest
 
-from verification.faults.__main__ import RECORD
-from verification.faults.kill import KILLED, Killed, command, run_until
-from verification.faults.kill import campaign as kill_campaign
+from verification.faults.__main__ import KILLED, RECORD, campaign, run_words
 from verification.faults.same import differences, stored, torn
 from verification.harness.paths import solver
+from verification.harness.run import Job, ended
 from verification.tests.cases import strata, summary_of
 
-BY_NAME = {killed.name: killed for killed in KILLED}
-LONG = BY_NAME["explicit updated"]
+LONG = KILLED["explicit updated"]
 
 
-def started(killed: Killed, folder: Path, until: str = "result.xdmf", every_s: float = 0.0) -> subprocess.Popen[str]:
-    """A run that has begun to write: `until` is in its folder. It writes a checkpoint every so often."""
-    process = subprocess.Popen(command(killed, folder, every_s), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    while not (folder / until).exists() and process.poll() is None:
+def started(arguments: list[str], file: Path) -> subprocess.Popen[str]:
+    """A run that has begun to write: a file of its folder is there."""
+    process = subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    while not file.exists() and process.poll() is None:
         time.sleep(0.002)
     return process
 
@@ -37,7 +35,7 @@ def started(killed: Killed, folder: Path, until: str = "result.xdmf", every_s: f
 def alone(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run of LONG that nothing happens to."""
     folder = tmp_path_factory.mktemp("alone") / "run"
-    assert run_until(command(LONG, folder, 60.0), None) == (0, "")
+    assert ended(run_words(LONG, folder, 60.0), None) == (0, "")
     return folder
 
 
@@ -61,10 +59,10 @@ def test_a_second_run_is_refused_unless_it_is_to_replace_the_first(tmp_path: Pat
 
 
 def test_a_folder_in_use_is_refused(tmp_path: Path, alone: Path) -> None:
-    process = started(LONG, tmp_path / "X")
+    process = started(run_words(LONG, tmp_path / "X", 0.0), tmp_path / "X" / "result.xdmf")
     process.send_signal(signal.SIGSTOP)  # it is in the middle of its run, and stays there
     try:
-        again = [str(tmp_path / "X") if word == str(tmp_path / "Y") else word for word in command(LONG, tmp_path / "Y", 60.0)[1:]]
+        again = [str(tmp_path / "X") if word == str(tmp_path / "Y") else word for word in run_words(LONG, tmp_path / "Y", 60.0)[1:]]
         for arguments in (["resume", "X"], [*again, "--replace"]):
             done = strata(tmp_path, *arguments)
             assert done.returncode == 2
@@ -75,17 +73,12 @@ def test_a_folder_in_use_is_refused(tmp_path: Path, alone: Path) -> None:
     assert differences(alone, tmp_path / "X") == []
 
 
-def limited(folder: Path, bytes_: int) -> subprocess.CompletedProcess[str]:
-    """Run or resume LONG where no file may grow beyond so many bytes."""
-    return strata(folder.parent, *command(LONG, folder, 0.0)[1:], preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (bytes_, bytes_)))
-
-
 def test_a_file_that_may_not_grow_ends_the_run_and_loses_nothing(tmp_path: Path, alone: Path) -> None:
     """The limit rises little by little: each time the run goes on from its checkpoint, which must not be lost either."""
     folder = tmp_path / "X"
     refusals, limits = [], [400, *range(20_000, (alone / "result.h5").stat().st_size + 900_000, 400_000), 1 << 30]
     for limit in limits:
-        done = limited(folder, limit)
+        done = strata(tmp_path, *run_words(LONG, folder, 0.0)[1:], preexec_fn=lambda most=limit: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)))
         assert torn(folder) == []
         if done.returncode == 0:
             break
@@ -111,7 +104,7 @@ def small_disc(tmp_path: Path) -> Iterator[Path]:
 
 def test_a_disc_that_is_full_ends_the_run_and_loses_nothing(small_disc: Path, alone: Path) -> None:
     folder = small_disc / "X"
-    done = strata(small_disc, *command(LONG, folder, 0.0)[1:])
+    done = strata(small_disc, *run_words(LONG, folder, 0.0)[1:])
     assert done.returncode == 2, done.stderr
     assert "cannot be written: No space left on device" in done.stderr
     assert f"`strata resume {folder}` goes on" in done.stderr
@@ -140,7 +133,7 @@ def make_read_only(disc: Path, process: subprocess.Popen[str]) -> None:
 def test_a_disc_that_becomes_read_only_ends_the_run_and_loses_nothing(small_disc: Path, alone: Path) -> None:
     subprocess.run(["mount", "-o", "remount,size=64m", str(small_disc)], check=True)
     folder = small_disc / "X"
-    process = started(LONG, folder, "checkpoint.bin")
+    process = started(run_words(LONG, folder, 0.0), folder / "checkpoint.bin")
     make_read_only(small_disc, process)
     said = process.communicate(timeout=60)[1]
     assert process.returncode == 2
@@ -148,7 +141,7 @@ def test_a_disc_that_becomes_read_only_ends_the_run_and_loses_nothing(small_disc
     assert torn(folder) == []
     refused = strata(small_disc, "resume", str(folder))
     assert refused.returncode == 2 and "Read-only file system" in refused.stderr
-    assert strata(small_disc, *command(LONG, small_disc / "new", 60.0)[1:]).returncode == 2
+    assert strata(small_disc, *run_words(LONG, small_disc / "new", 60.0)[1:]).returncode == 2
     subprocess.run(["mount", "-o", "remount,rw", str(small_disc)], check=True)
     assert strata(small_disc, "resume", str(folder)).returncode == 0
     assert differences(alone, folder) == []
@@ -172,7 +165,7 @@ def test_a_folder_that_may_not_be_written_is_refused_before_the_run() -> None:
 @pytest.mark.parametrize("way", ["moved", "removed"])
 def test_a_folder_that_vanishes_ends_the_run(tmp_path: Path, alone: Path, way: str) -> None:
     folder = tmp_path / "X"
-    process = started(LONG, folder, "checkpoint.bin")
+    process = started(run_words(LONG, folder, 0.0), folder / "checkpoint.bin")
     process.send_signal(signal.SIGSTOP)
     if way == "moved":
         folder.rename(tmp_path / "Y")
@@ -189,14 +182,14 @@ def test_a_folder_that_vanishes_ends_the_run(tmp_path: Path, alone: Path, way: s
         assert differences(alone, tmp_path / "Y") == []
 
 
-@pytest.mark.parametrize("name, which", [*((name, signal.SIGINT) for name in BY_NAME), ("quasi-static turning", signal.SIGTERM)])
+@pytest.mark.parametrize("name, which", [*((name, signal.SIGINT) for name in KILLED), ("quasi-static turning", signal.SIGTERM)])
 def test_a_run_that_is_interrupted_ends_at_once_and_goes_on_to_the_same_digits(tmp_path: Path, name: str, which: signal.Signals) -> None:
-    killed, folder, whole = BY_NAME[name], tmp_path / "X", tmp_path / "whole"
+    folder, whole = tmp_path / "X", tmp_path / "whole"
     begin = time.monotonic()
-    assert run_until(command(killed, whole, 60.0), None) == (0, "")
+    assert ended(run_words(KILLED[name], whole, 60.0), None) == (0, "")
     wall_s = time.monotonic() - begin
     for wait_s in (wall_s / 4, wall_s / 16, 0.0):  # it may take a fraction now of what it took beside other tests
-        process = started(killed, folder, "result.h5", every_s=60.0)  # so that the interrupt alone writes one
+        process = started(run_words(KILLED[name], folder, 60.0), folder / "result.h5")  # the interrupt alone writes a checkpoint
         time.sleep(wait_s)
         begin = time.monotonic()
         process.send_signal(which)
@@ -217,10 +210,7 @@ def test_a_run_that_is_interrupted_ends_at_once_and_goes_on_to_the_same_digits(t
 def test_a_signal_before_the_first_step_ends_the_process(tmp_path: Path) -> None:
     """There is nothing to save yet, and a large block takes its time to be set up."""
     folder = tmp_path / "X"
-    arguments = command(BY_NAME["quasi-static paper"], folder, 60.0) + ["--set", "numerics.cell_m=0.25"]
-    process = subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    while not (folder / "scene.toml").exists():
-        time.sleep(0.002)
+    process = started([*run_words(KILLED["quasi-static paper"], folder, 60.0), "--set", "numerics.cell_m=0.25"], folder / "scene.toml")
     begin = time.monotonic()
     process.send_signal(signal.SIGINT)
     said = process.communicate(timeout=60)[1]
@@ -232,7 +222,7 @@ def test_a_signal_before_the_first_step_ends_the_process(tmp_path: Path) -> None
 def test_runs_that_are_killed_end_as_those_that_are_not() -> None:
     """Ten kills at random moments; `python3 -m verification.faults` kills as often as one likes."""
     for name in ("explicit total", "explicit updated", "quasi-static turning", "quasi-static reynolds"):
-        tally = kill_campaign(BY_NAME[name], 2 if name != "explicit total" else 4, 0.02, seed=7)
+        tally = campaign(name, 2 if name != "explicit total" else 4, 0.02, seed=7)
         assert tally.kills >= 2
         assert tally.identical == tally.trials > 0
         assert tally.problems == []
@@ -241,12 +231,10 @@ def test_runs_that_are_killed_end_as_those_that_are_not() -> None:
 @pytest.mark.parametrize("name, changed", [("explicit total", ()), ("explicit updated", ()), ("quasi-static paper", ("stop.tip_y_m=12",))])
 def test_memory_is_estimated_a_little_above_what_a_run_takes(tmp_path: Path, name: str, changed: tuple[str, ...]) -> None:
     """At 1 m cells, checkpoints written: within 30 % above the peak, never below."""
-    killed = BY_NAME[name]
-    short = Killed(name, killed.scene, killed.variant, (*killed.settings, "numerics.cell_m=1", "fracture.increment_m=1", *changed))
-    if name.startswith("explicit"):  # too short for equilibria to decide about growth
-        short = Killed(name, short.scene, short.variant, (*short.settings, "stop.time_s=0.12", "fracture.crossing=J"))
-    arguments = [word for word in command(short, tmp_path / "X", 0.0)[1:] if word != "--quiet"]
-    done = strata(tmp_path, *arguments)
+    brief = ("stop.time_s=0.12", "fracture.crossing=J") if name.startswith("explicit") else ()  # too short for equilibria to decide about growth
+    own = KILLED[name]
+    short = Job(own.scene, own.variant, own.out, (*own.settings, "numerics.cell_m=1", "fracture.increment_m=1", *changed, *brief))
+    done = strata(tmp_path, *(word for word in run_words(short, tmp_path / "X", 0.0)[1:] if word != "--quiet"))
     assert done.returncode == 0, done.stderr
     estimate_MB = 1e3 * float(re.search(r"([\d.e+-]+) GB", done.stderr).group(1))  # type: ignore[union-attr]
     peak_MB = summary_of(tmp_path / "X")["peak_memory_MB"]
@@ -259,7 +247,7 @@ def test_two_hundred_kills_and_every_run_the_same() -> None:
     assert record["kills"] >= 200
     assert record["identical"] == record["trials"] > 0
     assert record["from_checkpoint"] > 100
-    assert [scene["name"] for scene in record["scenes"]] == [killed.name for killed in KILLED]
+    assert [scene["name"] for scene in record["scenes"]] == list(KILLED)
     for scene in record["scenes"]:
         assert scene["kills"] >= 30 and scene["problems"] == []
         assert scene["identical"] == scene["trials"] > 10
