@@ -3,12 +3,10 @@
 import pytest
 
 from verification.ladder import gates
-from verification.ladder.case import Case
-from verification.ladder.catalogue import families
+from verification.ladder.case import Case, families
 from verification.ladder.judge import judged, tally
-from verification.ladder.measure import rows_of
-from verification.ladder.runner import make_one, rungs_of
-from verification.ladder.table import text
+from verification.ladder.measure import make_one, rows_of, rungs_of
+from verification.ladder.__main__ import text
 
 pytestmark = pytest.mark.smoke
 FAMILIES = families()

@@ -10,14 +10,13 @@ import pytest
 
 from verification.harness.load import Run
 from verification.ladder import __main__ as command
-from verification.ladder import catalogue, gates, runner
-from verification.ladder.case import Case, Level, Quantity, Sample, cell_levels
-from verification.ladder.catalogue import BadCase, Families
+from verification.ladder import case as catalogue
+from verification.ladder import gates
+from verification.ladder.case import BadCase, Case, Families, Level, Quantity, Sample, cell_levels
 from verification.ladder.gates import CannotAccept, Gate
 from verification.ladder.judge import HALF_AN_ORDER, accepted, judged, mutants_of, tally
-from verification.ladder.measure import Row, order_of, rows_of
-from verification.ladder.runner import make_all, rungs_of
-from verification.ladder.table import text
+from verification.ladder.measure import Row, make_all, order_of, rows_of, rungs_of
+from verification.ladder.__main__ import text
 from verification.tests.fake_run import write_run
 
 MUTANTS = {"zero": -1.0, "twice": 1.02, "flipped sign": -2.0}
@@ -263,7 +262,7 @@ def test_runs_are_made_once_and_measured(tmp_path: Path, solver: Path, a_case: C
     assert rows[0].order is None and rows[1].order == pytest.approx(1.0)
     assert rows[1].cost.particles == 25600 and rows[1].reference_error == 1e-6
     again = make_all(rungs)
-    assert all(one.outcome.skipped for one in again) and len((tmp_path / "calls").read_text().splitlines()) == 2
+    assert all(outcome.skipped for _, outcome in again) and len((tmp_path / "calls").read_text().splitlines()) == 2
     assert (tmp_path / "ladder" / "fam" / "two_levels" / "0.5_m" / "summary.json").is_file()
     assert "numerics.mechanics=explicit" in (tmp_path / "calls").read_text()
 
@@ -287,7 +286,6 @@ def ladder(tmp_path: Path, solver: Path, a_case: Case, monkeypatch: pytest.Monke
     known = {"fam": (a_case,)}
     monkeypatch.setattr(command, "families", lambda: known)
     monkeypatch.setattr(gates, "FOLDER", tmp_path / "gates")
-    monkeypatch.setattr(runner, "RUNS", tmp_path / "ladder")
     return known
 
 
