@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from typing import Generic, TypeVar
 
 from verification.harness.run import INTERRUPTED
@@ -32,9 +33,7 @@ class Task(Generic[Made]):
     threads: int = 1
 
 
-def say(line: str) -> None:
-    """Print a line at once."""
-    print(line, flush=True)
+say: Tell = partial(print, flush=True)
 
 
 def duration(seconds: float) -> str:
@@ -73,15 +72,12 @@ def side_by_side(tasks: Sequence[Task[Made]], jobs: int, tell: Tell = say) -> li
     queue = sorted(range(len(tasks)), key=lambda k: tasks[k].expected_s, reverse=True)
     at_work: dict[Future[Made], int] = {}
     done: dict[int, Future[Made]] = {}
+    threads = [min(task.threads, jobs) for task in tasks]
     begun, took, start = {}, {}, time.monotonic()
-
-    def threads(k: int) -> int:
-        return min(tasks[k].threads, jobs)
-
     with ThreadPoolExecutor(max_workers=jobs) as pool, interruptible() as stop:
         try:
             while queue or at_work:
-                while queue and threads(queue[0]) + sum(map(threads, at_work.values())) <= jobs:
+                while queue and threads[queue[0]] + sum(threads[k] for k in at_work.values()) <= jobs:
                     k = queue.pop(0)
                     begun[k] = time.monotonic()
                     at_work[pool.submit(tasks[k].make, stop)] = k
@@ -91,18 +87,13 @@ def side_by_side(tasks: Sequence[Task[Made]], jobs: int, tell: Tell = say) -> li
                     tell("at work: " + ", ".join(f"{tasks[k].name} ({duration(now - begun[k])})" for k in at_work.values()))
                 for future in ended:
                     k = at_work.pop(future)
-                    done[k], took[k] = future, now - begun[k]
+                    done[k], took[k], error = future, now - begun[k], future.exception()
+                    said = tasks[k].words(future.result()) if error is None else f"FAILED: {error}"
                     pace = sum(took.values()) / (sum(tasks[j].expected_s for j in took) or 1.0)
                     going = [(tasks[j].expected_s, now - begun[j]) for j in at_work.values()]
                     left = duration(time_left([tasks[j].expected_s for j in queue], going, pace, jobs))
-                    tell(f"[{len(done):{len(str(len(tasks)))}d}/{len(tasks)}] {duration(now - start)}, {left} left  {result(tasks[k], future)}")
+                    tell(f"[{len(done):{len(str(len(tasks)))}d}/{len(tasks)}] {duration(now - start)}, {left} left  {tasks[k].name}: {said}")
         except KeyboardInterrupt:
             tell("interrupted: what is done stays, the same command goes on from there")
             raise SystemExit(INTERRUPTED) from None
     return [done[k].result() for k in range(len(tasks))]
-
-
-def result(task: Task[Made], future: Future[Made]) -> str:
-    """What became of a task, in words."""
-    error = future.exception()
-    return f"{task.name}: {task.words(future.result()) if error is None else f'FAILED: {error}'}"
