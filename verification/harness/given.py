@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Callable
-from typing import Any
+from functools import reduce
+from operator import getitem
 
 from verification.harness.load import Array, LoadError, Run, Tip, frames
 
@@ -11,10 +12,7 @@ Point = tuple[float, float]
 
 def given(run: Run, key: str) -> float:
     """The number of a scene key, "in_situ.horizontal_Pa" say."""
-    found: Any = run.scene
-    for name in key.split("."):
-        found = found[name]
-    return float(found)
+    return float(reduce(getitem, key.split("."), run.scene))  # type: ignore[arg-type]
 
 
 def rock(run: Run, of: str | int = "stiff", prefix: str = "", density: bool = False) -> dict[str, float]:
