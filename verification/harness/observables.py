@@ -219,9 +219,6 @@ def interface_failure_excess_Pa(run: Run, parameters: Parameters) -> Measured:
     return Measured(run.summary.inlet_Pa - near.low, math.inf, f"{run.name}: interface {number} does not fail")
 
 
-# --- observables of two runs
-
-
 def between(combine: Callable[[Measured, Measured], Measured], one: Callable[[Run, Parameters], Measured]) -> Callable[..., Measured]:
     """An observable of one run, taken of two."""
     return lambda run, against, parameters: combine(one(run, parameters), one(against, parameters))

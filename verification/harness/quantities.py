@@ -164,8 +164,6 @@ def path_gap(run: Run, against: Run, length_m: float = math.inf) -> tuple[float,
     return float(np.sqrt(np.mean(far**2))), float(np.max(far))
 
 
-# --- what one change of a scene moves
-
 # The height at which the pressure is compared where the base gets there, m; else the highest below that it reaches.
 HEIGHT_M = 40.0
 

@@ -77,9 +77,6 @@ def job_of(scene: Path, mechanics: str, variant: str, cell_m: float, settings: S
     return Job(scene, variant, root / scene.stem / mechanics / variant / f"{cell_m:g}m", tuple(own))
 
 
-# --- what the runs say
-
-
 def shown(quantity: Quantity, level: Level) -> tuple[float | None, str]:
     """A quantity of one run, or None with the reason."""
     if level.run is None or not level.outcome.ok and quantity.name.startswith(("final", "deflection")):
@@ -160,9 +157,6 @@ def unlike(content: dict[str, Any], cells_m: Sequence[float]) -> tuple[str, ...]
         f"at {cell:g} m {name} ({along} = {place:g} m) lies {words(place, cell)}, at {finest:g} m {words(place, finest)}"
         for name, (along, place) in places.items() for cell in cells_m if words(place, cell) != words(place, finest)
     )  # fmt: skip
-
-
-# --- what is written
 
 
 def as_json(scene: Path, settings: Sequence[str], studies: Sequence[Study]) -> dict[str, Any]:

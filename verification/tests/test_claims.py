@@ -185,8 +185,6 @@ def test_claims_come_back_from_json_as_they_were(tmp_path: Path) -> None:
         read_claims(tmp_path / "claims.json")
 
 
-# --- readings that follow from a choice
-
 OTHER = Choice("c", "unit: another", "another", {"exp": {"weak": "other", "soft": "soft"}})
 TWICE: dict[str, Any] = {**CLAIM, "case": [*CLAIM["case"], {"variant": "soft", "interface": 1, "at_least": 0.05 * MPA}]}
 
@@ -243,9 +241,6 @@ def test_a_reading_written_for_a_choice_stands_for_it(tmp_path: Path, scenes: Pa
     assert reading.holds is False and reading.name == "unit: another"
     with pytest.raises(BadClaim, match="no choice d"):
         evaluate({**CLAIM, "reading": [{**own, "choice": "d"}]}, "exp", Runs(tmp_path), [OTHER], scenes)
-
-
-# --- two mechanics, two sizes
 
 
 def test_cells_of_half_the_size_have_verdicts_of_their_own_run_or_recorded(tmp_path: Path) -> None:

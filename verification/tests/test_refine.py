@@ -47,9 +47,6 @@ def quantity(name: str) -> Quantity:
     return next(one for one in quantities_of(CONTENT) if one.name == name)
 
 
-# --- what is followed
-
-
 def test_a_pause_is_the_rise_between_two_growth_events(tmp_path: Path) -> None:
     found = pauses(made(tmp_path / "r", [(2.40e6, 40.0, 6.0), (2.41e6, 40.0, 7.0), (2.60e6, 40.0, 8.0)]))
     assert found == [Pause(6.0, 2.40e6, 2.41e6), Pause(7.0, 2.41e6, 2.60e6), Pause(8.0, 2.60e6, math.inf)]
@@ -90,9 +87,6 @@ def test_paths_are_compared_from_their_first_points_over_what_both_have(tmp_path
     assert path_gap(straight, straight) == (0.0, 0.0) and path_gap(made(tmp_path / "c", []), straight) is None
 
 
-# --- what is said
-
-
 def test_sizes_without_a_value_are_named_and_left_out_of_the_order(tmp_path: Path) -> None:
     levels = [level(h, held(tmp_path / f"{h}", start_Pa=2.4e6 + 4.0e4 * h)) for h in (1.0, 0.5, 0.25)]
     row = row_of(quantity("start_Pa"), [level(2.0, None, 2), *levels, level(0.125, None, 3)])
@@ -127,9 +121,6 @@ def test_what_no_size_has_is_told_in_a_note(tmp_path: Path) -> None:
 def test_sizes_at_which_tip_or_interface_lie_otherwise_in_their_cells_are_named(along: str, first_m: float, cells_m: tuple[float, ...], said: tuple[str, ...]) -> None:
     strata = {"along": along, "layers": [{"rock": "a", "thickness_m": first_m}, {"rock": "b"}]}
     assert refine.unlike({**CONTENT, "strata": strata}, cells_m) == said
-
-
-# --- jobs, their cost and the command line
 
 
 def test_the_increment_stays_as_the_cells_shrink() -> None:

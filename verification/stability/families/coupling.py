@@ -9,7 +9,7 @@ from verification.stability.family import Checked, Family, Parameter, Point, at_
 from verification.stability.theory.background import J_integral, solve
 from verification.stability.theory.staggered import BULK_PA, compliance, conductances, growth
 
-# --- staggered
+
 NET_PA = 0.3e6
 
 
@@ -53,7 +53,6 @@ STAGGERED = Family(
 )  # fmt: skip
 
 
-# --- the in-situ stress in J
 def J_nothing(run: Run) -> Checked:
     """J of both tips where the fluid carries just the in-situ stress, over J_c."""
     J_c = given(run, "rock.stiff.toughness_Pa_sqrt_m") ** 2 / E_prime(run)

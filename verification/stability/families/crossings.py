@@ -14,7 +14,7 @@ SECTION = "Fractures that cross interfaces, corners, edges"
 CROSSING_M = 13.0  # half length of these cracks: at 20 degrees their tips are 4.4 cells from the interface
 ANGLES = (90.0, 75.0, 60.0, 45.0, 30.0, 20.0)
 
-# --- an interface that does nothing
+
 STIFF_SPRINGS = (*parted("stiff", "stiff", "springs"), *(f"interface.springs.{name}_stiffness_Pa_m=1e14" for name in ("normal", "shear")))
 STUCK = (*parted("stiff", "stiff", "slick"), "interface.slick.coefficient=5")
 
@@ -50,7 +50,6 @@ def crossing(name: str, title: str, keys: tuple[str, ...]) -> Family:
     )  # fmt: skip
 
 
-# --- two interfaces closer than a cell
 SPRINGS = (1e9, 3e9)  # Pa/m
 TABLES = tuple(
     f'interface.{name}={{law="soft",normal_stiffness_Pa_m={D!r},shear_stiffness_Pa_m={D!r},compression="spring"}}'
@@ -85,7 +84,7 @@ CLOSE = Family(
     hanging, beyond=(REFUSED,), section=SECTION,
 )  # fmt: skip
 
-# --- corners and edges
+
 BLOCK_M = 32.0
 
 

@@ -41,7 +41,6 @@ def spring(stiffness: str, value: float | None = None) -> Point:
     return Point(stiffness, float(stiffness) if value is None else value, SCENE, settings, smoke=stiffness in ("0", "1e6"), beyond=value is not None)
 
 
-# --- a fracture below an interface without strength
 STRAIN_AT_MOST_M = 0.02  # 0.5 MPa over 5 GPa along 80 m is 8 mm; parts that move freely go metres
 
 

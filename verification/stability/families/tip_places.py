@@ -11,7 +11,7 @@ from verification.stability.family import MARKED, At, Check, Checked, Edge, Fami
 
 SECTION = "Tips: within a cell, near an interface, near an edge"
 
-# --- within a cell
+
 SHARES = (0.0, 0.001, 0.01, 0.03, 0.1, 0.25, 0.5, 0.75, 0.9, 0.97, 0.99, 0.999, 1.0)
 
 
@@ -27,7 +27,6 @@ def in_cell(
     )  # fmt: skip
 
 
-# --- near an interface, near an edge
 LAYERS = {"stiff_soft": parted("stiff", "soft"), "soft_stiff": parted("soft", "stiff"), "springs": parted("stiff", "stiff", "springs")}
 BLOCK_M = 1600.0  # so large that its other edges are not felt
 
