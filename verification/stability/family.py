@@ -9,7 +9,7 @@ import math
 import tomllib
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import cache
 from pathlib import Path
 
 from verification.harness.load import Run
@@ -33,7 +33,7 @@ KINEMATICS = {"total": "points in their places", "updated": "points that move"}
 LEAST_REFUSED = 0.9  # no check may hold for a value that is off by more than this: zero and twice must fail
 
 
-@lru_cache(maxsize=None)
+@cache
 def words() -> dict[str, dict[str, str]]:
     """What the page says of sections, by their headings, and of families, by their names."""
     return tomllib.loads((SCENES.parent / "words.toml").read_text(encoding="utf-8"))
