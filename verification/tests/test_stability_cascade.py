@@ -106,9 +106,9 @@ def test_an_edge_between_mixed_runs_is_refused(monkeypatch: pytest.MonkeyPatch) 
         monkeypatch.setattr(cascade, "failed_s", lambda run, interface, edge=weakest: 2.0 if cascade.strength(run) < edge else None)
         if expected is None:
             with pytest.raises(LoadError):
-                cascade.by_strength(runs)
+                cascade.turns(cascade.strength, runs)
         else:
-            assert cascade.by_strength(runs) == pytest.approx(expected)
+            assert cascade.turns(cascade.strength, runs) == pytest.approx(expected)
     monkeypatch.setattr(cascade, "failed_s", lambda run, interface: 2.0 if cascade.strength(run) in (1.2, 1.4) else None)
     with pytest.raises(LoadError):
-        cascade.by_strength(runs)
+        cascade.turns(cascade.strength, runs)

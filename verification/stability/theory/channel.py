@@ -11,16 +11,11 @@ import numpy as np
 Array = np.ndarray
 
 
-def diffusion(segments: int) -> Array:
-    """-d2/dx2 of the vertices but the inlet, in units of kappa/dx^2."""
-    matrix = 2.0 * np.eye(segments) - np.eye(segments, k=1) - np.eye(segments, k=-1)
-    matrix[-1, -2] = -2.0
-    return matrix
-
-
 def fastest(segments: int) -> tuple[float, Array]:
-    """The largest eigenvalue (in units of kappa/dx^2) and the row of weights that takes its mode out of the pressures."""
-    values, vectors = np.linalg.eig(diffusion(segments).T)
+    """The largest eigenvalue (in units of kappa/dx^2) of the vertices but the inlet, and the row of weights that takes its mode out of the pressures."""
+    diffusion = 2.0 * np.eye(segments) - np.eye(segments, k=1) - np.eye(segments, k=-1)  # -d2/dx2
+    diffusion[-1, -2] = -2.0
+    values, vectors = np.linalg.eig(diffusion.T)
     top = int(np.argmax(values.real))
     return float(values[top].real), vectors[:, top].real
 
