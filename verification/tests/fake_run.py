@@ -117,6 +117,22 @@ def write_run(
     return folder
 
 
+def changed(folder: Path, **content: Any) -> Path:
+    """Put other content into a run's summary; None takes a key out."""
+    path = folder / "summary.json"
+    summary = json.loads(path.read_text(encoding="utf-8")) | content
+    path.write_text(json.dumps({key: value for key, value in summary.items() if value is not None}), encoding="utf-8")
+    return folder
+
+
+def program(path: Path, text: str) -> Path:
+    """Write a program that stands for the solver."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+    path.chmod(0o755)
+    return path
+
+
 def climb(start_Pa: float = 2.36e6, to_m: float = 70.0, slope_Pa_m: float = 5.0e3, plateaus: dict[float, float] | None = None) -> list[Step]:
     """Growth from 6 m up, a step a metre and `slope_Pa_m` more each, with plateaus (Pa) on leaving given heights (m)."""
     steps, pressure, height = [], start_Pa, 6.0
