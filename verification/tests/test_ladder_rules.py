@@ -17,7 +17,7 @@ from verification.ladder.gates import CannotAccept, Gate
 from verification.ladder.judge import HALF_AN_ORDER, accepted, judged, mutants_of, tally
 from verification.ladder.measure import Row, make_all, order_of, rows_of, rungs_of
 from verification.ladder.__main__ import text
-from verification.tests.fake_run import write_run
+from verification.tests.fake_run import changed, program, write_run
 
 MUTANTS = {"zero": -1.0, "twice": 1.02, "flipped sign": -2.0}
 
@@ -42,22 +42,19 @@ def gated(rows: list[Row]) -> dict[str, gates.Gates]:
     return now
 
 
-def test_errors_of_samples() -> None:
-    assert Sample.of(1.1, 1.0).error() == pytest.approx(0.1) and Sample.of(0.9, 1.0).error() == pytest.approx(-0.1)
-    assert Sample.of(-0.9, -1.0).error() == pytest.approx(0.1), "signed as value less exact, by the size of the exact one"
-    many = Sample(np.array([1.0, 2.0, 4.0]), np.array([1.0, 2.0, 3.0]), np.array([1.0, 1.0, 2.0]))
-    assert many.error() == pytest.approx(math.sqrt(2.0 / (1.0 + 4.0 + 18.0)))
-    assert Sample.of(3.0, 0.0, scale=100.0).error() == pytest.approx(0.03)
+@pytest.mark.parametrize(("sample", "error", "mutants"), [
+    (Sample.of(1.1, 1.0), 0.1, {"zero": -1.0, "twice": 1.2, "flipped sign": -2.1}),
+    (Sample.of(0.9, 1.0), -0.1, {"zero": -1.0, "twice": 0.8, "flipped sign": -1.9}),
+    (Sample.of(-0.9, -1.0), 0.1, {"zero": 1.0, "twice": -0.8, "flipped sign": 1.9}),  # value less exact, by the size of the exact one
+    (Sample(np.array([1.0, 2.0, 4.0]), np.array([1.0, 2.0, 3.0]), np.array([1.0, 1.0, 2.0])), math.sqrt(2.0 / (1.0 + 4.0 + 18.0)), None),
+    (Sample(np.array([3.0, 4.0]), np.array([3.0, 4.0])), 0.0, {"zero": 1.0, "twice": 1.0, "flipped sign": 2.0}),
+    (Sample.of(1e-3, 0.0, scale=10.0), 1e-4, {"off by its scale": 1.0001}), (Sample.of(3.0, 0.0, scale=100.0), 0.03, None),
+])  # fmt: skip
+def test_errors_of_samples_and_of_their_mutants(sample: Sample, error: float, mutants: dict[str, float] | None) -> None:
+    assert sample.error() == pytest.approx(error)
+    assert mutants is None or sample.mutants() == {name: pytest.approx(value) for name, value in mutants.items()}
     with pytest.raises(ValueError, match="needs a scale"):
         Sample.of(3.0, 0.0).error()
-
-
-def test_mutants_of_samples_are_far_off() -> None:
-    right = Sample.of(1.01, 1.0).mutants()
-    assert right == {"zero": pytest.approx(-1.0), "twice": pytest.approx(1.02), "flipped sign": pytest.approx(-2.01)}
-    field = Sample(np.array([3.0, 4.0]), np.array([3.0, 4.0])).mutants()
-    assert field == {"zero": pytest.approx(1.0), "twice": pytest.approx(1.0), "flipped sign": pytest.approx(2.0)}
-    assert Sample.of(1e-3, 0.0, scale=10.0).mutants() == {"off by its scale": pytest.approx(1.0001)}
 
 
 @pytest.mark.parametrize("no_order", ["", "the reference's own error is as large"])
@@ -114,7 +111,7 @@ def test_gates_are_written_and_read_back(tmp_path: Path) -> None:
 
 
 def test_changed_gates_are_told_and_wider_ones_marked() -> None:
-    one, two, w, v = ("c", "K", "1 m"), ("c", "K", "2 m"), ("c", "w", "1 m"), ("c", "v", "1 m")
+    one, two, w, v = (("c", *key) for key in (("K", "1 m"), ("K", "2 m"), ("w", "1 m"), ("v", "1 m")))
     before = {one: Gate(0.01, 0.007), two: Gate(0.1, 0.07), w: Gate(0.02, 0.014, 0.7, 1.0)}
     now = {one: Gate(0.02, 0.014), w: Gate(0.02, 0.014, 0.6, 0.9), v: Gate(0.1, 0.08)}
     assert gates.changes(before, now) == [
@@ -160,8 +157,7 @@ def test_what_became_better_is_noted_and_passes() -> None:
 
 def test_a_missing_gate_fails() -> None:
     known = gated(ladder_of(0.04, 0.02))
-    for row in judged(ladder_of(0.04, 0.02), {}):
-        assert row.verdict == "FAIL" and "no gate" in row.problems[0]
+    assert all(row.verdict == "FAIL" and "no gate" in row.problems[0] for row in judged(ladder_of(0.04, 0.02), {}))
     key = ladder_of(0.04, 0.02)[1].key
     known["made_up"][key] = replace(known["made_up"][key], order=None, measured_order=None)
     assert "no gate of order" in judged(ladder_of(0.04, 0.02), known)[1].problems[0]
@@ -238,21 +234,15 @@ def a_case(tmp_path: Path) -> Case:
 def solver(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A program in the solver's place: copies a run whose opening is off by cell / 100, and fails on cells of 0.25 m."""
     for name, opening in (("1.0", 1.01e-3), ("0.5", 1.005e-3)):
-        folder = write_run(tmp_path / "runs_of" / name, [(2.4e6, 40.0, 6.0)])
-        summary = json.loads((folder / "summary.json").read_text())
-        (folder / "summary.json").write_text(json.dumps({**summary, "mouth_opening_m": opening}))
-    program = tmp_path / "strata"
-    program.write_text(
-        f"""#!/bin/sh
+        changed(write_run(tmp_path / "runs_of" / name, [(2.4e6, 40.0, 6.0)]), mouth_opening_m=opening)
+    made = program(tmp_path / "strata", f"""#!/bin/sh
 echo "$@" >> {tmp_path}/calls
 while [ $# -gt 0 ]; do case "$1" in --out) out=$2;; numerics.cell_m=*) cell=${{1#*=}};; esac; shift; done
 [ "$cell" = 0.25 ] && {{ echo "the block is a mechanism"; exit 3; }}
 cp {tmp_path}/runs_of/$cell/* "$out"
-"""
-    )
-    program.chmod(0o755)
-    monkeypatch.setenv("STRATA", str(program))
-    return program
+""")
+    monkeypatch.setenv("STRATA", str(made))
+    return made
 
 
 def test_runs_are_made_once_and_measured(tmp_path: Path, solver: Path, a_case: Case) -> None:
@@ -320,15 +310,12 @@ def test_the_command_at_smoke_size_keeps_the_other_gates(tmp_path: Path, ladder:
     assert len(content["rows"]) == 1 and content["part"]
 
 
-def test_the_command_tells_a_run_that_fails(tmp_path: Path, ladder: Families, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_tells_a_run_that_fails_and_gates_of_nothing(tmp_path: Path, ladder: Families, capsys: pytest.CaptureFixture[str]) -> None:
     assert asked(tmp_path, "--accept") == 0
-    ladder["fam"] = (replace(ladder["fam"][0], levels=cell_levels(1.0, 0.5, 0.25)),)
-    assert asked(tmp_path) == 3
-    assert "1 failed" in capsys.readouterr().out
-
-
-def test_the_command_tells_gates_of_nothing(tmp_path: Path, ladder: Families, capsys: pytest.CaptureFixture[str]) -> None:
-    assert asked(tmp_path, "--accept") == 0
+    known = ladder["fam"]
+    ladder["fam"] = (replace(known[0], levels=cell_levels(1.0, 0.5, 0.25)),)
+    assert asked(tmp_path) == 3 and "1 failed" in capsys.readouterr().out
+    ladder["fam"] = known
     ladder["fam"] = (replace(ladder["fam"][0], name="renamed"),)
     assert asked(tmp_path) == 1
     assert "gate of nothing: fam/two_levels / mouth / 1 m" in capsys.readouterr().out
