@@ -48,9 +48,7 @@ def test_a_second_run_is_refused_unless_it_is_to_replace_the_first(tmp_path: Pat
     assert (first.returncode, first.stderr) == (0, "")
     before = {file.name: file.read_bytes() for file in (tmp_path / "X").iterdir()}
     second = strata(tmp_path, "run", "block.toml", "--variant", "longer", "--out", "X")
-    assert second.returncode == 2
-    for word in ("X: holds a run already", "strata resume X", "--replace", "--out"):
-        assert word in second.stderr
+    assert second.returncode == 2 and all(word in second.stderr for word in ("X: holds a run already", "strata resume X", "--replace", "--out"))
     assert {file.name: file.read_bytes() for file in (tmp_path / "X").iterdir()} == before
     assert strata(tmp_path, "resume", "X").returncode == 0
     assert {file.name: file.read_bytes() for file in (tmp_path / "X").iterdir()} == before
@@ -65,8 +63,7 @@ def test_a_folder_in_use_is_refused(tmp_path: Path, alone: Path) -> None:
         again = [str(tmp_path / "X") if word == str(tmp_path / "Y") else word for word in run_words(LONG, tmp_path / "Y", 60.0)[1:]]
         for arguments in (["resume", "X"], [*again, "--replace"]):
             done = strata(tmp_path, *arguments)
-            assert done.returncode == 2
-            assert "X: in use by a run that is going on" in done.stderr
+            assert done.returncode == 2 and "X: in use by a run that is going on" in done.stderr
     finally:
         process.send_signal(signal.SIGCONT)
     assert process.wait() == 0, process.communicate()
@@ -82,12 +79,9 @@ def test_a_file_that_may_not_grow_ends_the_run_and_loses_nothing(tmp_path: Path,
         assert torn(folder) == []
         if done.returncode == 0:
             break
-        assert done.returncode == 2, done.stderr
-        assert "cannot be written: File too large" in done.stderr
-        assert "a bug" not in done.stderr
+        assert done.returncode == 2 and "cannot be written: File too large" in done.stderr and "a bug" not in done.stderr, done.stderr
         refusals.append(done.stderr)
-    assert len(refusals) > 3
-    assert any("strata resume" in text and "goes on from step" in text for text in refusals)
+    assert len(refusals) > 3 and any("strata resume" in text and "goes on from step" in text for text in refusals)
     assert differences(alone, folder) == []
 
 
@@ -105,15 +99,12 @@ def small_disc(tmp_path: Path) -> Iterator[Path]:
 def test_a_disc_that_is_full_ends_the_run_and_loses_nothing(small_disc: Path, alone: Path) -> None:
     folder = small_disc / "X"
     done = strata(small_disc, *run_words(LONG, folder, 0.0)[1:])
-    assert done.returncode == 2, done.stderr
-    assert "cannot be written: No space left on device" in done.stderr
-    assert f"`strata resume {folder}` goes on" in done.stderr
-    assert torn(folder) == []
+    assert done.returncode == 2 and "cannot be written: No space left on device" in done.stderr, done.stderr
+    assert f"`strata resume {folder}` goes on" in done.stderr and torn(folder) == []
     written = stored(folder / "result.h5")["times"][1][0]
     subprocess.run(["mount", "-o", "remount,size=64m", str(small_disc)], check=True)
     done = strata(small_disc, "resume", str(folder), "--quiet")
-    assert (done.returncode, done.stderr) == (0, "")  # from the checkpoint, not from the start
-    assert written > 0
+    assert (done.returncode, done.stderr) == (0, "") and written > 0  # from the checkpoint, not from the start
     assert differences(alone, folder) == []
 
 
@@ -136,9 +127,7 @@ def test_a_disc_that_becomes_read_only_ends_the_run_and_loses_nothing(small_disc
     process = started(run_words(LONG, folder, 0.0), folder / "checkpoint.bin")
     make_read_only(small_disc, process)
     said = process.communicate(timeout=60)[1]
-    assert process.returncode == 2
-    assert "Read-only file system" in said
-    assert torn(folder) == []
+    assert process.returncode == 2 and "Read-only file system" in said and torn(folder) == []
     refused = strata(small_disc, "resume", str(folder))
     assert refused.returncode == 2 and "Read-only file system" in refused.stderr
     assert strata(small_disc, *run_words(LONG, small_disc / "new", 60.0)[1:]).returncode == 2
@@ -151,15 +140,9 @@ def test_a_disc_that_becomes_read_only_ends_the_run_and_loses_nothing(small_disc
 def test_a_folder_that_may_not_be_written_is_refused_before_the_run() -> None:
     with tempfile.TemporaryDirectory() as name:
         Path(name).chmod(0o755)
-        scene = shutil.copy(LONG.scene, name)
-        program = shutil.copy(solver(), name)
-        done = subprocess.run(
-            [program, "run", scene, "--out", f"{name}/X"], user=65534, group=65534, extra_groups=[],
-            capture_output=True, text=True, check=False,
-        )
-        assert done.returncode == 2
-        assert "X: cannot be made: Permission denied" in done.stderr
-        assert not Path(name, "X").exists()
+        words = [shutil.copy(solver(), name), "run", shutil.copy(LONG.scene, name), "--out", f"{name}/X"]
+        done = subprocess.run(words, user=65534, group=65534, extra_groups=[], capture_output=True, text=True, check=False)
+        assert done.returncode == 2 and "X: cannot be made: Permission denied" in done.stderr and not Path(name, "X").exists()
 
 
 @pytest.mark.parametrize("way", ["moved", "removed"])
@@ -173,9 +156,7 @@ def test_a_folder_that_vanishes_ends_the_run(tmp_path: Path, alone: Path, way: s
         shutil.rmtree(folder)
     process.send_signal(signal.SIGCONT)
     said = process.communicate(timeout=60)[1]
-    assert process.returncode == 2, said
-    assert "No such file or directory" in said and "X is gone" in said
-    assert not folder.exists()
+    assert process.returncode == 2 and "No such file or directory" in said and "X is gone" in said and not folder.exists(), said
     if way == "moved":
         assert torn(tmp_path / "Y") == []
         assert strata(tmp_path, "resume", str(tmp_path / "Y")).returncode == 0
@@ -198,11 +179,9 @@ def test_a_run_that_is_interrupted_ends_at_once_and_goes_on_to_the_same_digits(t
         if process.returncode != 0:
             break
         shutil.rmtree(folder)  # it had ended before
-    assert process.returncode == 130, said
-    assert "strata resume" in said
+    assert process.returncode == 130 and "strata resume" in said, said
     assert took_s < max(2.0, wall_s / 2)  # 2 s; more where others keep the machine busy
-    assert not (folder / "summary.json").exists()
-    assert torn(folder) == []
+    assert not (folder / "summary.json").exists() and torn(folder) == []
     assert strata(tmp_path, "resume", str(folder), "--quiet").returncode == 0
     assert differences(whole, folder) == []
 
@@ -214,18 +193,14 @@ def test_a_signal_before_the_first_step_ends_the_process(tmp_path: Path) -> None
     begin = time.monotonic()
     process.send_signal(signal.SIGINT)
     said = process.communicate(timeout=60)[1]
-    assert process.returncode == 130, said
-    assert time.monotonic() - begin < 1.0
-    assert "interrupted" in said
+    assert process.returncode == 130 and "interrupted" in said and time.monotonic() - begin < 1.0, said
 
 
 def test_runs_that_are_killed_end_as_those_that_are_not() -> None:
     """Ten kills at random moments; `python3 -m verification.faults` kills as often as one likes."""
     for name in ("explicit total", "explicit updated", "quasi-static turning", "quasi-static reynolds"):
         tally = campaign(name, 2 if name != "explicit total" else 4, 0.02, seed=7)
-        assert tally.kills >= 2
-        assert tally.identical == tally.trials > 0
-        assert tally.problems == []
+        assert tally.kills >= 2 and tally.identical == tally.trials > 0 and tally.problems == []
 
 
 @pytest.mark.parametrize("name, changed", [("explicit total", ()), ("explicit updated", ()), ("quasi-static paper", ("stop.tip_y_m=12",))])
@@ -244,9 +219,7 @@ def test_memory_is_estimated_a_little_above_what_a_run_takes(tmp_path: Path, nam
 def test_two_hundred_kills_and_every_run_the_same() -> None:
     """What is kept of the kills: as many as are claimed, of every scene, and not one run that ended otherwise."""
     record = json.loads(RECORD.read_text(encoding="utf-8"))
-    assert record["kills"] >= 200
-    assert record["identical"] == record["trials"] > 0
-    assert record["from_checkpoint"] > 100
+    assert record["kills"] >= 200 and record["identical"] == record["trials"] > 0 and record["from_checkpoint"] > 100
     assert [scene["name"] for scene in record["scenes"]] == list(KILLED)
     for scene in record["scenes"]:
         assert scene["kills"] >= 30 and scene["problems"] == []
