@@ -13,14 +13,9 @@ from verification.tests.fake_run import program
 
 SCENE = """
 title = "a"
-[domain]
-width_m = 80
-[variants.one]
-domain.width_m = 40
-[variants.two]
-domain.width_m = 20
-[[claim]]
-id = "1a"
+domain.width_m = 80
+variants = {one.domain.width_m = 40, two.domain.width_m = 20}
+claim = [{id = "1a"}]
 """
 
 # Stands for the solver: counts its calls and does as the variant says.
