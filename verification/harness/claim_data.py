@@ -48,10 +48,8 @@ class CaseResult:
 
 @dataclass(frozen=True)
 class Reading:
-    """Another way to read what the study leaves open, and whether the claim holds under it.
-
-    `choice` is the id of the choice it comes from; `complete` is false where runs for some of the claim's cases were not made.
-    """
+    """Another way to read what the study leaves open, and whether the claim holds under it. `choice` is the id of the choice it comes from;
+    `complete` is false where runs for some of the claim's cases were not made."""
 
     name: str
     holds: bool | None

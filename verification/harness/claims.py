@@ -116,10 +116,8 @@ def under(choice: Choice, cases: Sequence[Case], experiment: str) -> list[Case]:
 def readings_of(
     claim: dict[str, Any], cases: Sequence[Case], experiment: str, runs: Runs, choices: Sequence[Choice], experiments: Path
 ) -> tuple[Reading, ...]:
-    """The readings that the scene writes, then those that follow from choices; one written for a choice stands for it.
-
-    A choice is none where the mechanics cannot run all variants that stand for others.
-    """
+    """The readings that the scene writes, then those that follow from choices; one written for a choice stands for it. A choice is none where the
+    mechanics cannot run all variants that stand for others."""
     where = f"{experiment}, claim {claim['id']}"
     titles = {choice.id: choice.title for choice in choices}
     written: list[tuple[str, str, list[Case], bool]] = []  # name, choice, cases, whether these are all

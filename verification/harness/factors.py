@@ -93,10 +93,8 @@ def _step(content: dict[str, Any], mechanics: str) -> Factor:
 
 
 def _larger(content: dict[str, Any], mechanics: str, factor: float) -> Alternative:
-    """A block wider on both sides and higher at the top; the fracture and the layers beside it stay in its middle.
-
-    Where the path is straight and there is no inertia the cells beyond are graded; a path that turns would meet them, and its grid is uniform.
-    """
+    """A block wider on both sides and higher at the top; the fracture and the layers beside it stay in its middle. Where the path is straight and
+    there is no inertia the cells beyond are graded; a path that turns would meet them, and its grid is uniform."""
     domain, strata = content["domain"], content["strata"]
     width, height = (factor * float(domain[key]) for key in ("width_m", "height_m"))
     shift = (width - float(domain["width_m"])) / 2.0

@@ -192,10 +192,8 @@ def final_angle_deg(run: Run, parameters: Parameters = NONE) -> Measured:
 
 
 def failed_length_m(arrays: dict[str, Array], number: int) -> float:
-    """Length of interface `number` (from 1) that has two separate sides at an output time, m.
-
-    Each of its places stands for half of the way to its neighbours, those at the ends for as much outwards as inwards.
-    """
+    """Length of interface `number` (from 1) that has two separate sides at an output time, m. Each of its places stands for half of the way to its
+    neighbours, those at the ends for as much outwards as inwards."""
     place = str(number - 1)
     x, split = arrays[f"{place}/x_m"], arrays[f"{place}/split"]
     if len(x) < 2:

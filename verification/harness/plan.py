@@ -57,10 +57,8 @@ def affordable(jobs: Sequence[Job], options: argparse.Namespace) -> bool:
 
 
 def make(job: Job, stop: threading.Event | None = None, force: bool = False, limit_s: float | None = None) -> Made:
-    """Run a job (see run) and read what it wrote: one that failed as far as it came, one that was refused not at all.
-
-    A folder that cannot be used fails its run alone.
-    """
+    """Run a job (see run) and read what it wrote: one that failed as far as it came, one that was refused not at all. A folder that cannot be used
+    fails its run alone."""
     try:
         outcome = run(job, force=force, limit_s=limit_s, stop=stop)
         return outcome, None if outcome.exit_status == BAD_INPUT else load(job.out)

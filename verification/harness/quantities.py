@@ -68,10 +68,8 @@ def pauses(run: Run) -> list[Pause]:
 
 
 def pause_at(run: Run, interface: int) -> Pause | Measured:
-    """The longest pause at an interface (counted from 1 below), or why there is none.
-
-    It counts from 1.5 increments below, where growth would meet the interface, to 4 m above.
-    """
+    """The longest pause at an interface (counted from 1 below), or why there is none. It counts from 1.5 increments below, where growth would meet
+    the interface, to 4 m above."""
     height = interface_height(run, interface)
     low, high = height - 1.5 * run.increment_m - SLACK_M, height + ABOVE_M + SLACK_M
     found = [pause for pause in pauses(run) if low <= pause.height_m <= high]
@@ -82,10 +80,8 @@ def pause_at(run: Run, interface: int) -> Pause | Measured:
 
 
 def interface_quantities(number: int, of: int) -> list[Quantity]:
-    """Arrest height, restart pressure and rise between them at one of so many interfaces across the fracture.
-
-    All are of the longest pause there, flagged where it is no arrest; where the run ends in it, it leaves a bound of the last two.
-    """
+    """Arrest height, restart pressure and rise between them at one of so many interfaces across the fracture. All are of the longest pause there,
+    flagged where it is no arrest; where the run ends in it, it leaves a bound of the last two."""
 
     def of_pause(value: Callable[[Pause], float]) -> Callable[[Run], Measured]:
         def measure(run: Run) -> Measured:
@@ -138,11 +134,8 @@ def turns(content: dict[str, Any]) -> bool:
 
 
 def noise_of(quantity: Quantity, run: Run, value: float) -> float:
-    """Differences of a quantity below this are not seen by the solver.
-
-    Pressures: without inertia an event is found to 1e-4 of its margin in K, that is of the net pressure; with inertia to a time
-    step. Others: round-off.
-    """
+    """Differences of a quantity below this are not seen by the solver. Pressures: without inertia an event is found to 1e-4 of its margin in K, that
+    is of the net pressure; with inertia to a time step. Others: round-off."""
     if quantity.unit != "Pa":
         return 1e-6
     if run.summary.mechanics == "quasistatic":
@@ -152,10 +145,8 @@ def noise_of(quantity: Quantity, run: Run, value: float) -> float:
 
 
 def path_gap(run: Run, against: Run, length_m: float = math.inf) -> tuple[float, float] | None:
-    """Root mean square and largest distance of a path from another's, m, over the length both have (no more than length_m).
-
-    Both are counted from their first points, so that blocks of different width compare; None where one does not grow.
-    """
+    """Root mean square and largest distance of a path from another's, m, over the length both have (no more than length_m). Both are counted from
+    their first points, so that blocks of different width compare; None where one does not grow."""
     if not (grew(run) and grew(against)):
         return None
     own, other, step = run.path - run.path[0], against.path - against.path[0], 0.25

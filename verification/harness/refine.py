@@ -66,10 +66,8 @@ class Study:
 
 
 def job_of(scene: Path, mechanics: str, variant: str, cell_m: float, settings: Sequence[str] = (), root: Path = REFINE_RUNS) -> Job:
-    """The run at a cell size (m), the increment fixed to what scene, variant and settings say.
-
-    Its grid is uniform unless settings say otherwise: with its cells the fine part of a graded one would shrink, too.
-    """
+    """The run at a cell size (m), the increment fixed to what scene, variant and settings say. Its grid is uniform unless settings say otherwise:
+    with its cells the fine part of a graded one would shrink, too."""
     content = content_of(scene, variant, (f"numerics.mechanics={mechanics}", *settings))
     own = [f"numerics.mechanics={mechanics}", f"numerics.cell_m={cell_m!r}", f"fracture.increment_m={content['fracture']['increment_m']!r}", *settings]
     if "far_cell_m" in content["numerics"] and not any(setting.startswith("numerics.far_cell_m=") for setting in settings):
@@ -137,10 +135,8 @@ def study_of(
 
 
 def unlike(content: dict[str, Any], cells_m: Sequence[float]) -> tuple[str, ...]:
-    """Where the first tip or an interface lies in its cell otherwise than at the finest size: such sizes are of another family.
-
-    The solver's error depends on that place, so that values at these sizes and at the others need not lie on one line.
-    """
+    """Where the first tip or an interface lies in its cell otherwise than at the finest size: such sizes are of another family. The solver's error
+    depends on that place, so that values at these sizes and at the others need not lie on one line."""
     path, strata = content["fracture"]["path_m"], content["strata"]
     axis = "x" if strata.get("along", "y") == "x" else "y"
     thickness = [float(layer["thickness_m"]) for layer in strata["layers"][:-1]]

@@ -22,10 +22,8 @@ SAME_ORDER = 0.5
 
 @dataclass(frozen=True)
 class Triple:
-    """Three sizes from coarse to fine: kind 'converges', 'oscillates', 'diverges' or 'still'; the order where there is one.
-
-    'still': no two values differ by more than the noise. 'settled': the last two do not, the first two do.
-    """
+    """Three sizes from coarse to fine: kind 'converges', 'oscillates', 'diverges' or 'still'; the order where there is one. 'still': no two values
+    differ by more than the noise. 'settled': the last two do not, the first two do."""
 
     sizes: tuple[float, float, float]
     kind: str
@@ -39,12 +37,9 @@ class Triple:
 
 @dataclass(frozen=True)
 class Estimate:
-    """What refinement says of a number; `says` in words, the unit is that of the values.
-
-    kind: 'clean' (order, extrapolate and uncertainty are given), 'still' (the same at all sizes but for the noise), 'settled' (the
-    last refinement moved it by no more than the noise), else 'oscillates', 'diverges', 'odd order', 'too few'. spread is the
-    largest difference among the finest three values.
-    """
+    """What refinement says of a number; `says` in words, the unit is that of the values. kind: 'clean' (order, extrapolate and uncertainty are
+    given), 'still' (the same at all sizes but for the noise), 'settled' (the last refinement moved it by no more than the noise), else 'oscillates',
+    'diverges', 'odd order', 'too few'. spread is the largest difference among the finest three values."""
 
     kind: str
     says: str
@@ -56,11 +51,9 @@ class Estimate:
 
 
 def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float:
-    """Order p for which three values lie on f + C h^p, of any three sizes; NaN where the differences differ in sign.
-
-    (f1 - f2)/(f2 - f3) = (h1^p - h2^p)/(h2^p - h3^p), whose right side grows with p (Celik et al. 2008, eq. 3). Sizes coarse to fine.
-    Infinite where f2 = f3; raises ValueError for sizes that do not fall.
-    """
+    """Order p for which three values lie on f + C h^p, of any three sizes; NaN where the differences differ in sign. (f1 - f2)/(f2 - f3) = (h1^p -
+    h2^p)/(h2^p - h3^p), whose right side grows with p (Celik et al. 2008, eq. 3). Sizes coarse to fine. Infinite where f2 = f3; raises ValueError for
+    sizes that do not fall."""
     h1, h2, h3 = sizes
     if not h1 > h2 > h3 > 0.0:
         raise ValueError(f"sizes {h1:g}, {h2:g}, {h3:g} do not fall")
@@ -97,11 +90,9 @@ def told(value: float, unit: str) -> str:
 
 
 def estimate(sizes: Sequence[float], values: Sequence[float], noise: float = 0.0, unit: str = "") -> Estimate:
-    """Order, extrapolate and uncertainty of values at sizes (coarse to fine), judged by the finest three.
-
-    Extrapolate f3 + (f3 - f2)/(r^p - 1), uncertainty F_s |f3 - f2|/(r^p - 1) with r = h2/h3 (Roache 1994). F_s is 1.25, and 3 where
-    the three sizes before show another order or none. The unit is for the words.
-    """
+    """Order, extrapolate and uncertainty of values at sizes (coarse to fine), judged by the finest three. Extrapolate f3 + (f3 - f2)/(r^p - 1),
+    uncertainty F_s |f3 - f2|/(r^p - 1) with r = h2/h3 (Roache 1994). F_s is 1.25, and 3 where the three sizes before show another order or none. The
+    unit is for the words."""
     if len(sizes) != len(values):
         raise ValueError(f"{len(sizes)} sizes and {len(values)} values")
     if len(sizes) < 3:
@@ -124,10 +115,8 @@ def estimate(sizes: Sequence[float], values: Sequence[float], noise: float = 0.0
 
 
 def estimate_of_changes(sizes: Sequence[float], changes: Sequence[float], noise: float = 0.0, unit: str = "") -> Estimate:
-    """The same for something of which only the distances between successive sizes are known, such as a path.
-
-    The extrapolate is left out; the uncertainty is that of the finest, F_s d/(r^p - 1) with d the last distance.
-    """
+    """The same for something of which only the distances between successive sizes are known, such as a path. The extrapolate is left out; the
+    uncertainty is that of the finest, F_s d/(r^p - 1) with d the last distance."""
     if len(changes) != max(len(sizes) - 1, 0):
         raise ValueError(f"{len(sizes)} sizes have {len(sizes) - 1} changes, not {len(changes)}")
     values = [math.fsum(changes[k:]) for k in range(len(sizes))]

@@ -121,10 +121,8 @@ def reason_of(folder: Path, exit_status: int, log: str) -> str:
 
 
 def ended(words: list[str], limit_s: float | None, stop: threading.Event | None = None) -> tuple[int, str]:
-    """Exit status and what was said; a command that takes longer than the limit is killed (TOO_LONG, with that as its word).
-
-    Once `stop` is set it is interrupted as by Ctrl-C, and killed where that does not end it.
-    """
+    """Exit status and what was said; a command that takes longer than the limit is killed (TOO_LONG, with that as its word). Once `stop` is set it is
+    interrupted as by Ctrl-C, and killed where that does not end it."""
     begun, asked = time.monotonic(), False
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
         while True:
@@ -158,11 +156,8 @@ def timed(action: Callable[[], Any]) -> tuple[Any, Timed]:
 
 
 def run(job: Job, binary: Path | None = None, force: bool = False, limit_s: float | None = None, stop: threading.Event | None = None) -> Outcome:
-    """Run a job unless its folder has it already; the outcome says how it ended and never raises for a failed run.
-
-    A run that takes longer than limit_s is killed: it failed, with exit status TOO_LONG. One that `stop` interrupts goes on where it was
-    the next time.
-    """
+    """Run a job unless its folder has it already; the outcome says how it ended and never raises for a failed run. A run that takes longer than
+    limit_s is killed: it failed, with exit status TOO_LONG. One that `stop` interrupts goes on where it was the next time."""
     binary = binary or solver()
     done, before = (None, None) if force else (done_before(job, binary), load_outcome(job.out))
     if done is not None:

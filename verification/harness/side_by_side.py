@@ -21,10 +21,8 @@ SILENCE_S = 60.0
 
 @dataclass(frozen=True)
 class Task(Generic[Made]):
-    """Something to do: its name, what does it, what to say of what it made, how long it may take (s), how many threads it wants.
-
-    What does it is given an event, and is to end soon once that is set. Times count against each other: 1 for all where none is known.
-    """
+    """Something to do: its name, what does it, what to say of what it made, how long it may take (s), how many threads it wants. What does it is
+    given an event, and is to end soon once that is set. Times count against each other: 1 for all where none is known."""
 
     name: str
     make: Callable[[threading.Event], Made]
@@ -42,10 +40,8 @@ def duration(seconds: float) -> str:
 
 
 def time_left(waiting: Sequence[float], at_work: Sequence[tuple[float, float]], pace: float, jobs: int) -> float:
-    """Time to the end of all (s): expected times of those that wait, expected and spent ones of those at work, what an expected second takes.
-
-    All of it on `jobs` threads, but no less than the longest alone.
-    """
+    """Time to the end of all (s): expected times of those that wait, expected and spent ones of those at work, what an expected second takes. All of
+    it on `jobs` threads, but no less than the longest alone."""
     rest = [pace * expected for expected in waiting] + [max(pace * expected - spent, 0.0) for expected, spent in at_work]
     return max(sum(rest) / jobs, max(rest, default=0.0))
 
@@ -65,10 +61,8 @@ def interruptible() -> Iterator[threading.Event]:
 
 
 def side_by_side(tasks: Sequence[Task[Made]], jobs: int, tell: Tell = say) -> list[Made]:
-    """What the tasks made, in their order, done on `jobs` threads; a task that wants more threads than that gets all of them.
-
-    An exception of a task is raised when all others are done. An interrupt ends those at work, leaves the rest and is a SystemExit.
-    """
+    """What the tasks made, in their order, done on `jobs` threads; a task that wants more threads than that gets all of them. An exception of a task
+    is raised when all others are done. An interrupt ends those at work, leaves the rest and is a SystemExit."""
     queue = sorted(range(len(tasks)), key=lambda k: tasks[k].expected_s, reverse=True)
     at_work: dict[Future[Made], int] = {}
     done: dict[int, Future[Made]] = {}

@@ -81,10 +81,8 @@ def measured_values(found: Run) -> Values:
 
 
 def differences(found: Values, expected: Values) -> list[str]:
-    """What is not as expected, a line a value; of arrests too short to be sure of, one that is there on one side only is none.
-
-    Raises ValueError for an expectation so loose that zero or twice the value would pass.
-    """
+    """What is not as expected, a line a value; of arrests too short to be sure of, one that is there on one side only is none. Raises ValueError for
+    an expectation so loose that zero or twice the value would pass."""
     lines = []
     for name, item in sorted((expected | found).items()):
         if not (name in expected and name in found):

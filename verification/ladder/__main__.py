@@ -82,10 +82,8 @@ def write_json(path: Path, rows: list[Row], asked: Families, counted: Tally, sta
 
 
 def accept(rows: list[Row], known: Families, before: dict[str, Gates]) -> None:
-    """Write the gates of families anew, without those of cases that there are no more; print what changed.
-
-    `before`: their gates when the runs began. Files of other families are not touched, nor one that was changed since.
-    """
+    """Write the gates of families anew, without those of cases that there are no more; print what changed. `before`: their gates when the runs began.
+    Files of other families are not touched, nor one that was changed since."""
     now, refused = accepted(rows, before)
     for family, old in before.items():
         if book.read(family) != old:

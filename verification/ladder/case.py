@@ -23,11 +23,8 @@ Array = np.ndarray
 
 @dataclass(frozen=True)
 class Sample:
-    """Values of a run beside the exact ones, same shape and unit; a single number is an array of one.
-
-    weights (of the norm, such as volumes) default to 1. scale (same unit, > 0) replaces the size of the exact values
-    where these are zero. reference_error is the reference's own relative error.
-    """
+    """Values of a run beside the exact ones, same shape and unit; a single number is an array of one. weights (of the norm, such as volumes) default
+    to 1. scale (same unit, > 0) replaces the size of the exact values where these are zero. reference_error is the reference's own relative error."""
 
     values: Array
     exact: Array

@@ -72,10 +72,8 @@ def keeps(least: float, order: float | None) -> bool:
 
 
 def mutants_of(row: Row, coarser: Row | None, gate: Gate) -> dict[str, float]:
-    """Errors that plainly wrong results would have had: the sample's own, and half an order lost from the level before.
-
-    The half is lost from the order measured, or from the accepted one where that is lower.
-    """
+    """Errors that plainly wrong results would have had: the sample's own, and half an order lost from the level before. The half is lost from the
+    order measured, or from the accepted one where that is lower."""
     wrong = dict(row.mutants)
     if coarser is not None and not coarser.failure and not row.no_order:
         wrong[HALF_AN_ORDER] = row.error * (coarser.size / row.size) ** (0.5 + book.risen(gate, row.order))

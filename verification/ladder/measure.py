@@ -80,10 +80,8 @@ class Cost:
 
 @dataclass(frozen=True)
 class Row:
-    """A quantity of a case at a level beside its reference. Of many values, `value` and `reference` are the weighted rms.
-
-    error and reference_error are relative; order is that from the level before. `failure` says why there is nothing measured.
-    """
+    """A quantity of a case at a level beside its reference. Of many values, `value` and `reference` are the weighted rms. error and reference_error
+    are relative; order is that from the level before. `failure` says why there is nothing measured."""
 
     family: str
     case: str

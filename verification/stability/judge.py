@@ -9,9 +9,7 @@ from verification.stability.store import Record
 
 def side(family: Family, point: Point, record: Record) -> bool | None:
     """Whether a point is beyond the family's edge; None where it is so near (the edge's tolerance, or between its bounds) that it may be either.
-
-    Without an edge all points are beyond: what is declared must hold everywhere.
-    """
+    Without an edge all points are beyond: what is declared must hold everywhere."""
     if point.beyond is not None:
         return point.beyond
     if family.edge is None or record.edge is None:

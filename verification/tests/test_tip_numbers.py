@@ -15,10 +15,8 @@ SHALE_E_PRIME_PA = 10.0e9 / 0.96
 
 @pytest.mark.parametrize("cell_m", [1.0, 0.5])
 def test_no_row_has_a_number_that_no_tip_has(cell_m: float) -> None:
-    """Of a straight path in like rocks: K_I >= 0, J >= 0 and within 35 N/m of K_I^2/E' (a sixth of J_c), no kink beyond round-off.
-
-    A tip without K_I has J = 0 and no kink; J and K are absent where the interface is near and only there.
-    """
+    """Of a straight path in like rocks: K_I >= 0, J >= 0 and within 35 N/m of K_I^2/E' (a sixth of J_c), no kink beyond round-off. A tip without K_I
+    has J = 0 and no kink; J and K are absent where the interface is near and only there."""
     history = completed(SCENE, "", (f"numerics.cell_m={cell_m}",)).history
     K, J, kink = history["K_I_Pa_sqrt_m"], history["J_N_m"], history["kink_deg"]
     known = np.isfinite(K)

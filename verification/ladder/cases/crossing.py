@@ -77,10 +77,8 @@ def started_Pa(*by: str) -> Callable[[Run], float]:
 
 
 def ahead_Pa(run: Run, slipped_m: float = 0.0) -> float:
-    """Net pressure (Pa) at which the mean shear over the failure length beyond what has slipped (m) is the strength.
-
-    Compression keeps tension out of the criterion.
-    """
+    """Net pressure (Pa) at which the mean shear over the failure length beyond what has slipped (m) is the strength. Compression keeps tension out of
+    the criterion."""
     weak = {"ahead_m": law(run, "failure_length_m"), "shear_strength_Pa": law(run, "shear_strength_Pa")}
     return value("interface_ahead", "net_pressure_Pa", slipped_m=float(slipped_m), **weak, **block(run))
 

@@ -273,11 +273,8 @@ def spring_jump(run: Run) -> Sample:
 
 
 def spring(mechanics: str, D: float, *more: str, name: str = "", why: str = ROUND_OFF, mid: bool = True) -> Case:
-    """A spring of D Pa/m that carries the upper half of a bar.
-
-    With inertia a jump adds up what the springs' sweeps leave of each step, which shows in stiff ones: at mid-cell from
-    1e12 Pa/m (1.5e-5 of the jump), on a grid line from 1e15.
-    """
+    """A spring of D Pa/m that carries the upper half of a bar. With inertia a jump adds up what the springs' sweeps leave of each step, which shows
+    in stiff ones: at mid-cell from 1e12 Pa/m (1.5e-5 of the jump), on a grid line from 1e15."""
     settings = (f"interface.spring.normal_stiffness_Pa_m={D!r}", *more, *(SETTLED if mechanics == "explicit" else ()))
     place = 'strata.layers=[{rock = "stiff", thickness_m = 3}, {rock = "soft"}]'
     mid_cell = Level("2 m, mid-cell", 2.0, ("numerics.cell_m=2.0", place, *settings), "spring")

@@ -89,10 +89,8 @@ MODEL = cache(Model)  # nothing changes it
 
 
 def solve(P: float, prestress: bool) -> Array:
-    """Displacements (m) under a pressure P (Pa) on the faces.
-
-    prestress: the in-situ state carries itself, what acts is P - s_h. Without it, total stresses balance total loads.
-    """
+    """Displacements (m) under a pressure P (Pa) on the faces. prestress: the in-situ state carries itself, what acts is P - s_h. Without it, total
+    stresses balance total loads."""
     m = MODEL()
     f = m.of_pressure(P - S_H_PA) if prestress else m.in_situ() + m.of_pressure(P)
     held = np.array([0, 1, 2 * CELLS + 1])  # rigid motion: one corner, and the other one along y
@@ -102,10 +100,8 @@ def solve(P: float, prestress: bool) -> Array:
 
 
 def J_integral(u: Array, P: float, radius: float, prestress: bool) -> float:
-    """J of the upper tip (N/m) by the domain integral over a plateau of radius/2 that falls to nothing at `radius` (m), with the face term.
-
-    Without prestress from total stress, total strain and the whole pressure.
-    """
+    """J of the upper tip (N/m) by the domain integral over a plateau of radius/2 that falls to nothing at `radius` (m), with the face term. Without
+    prestress from total stress, total strain and the whole pressure."""
     m, own = MODEL(), u[MODEL().unknowns]
     grad = np.einsum("pna,pnb->pba", m.dN, own.reshape(-1, 4, 2))  # [p][i][j] = du_i/dx_j
     strain, net = np.einsum("pai,pi->pa", m.B, own), P - S_H_PA

@@ -14,11 +14,8 @@ VISCOSITY_PA_S, BULK_PA = 0.1, 1.0e9
 
 
 def compliance(cells: int) -> tuple[Array, Array]:
-    """Opening at the middles of cells of half the crack per pressure in each of them and its mirror image (m/Pa), and the middles (m).
-
-    w(x) = 4/(pi E') int p(s) arccosh((a^2 - x s)/(a |x - s|)) ds, integrated in closed form over each cell:
-    int G ds = (s - x) G + sqrt(a^2 - x^2) asin(s/a).
-    """
+    """Opening at the middles of cells of half the crack per pressure in each of them and its mirror image (m/Pa), and the middles (m). w(x) = 4/(pi
+    E') int p(s) arccosh((a^2 - x s)/(a |x - s|)) ds, integrated in closed form over each cell: int G ds = (s - x) G + sqrt(a^2 - x^2) asin(s/a)."""
     a = HALF_LENGTH_M
     edges = np.linspace(0.0, a, cells + 1)
     x = 0.5 * (edges[1:] + edges[:-1])
