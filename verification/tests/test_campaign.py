@@ -14,7 +14,7 @@ from verification.harness.choices import BadChoice, read_points
 from verification.harness.paths import EXPERIMENTS
 from verification.harness.plan import expected_s
 from verification.harness.run import Outcome, load_outcome
-from verification.harness.scenes import MECHANICS, content_of, mechanics_of, scene_of, scenes_of, variants_of
+from verification.harness.scenes import MECHANICS, STUDY_VARIANTS, content_of, mechanics_of, scene_of, scenes_of, variants_of
 from verification.tests.cases import wait_for
 from verification.tests.fake_run import climb, program, write_run
 
@@ -140,9 +140,8 @@ def test_an_interrupt_ends_the_campaign_and_a_second_call_goes_on(campaign: Path
     assert how.value.code == 130 and "interrupted" in capfd.readouterr().out
     assert load_outcome(campaign / "runs" / "explicit" / "exp" / "stuck").exit_status == 130  # type: ignore[union-attr]
     assert not (campaign / "out" / "index.html").exists()
-    outcomes = {name: load_outcome(campaign / "runs" / "explicit" / "exp" / name) for name in ("perfect", "weak")}
-    left = {name for name, outcome in outcomes.items() if outcome is None or not outcome.ok}
-    before = len(calls(campaign))
+    ended = {name: load_outcome(campaign / "runs" / "explicit" / "exp" / name) for name in ("perfect", "weak")}
+    left, before = {name for name, outcome in ended.items() if outcome is None or not outcome.ok}, len(calls(campaign))
     scene.write_text(scene.read_text().replace("variants.stuck", "variants.other"))
     assert make(campaign) == 0
     assert sorted(calls(campaign)[before:]) == sorted({*left, "other"})
@@ -158,11 +157,9 @@ def test_what_takes_longest_is_known_before_anything_was_run(tmp_path: Path) -> 
 
 
 def test_every_variant_beside_the_study_s_types_belongs_to_a_choice() -> None:
-    points = read_points(EXPERIMENTS)
-    shown = {(stem, name) for point in points for one in point.choices for stem, pairs in one.runs.items() for name in pairs.values()}
-    types = {"perfect", "friction", "weak", "soft", "weak_soft", "soft_weak"}
-    declared = {(scene.stem, name) for scene in scenes_of(EXPERIMENTS) for name in variants_of(scene) if name not in types}
-    assert declared - shown == set()
+    every = [one for point in read_points(EXPERIMENTS) for one in point.choices]
+    shown = {(stem, name) for one in every for stem, pairs in one.runs.items() for name in pairs.values()}
+    assert {(scene.stem, name) for scene in scenes_of(EXPERIMENTS) for name in variants_of(scene) if name not in STUDY_VARIANTS} <= shown
 
 
 @pytest.mark.parametrize("name, variant", [("exp", "nobody"), ("exp9", "plain")])
