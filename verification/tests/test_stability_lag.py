@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 from verification.stability.families import lagging
-from verification.stability.theory import ramped
-from verification.stability.theory.ramped import FLOOR_M, diffused, doubling, paper, reynolds
-from verification.stability.theory.staggered import BULK_PA, E_PRIME_PA, HALF_LENGTH_M, compliance
+from verification.stability.theory import flow
+from verification.stability.theory.flow import BULK_PA, E_PRIME_PA, FLOOR_M, HALF_LENGTH_M, compliance, diffused, doubling, paper, reynolds
 
 CELLS = 20
 DS = HALF_LENGTH_M / CELLS
@@ -42,7 +41,7 @@ def test_the_crack_takes_up_what_comes_in(monkeypatch: pytest.MonkeyPatch) -> No
     assert w == pytest.approx(compliance(CELLS)[0] @ slow, rel=1e-9)
     quick, _ = reynolds([0.01] * 10, 3e5, 1e6, CELLS)
     assert quick[0] > 3.2e5 > quick[-1]
-    monkeypatch.setattr(ramped, "BULK_PA", 1e2 * BULK_PA)  # what is stored by compression is next to nothing: the crack's own answer stays
+    monkeypatch.setattr(flow, "BULK_PA", 1e2 * BULK_PA)  # what is stored by compression is next to nothing: the crack's own answer stays
     assert reynolds([0.01] * 10, 3e5, 1e6, CELLS)[0] == pytest.approx(quick, rel=2e-2)
 
 

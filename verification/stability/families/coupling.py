@@ -9,7 +9,7 @@ from verification.harness.load import Run
 from verification.stability.cracks import AT_REST, CRACK, MIDDLE_M, SETTLING, upright
 from verification.stability.family import Checked, Family, Parameter, Point, at_most, close
 from verification.stability.theory.background import J_integral, solve
-from verification.stability.theory.staggered import BULK_PA, compliance, conductances, growth
+from verification.stability.theory.flow import BULK_PA, compliance, conductances, growth
 
 
 NET_PA = 0.3e6

@@ -8,8 +8,7 @@ from verification.harness.given import given
 from verification.harness.load import LoadError, Run, frames
 from verification.stability.cracks import CRACK
 from verification.stability.family import STABLE, Checked, Family, Parameter, Point, at_values, close, walked
-from verification.stability.theory.ramped import doubling, paper, reynolds
-from verification.stability.theory.staggered import compliance, growth
+from verification.stability.theory.flow import compliance, doubling, growth, paper, reynolds
 
 
 START_PA, RATE_PA_S, TIME_S = 0.05e6, 0.35e6, 2.0  # net pressure at the start, its rise at the inlet (the study's), and for how long
