@@ -52,8 +52,8 @@ class Estimate:
 
 def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float:
     """Order p for which three values lie on f + C h^p, of any three sizes; NaN where the differences differ in sign.
-    (f1 - f2)/(f2 - f3) = (h1^p - h2^p)/(h2^p - h3^p), whose right side grows with p (Celik et al. 2008, eq. 3). Sizes coarse to fine. Infinite where f2 = f3; raises ValueError for
-    sizes that do not fall."""
+    (f1 - f2)/(f2 - f3) = (h1^p - h2^p)/(h2^p - h3^p), whose right side grows with p (Celik et al. 2008, eq. 3). Sizes coarse to fine. Infinite where
+    f2 = f3; raises ValueError for sizes that do not fall."""
     h1, h2, h3 = sizes
     if not h1 > h2 > h3 > 0.0:
         raise ValueError(f"sizes {h1:g}, {h2:g}, {h3:g} do not fall")

@@ -25,10 +25,8 @@ def test_uniform_pressure_starts_at_the_critical_pressure_and_runs(sides: str) -
 
 @pytest.mark.slow
 def test_the_study_s_flow_with_dry_points_climbs_with_a_slope() -> None:
-    run = completed(SCENE, "perfect")
-    uniform = completed(SCENE, "uniform", ("domain.sides=fixed",))
-    heights = (20.0, 35.0, 50.0, 65.0)
-    pressures = [measure("pressure_at_height_difference_Pa", {"height_m": height}, run, uniform).low for height in heights]
+    run, uniform = completed(SCENE, "perfect"), completed(SCENE, "uniform", ("domain.sides=fixed",))
+    pressures = [measure("pressure_at_height_difference_Pa", {"height_m": height}, run, uniform).low for height in (20.0, 35.0, 50.0, 65.0)]
     assert all(later - earlier > 0.01e6 for earlier, later in zip(pressures, pressures[1:])), pressures
 
 

@@ -118,7 +118,7 @@ def test_what_no_size_has_is_told_in_a_note(tmp_path: Path) -> None:
     ("y", 10, (1.0, 0.5, 0.25), ()), ("y", 10, (2.0, 1.0), ("at 2 m the first tip (y = 5 m) lies at mid-cell, at 1 m on a grid line",)),
     ("x", 42.5, (1.0, 0.5), ("at 1 m the interface (x = 42.5 m) lies at mid-cell, at 0.5 m on a grid line",)),
 ])  # fmt: skip
-def test_sizes_at_which_tip_or_interface_lie_otherwise_in_their_cells_are_named(along: str, first_m: float, cells_m: tuple[float, ...], said: tuple[str, ...]) -> None:
+def test_sizes_at_which_tip_or_interface_lie_otherwise_are_named(along: str, first_m: float, cells_m: tuple[float, ...], said: tuple[str, ...]) -> None:
     strata = {"along": along, "layers": [{"rock": "a", "thickness_m": first_m}, {"rock": "b"}]}
     assert refine.unlike({**CONTENT, "strata": strata}, cells_m) == said
 

@@ -41,7 +41,8 @@ def crossing(name: str, title: str, keys: tuple[str, ...]) -> Family:
         Parameter("angle between fracture and interface", "degrees"),
         walked(at_values(CRACK, lambda angle: (*AT_REST, *keys, through(angle)), "{:g} degrees"),
                (*ANGLES, *(180.0 - angle for angle in ANGLES[1:])), smoke=(90.0, 30.0)),
-        no_effect, beyond=(STABLE, MARKED), section=SECTION, flag=lambda run: "both tips are near something" if all(tip["near"] for tip in run.summary.raw["tips"]) else "",
+        no_effect, beyond=(STABLE, MARKED), section=SECTION,
+        flag=lambda run: "both tips are near something" if all(tip["near"] for tip in run.summary.raw["tips"]) else "",
     )  # fmt: skip
 
 
