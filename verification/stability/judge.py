@@ -1,7 +1,6 @@
 """Judges what was found of a family: no garbage, the edge where theory says, and beyond it what the family declares."""
 
 import math
-from collections.abc import Iterable
 
 from verification.stability.family import GARBAGE, Family, Point
 from verification.stability.store import Record
@@ -86,10 +85,3 @@ def differs(before: float, now: float, share: float = 0.2, floor: float = 1e-6) 
     if math.isnan(before) and math.isnan(now):
         return False
     return not abs(now - before) <= share * abs(before) + floor
-
-
-def headline(judged: Iterable[list[str]]) -> str:
-    """How many families are as they are to be."""
-    verdicts = list(judged)
-    wrong = sum(bool(one) for one in verdicts)
-    return f"{len(verdicts)} families, " + ("all as they are to be" if not wrong else f"{wrong} NOT as they are to be")

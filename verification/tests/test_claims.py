@@ -26,8 +26,13 @@ CLAIM: dict[str, Any] = {
 
 def write(tmp_path: Path, variant: str, plateau_MPa: float, **options: Any) -> None:
     """A run of the experiment 'exp' with a plateau at the interface."""
-    steps = climb(plateaus={10.0: plateau_MPa * MPA} if plateau_MPa else {})
-    write_run(tmp_path / "exp" / variant, steps, **options)
+    write_run(tmp_path / "exp" / variant, climb(plateaus={10.0: plateau_MPa * MPA} if plateau_MPa else {}), **options)
+
+
+def written(tmp_path: Path, **plateaus_MPa: float) -> None:
+    """Runs of some variants."""
+    for variant, plateau in plateaus_MPa.items():
+        write(tmp_path, variant, plateau)
 
 
 @pytest.mark.parametrize("plateau, verdict", [(0.2, REPRODUCED), (0.0, NOT_REPRODUCED), (0.4, NOT_REPRODUCED), (-0.2, NOT_REPRODUCED)])
@@ -164,8 +169,7 @@ def scenes(tmp_path: Path) -> Path:
 
 
 def test_a_choice_puts_its_variants_in_place_of_those_named(tmp_path: Path, scenes: Path) -> None:
-    for variant, plateau in (("weak", 0.2), ("soft", 0.2), ("other", 0.0)):
-        write(tmp_path, variant, plateau)
+    written(tmp_path, weak=0.2, soft=0.2, other=0.0)
     result = evaluate(TWICE, "exp", Runs(tmp_path), [OTHER], scenes)
     (reading,) = result.readings
     assert [case.case.variant for case in reading.cases] == ["other", "soft"]
@@ -176,13 +180,11 @@ def test_a_choice_puts_its_variants_in_place_of_those_named(tmp_path: Path, scen
 
 
 def test_a_choice_without_runs_for_all_cases_cannot_rescue_a_claim(tmp_path: Path, scenes: Path) -> None:
-    for variant, plateau in (("weak", 0.0), ("soft", 0.2), ("other", 0.2)):
-        write(tmp_path, variant, plateau)
+    written(tmp_path, weak=0.0, soft=0.2, other=0.2)
     assert evaluate(TWICE, "exp", Runs(tmp_path), [OTHER], scenes).verdict == ONLY_UNDER_A_VARIANT
     part = Choice("c", "unit: another", "another", {"exp": {"weak": "other"}})
     result = evaluate(TWICE, "exp", Runs(tmp_path), [part], scenes)
-    assert result.verdict == NOT_REPRODUCED
-    assert (result.readings[0].holds, result.readings[0].complete) == (True, False)
+    assert (result.verdict, result.readings[0].holds, result.readings[0].complete) == (NOT_REPRODUCED, True, False)
 
 
 @pytest.mark.parametrize(("other", "mechanics", "readings"), [("weak", "explicit", 0), ("flow", "explicit", 0), ("flow", "quasistatic", 1)])
@@ -192,8 +194,7 @@ def test_a_choice_that_changes_nothing_or_cannot_be_run_is_no_reading(tmp_path: 
 
 
 def test_a_reading_written_for_a_choice_stands_for_it(tmp_path: Path, scenes: Path) -> None:
-    write(tmp_path, "weak", 0.0)
-    write(tmp_path, "other", 0.2)
+    written(tmp_path, weak=0.0, other=0.2)
     own = {"choice": "c", "case": [{"variant": "other", "interface": 1, "at_least": 0.3 * MPA}]}
     (reading,) = evaluate({**CLAIM, "reading": [own]}, "exp", Runs(tmp_path), [OTHER], scenes).readings
     assert reading.holds is False and reading.name == "unit: another"
