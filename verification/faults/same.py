@@ -19,18 +19,13 @@ Content = dict[str, Any]
 def stored(file: Path) -> Content:
     """All data sets and attributes of an HDF5 file by their paths, values as the bytes they are."""
     found: Content = {}
-
-    def visit(name: str, item: h5py.Dataset | h5py.Group) -> None:
-        if isinstance(item, h5py.Dataset):
-            values = item[()]
-            found[name] = (values.dtype.str, values.shape, np.ascontiguousarray(values).tobytes())
-        for key, value in item.attrs.items():
-            found[f"{name}@{key}"] = str(value) if isinstance(value, str) else np.asarray(value).tobytes()
-
     with h5py.File(file, "r") as store:
-        visit("/", store)
-        for name, item in items_below(store):
-            visit(name, item)
+        for name, item in (("/", store), *items_below(store)):
+            if isinstance(item, h5py.Dataset):
+                values = item[()]
+                found[name] = (values.dtype.str, values.shape, np.ascontiguousarray(values).tobytes())
+            for key, value in item.attrs.items():
+                found[f"{name}@{key}"] = str(value) if isinstance(value, str) else np.asarray(value).tobytes()
     return found
 
 
@@ -42,14 +37,10 @@ def summary(file: Path) -> Content:
 
 def differences(one: Path, other: Path) -> list[str]:
     """What differs between two run folders, a line each; empty where they say the same."""
-    found = []
-    for name in ("scene.toml", "history.csv", "result.xdmf"):
-        if (one / name).read_bytes() != (other / name).read_bytes():
-            found.append(f"{name}: other bytes")
-    first, second = summary(one / "summary.json"), summary(other / "summary.json")
-    found += [f"summary.json: {key}" for key in sorted(first.keys() | second.keys()) if first.get(key) != second.get(key)]
-    first, second = stored(one / "result.h5"), stored(other / "result.h5")
-    found += [f"result.h5: {key}" for key in sorted(first.keys() | second.keys()) if first.get(key) != second.get(key)]
+    found = [f"{name}: other bytes" for name in ("scene.toml", "history.csv", "result.xdmf") if (one / name).read_bytes() != (other / name).read_bytes()]
+    for name, read in (("summary.json", summary), ("result.h5", stored)):
+        first, second = read(one / name), read(other / name)
+        found += [f"{name}: {key}" for key in sorted(first.keys() | second.keys()) if first.get(key) != second.get(key)]
     return found
 
 
@@ -57,9 +48,8 @@ def torn(folder: Path) -> list[str]:
     """What of a folder whose run was killed cannot be read whole, a line each; what is not there yet is not torn."""
     found = []
     try:
-        history = folder / "history.csv"
-        if history.is_file():
-            text = history.read_text(encoding="utf-8")
+        if (folder / "history.csv").is_file():
+            text = (folder / "history.csv").read_text(encoding="utf-8")
             rows = list(csv.reader(text.splitlines()))
             if not text.endswith("\n") or any(len(row) != len(rows[0]) for row in rows):
                 found.append("history.csv: a row is not whole")

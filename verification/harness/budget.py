@@ -93,8 +93,6 @@ class Budget:
     totals: dict[str, dict[str, Total]]  # quantity, group
 
 
-# --- jobs
-
 Key = tuple[str, str]  # factor and alternative; the base is ("", "")
 
 
@@ -115,24 +113,18 @@ def jobs_of(
     return jobs
 
 
-# --- what the runs say
-
-
 def total_of(lines: Sequence[Line], quantity: str) -> Total:
     """All factors together, each with its largest effect; those that say nothing, or fail in part, are named."""
-    known = [size for size in (line.size(quantity) for line in lines) if size is not None]
-    out = []
-    for line in lines:
-        failed = ", ".join(one.label for one in line.tried if one.value(quantity) is None)
-        out += [f"{line.label} ({why})" for why in (failed, line.why_not) if why]
-    return Total(math.sqrt(math.fsum(size**2 for size in known)), math.fsum(known), tuple(out))
+    known = [size for line in lines if (size := line.size(quantity)) is not None]
+    failed = [(line, ", ".join(one.label for one in line.tried if one.value(quantity) is None)) for line in lines]
+    out = tuple(f"{line.label} ({why})" for line, lost in failed for why in (lost, line.why_not) if why)
+    return Total(math.sqrt(math.fsum(size**2 for size in known)), math.fsum(known), out)
 
 
 def totals_of(lines: Sequence[Line], quantities: Sequence[tuple[str, str, str]]) -> dict[str, dict[str, Total]]:
     """Totals of each quantity: of the numerical factors and of all; factors shown beside the others are in neither."""
-    summed = [line for line in lines if line.group != "beside"]
-    numerical = [line for line in summed if line.group == NUMERICAL]
-    return {name: {NUMERICAL: total_of(numerical, name), ALL: total_of(summed, name)} for name, _, _ in quantities}
+    groups = {NUMERICAL: [line for line in lines if line.group == NUMERICAL], ALL: [line for line in lines if line.group != "beside"]}
+    return {name: {group: total_of(own, name) for group, own in groups.items()} for name, _, _ in quantities}
 
 
 def budget_of(
@@ -158,9 +150,6 @@ def budget_of(
     return Budget(mechanics, variant, "completed", "", values, tuple(names), tuple(lines), totals_of(lines, names))
 
 
-# --- what is written
-
-
 def amount(value: float, unit: str, sign: str = "") -> str:
     """A difference in kPa or its own unit."""
     return f"{value / 1e3:{sign}.2f}" if unit == "Pa" else f"{value:{sign}.3f}"
@@ -168,9 +157,7 @@ def amount(value: float, unit: str, sign: str = "") -> str:
 
 def effect_words(value: float | None, unit: str, base: float | None) -> str:
     """An effect with its share of the base, or a dash."""
-    if value is None:
-        return "-"
-    return amount(value, unit, "+") + (f" {100.0 * value / base:+.2f}%" if base else "")
+    return "-" if value is None else amount(value, unit, "+") + (f" {100.0 * value / base:+.2f}%" if base else "")
 
 
 def table(budget: Budget) -> str:

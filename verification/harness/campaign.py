@@ -15,9 +15,9 @@ from pathlib import Path
 from verification.harness import claims
 from verification.harness.choose import beginnings, choose
 from verification.harness.command import command
-from verification.harness.paths import EXPERIMENTS, ROOT, RUNS, solver
+from verification.harness.paths import EXPERIMENTS, ROOT, RUNS
 from verification.harness.plan import Made, make_all, name_of
-from verification.harness.run import Job, done_before, key_of
+from verification.harness.run import Job, done_before
 from verification.harness.scenes import MECHANICS, mechanics_of, scenes_of, variants_of
 from verification.harness.side_by_side import duration
 
@@ -35,10 +35,8 @@ def jobs_of(runs: Path, scenes: Sequence[Path], settings: Sequence[str] = (), me
 def result_line(made: Made) -> str:
     """A run's result in a few words."""
     outcome, found = made
-    if not outcome.ok:
-        return f"FAILED: {outcome.reason}"
-    if found is None:
-        return "completed, but it cannot be read"
+    if not outcome.ok or found is None:
+        return "completed, but it cannot be read" if outcome.ok else f"FAILED: {outcome.reason}"
     start = next((event.inlet_Pa for event in found.summary.events if event.kind == "start"), None)
     begun = f"starts at {start / 1e6:.3f} MPa" if start is not None else "never starts"
     top = float(found.history["tip_y_m"].max())
@@ -47,8 +45,7 @@ def result_line(made: Made) -> str:
 
 def make_runs(jobs: Sequence[Job], at_a_time: int) -> int:
     """Make all runs with a line each; 3 where some did not complete, which are named at the end."""
-    binary = solver()
-    outcomes = {job: done_before(job, key_of(job, binary)) for job in jobs}
+    outcomes = {job: done_before(job) for job in jobs}
     rest = [job for job, outcome in outcomes.items() if outcome is None]
     print(f"{len(rest)} runs to make, {len(jobs) - len(rest)} done before for the same scene and solver", flush=True)
     outcomes |= {job: outcome for job, (outcome, _) in zip(rest, make_all(rest, at_a_time, result_line))}

@@ -51,11 +51,9 @@ def read_points(experiments: Path) -> list[Point]:
     every = [choice for point in points for choice in point.choices]
     if twice(choice.id for choice in every):
         raise BadChoice("two choices have the same id")
-    for choice in every:
-        for experiment, pairs in choice.runs.items():
-            if experiment not in known:
-                raise BadChoice(f"choice {choice.id}: there is no experiment {experiment}")
-            strangers = {*pairs, *pairs.values()} - known[experiment]
-            if strangers:
-                raise BadChoice(f"choice {choice.id}: {experiment} has no variant {', '.join(sorted(strangers))}")
+    for choice, experiment, pairs in ((choice, *named) for choice in every for named in choice.runs.items()):
+        if experiment not in known:
+            raise BadChoice(f"choice {choice.id}: there is no experiment {experiment}")
+        if strangers := {*pairs, *pairs.values()} - known[experiment]:
+            raise BadChoice(f"choice {choice.id}: {experiment} has no variant {', '.join(sorted(strangers))}")
     return points

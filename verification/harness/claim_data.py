@@ -48,10 +48,8 @@ class CaseResult:
 
 @dataclass(frozen=True)
 class Reading:
-    """Another way to read what the study leaves open, and whether the claim holds under it.
-
-    `choice` is the id of the choice it comes from; `complete` is false where runs for some of the claim's cases were not made.
-    """
+    """Another way to read what the study leaves open, and whether the claim holds under it. `choice` is the id of the choice it comes from;
+    `complete` is false where runs for some of the claim's cases were not made."""
 
     name: str
     holds: bool | None
@@ -80,22 +78,16 @@ class ClaimResult:
 Plain = dict[str, Any]
 
 
-def _with_cases(claims: list[Plain], changed: Callable[[Plain], Plain]) -> list[Plain]:
-    """Claims with every case of theirs and of their readings changed."""
-
-    def each(holder: Plain) -> Plain:
-        return {**holder, "cases": [changed(case) for case in holder["cases"]]}
-
-    return [each({**claim, "readings": [each(reading) for reading in claim["readings"]]}) for claim in claims]
+def _with_cases(holder: Plain, changed: Callable[[Plain], Plain]) -> Plain:
+    """A claim, or a reading of one, with each of its cases changed."""
+    readings = {"readings": [_with_cases(one, changed) for one in holder["readings"]]} if "readings" in holder else {}
+    return {**holder, "cases": [changed(case) for case in holder["cases"]], **readings}
 
 
 def write_claims(results: list[ClaimResult], path: Path) -> None:
     """Write claims.json; a case's keys stand beside what was measured."""
-
-    def flat(case: Plain) -> Plain:
-        return {**case["case"], **{key: value for key, value in case.items() if key != "case"}}
-
-    store.write({"claims": _with_cases(store.plain(results), flat)}, path)
+    claims = [_with_cases(claim, lambda case: {**case["case"], **{key: case[key] for key in case if key != "case"}}) for claim in store.plain(results)]
+    store.write({"claims": claims}, path)
 
 
 def read_claims(path: Path) -> list[ClaimResult]:
@@ -103,11 +95,11 @@ def read_claims(path: Path) -> list[ClaimResult]:
     own = {item.name for item in fields(Case)}
 
     def nest(case: Plain) -> Plain:
-        return {"case": {key: value for key, value in case.items() if key in own}, **{key: case[key] for key in case if key not in own}}
+        return {"case": {key: case[key] for key in case if key in own}, **{key: case[key] for key in case if key not in own}}
 
     if not path.is_file():
         return []
     try:
-        return store.built(list[ClaimResult], _with_cases(json.loads(path.read_text(encoding="utf-8"))["claims"], nest))
+        return store.built(list[ClaimResult], [_with_cases(claim, nest) for claim in json.loads(path.read_text(encoding="utf-8"))["claims"]])
     except (KeyError, TypeError) as error:
         raise ValueError(f"{path}: {error}") from error

@@ -11,8 +11,8 @@ usage: python3 -m verification.harness.claims [--experiments DIR] [--runs DIR] [
 import math
 import sys
 from collections.abc import Sequence
-from dataclasses import replace
-from functools import lru_cache
+from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -51,18 +51,16 @@ def case_of(content: dict[str, Any], default_observable: str, where: str) -> Cas
     return Case(**{**known, "observable": name}, parameters=parameters)
 
 
-# --- on runs
-
-
+@dataclass(frozen=True, eq=False)
 class Runs:
-    """The runs of one mechanics below a folder, each loaded once; one that is missing or failed is None with the reason."""
+    """The runs of one mechanics below a folder."""
 
-    def __init__(self, folder: Path, mechanics: str = MECHANICS[0]) -> None:
-        self.folder = folder
-        self.mechanics = mechanics
-        self.get = lru_cache(maxsize=None)(self._get)
+    folder: Path
+    mechanics: str = MECHANICS[0]
 
-    def _get(self, experiment: str, variant: str) -> tuple[Run | None, str]:
+    @cache
+    def get(self, experiment: str, variant: str) -> tuple[Run | None, str]:
+        """A run, loaded once; None with the reason for one that is missing or failed."""
         folder = self.folder / experiment / variant
         if not folder.is_dir():
             return None, f"{experiment}/{variant} has not been run"
@@ -84,9 +82,8 @@ def evaluate_case(case: Case, experiment: str, runs: Runs) -> CaseResult:
     """Measure a case on the runs; marks that the runs' own monitors have set on them are flags."""
     observable = OBSERVABLES[case.observable]
     found = [runs.get(*names) for names in runs_of(case, experiment)]
-    problem = next((problem for _, problem in found if problem), "")
     known = [run for run, _ in found if run is not None]
-    if problem:
+    if problem := next((problem for _, problem in found if problem), ""):
         return CaseResult(case, observable.unit, None, None, None, None, False, problem, (), observable.meaning)
     measured = measure(case.observable, case.parameters, known[0], known[1] if len(known) > 1 else None)
     marks = [f"suspect run {run.name}: {mark.why}" for run in known for mark in run.summary.suspect if mark.monitor != OF_SPEEDS]
@@ -101,19 +98,6 @@ def all_hold(cases: Sequence[CaseResult]) -> bool | None:
     if any(case.holds is False for case in cases):
         return False
     return True if all(case.holds for case in cases) else None
-
-
-def verdict_of(cases: Sequence[CaseResult], readings: Sequence[Reading]) -> str:
-    """The verdict on a claim from its cases and those of its readings that have runs for all of them."""
-    holds = all_hold(cases)
-    if holds:
-        return REPRODUCED
-    if any(reading.holds and reading.complete for reading in readings):
-        return ONLY_UNDER_A_VARIANT
-    return NOT_EVALUATED if holds is None and not all(case.evaluated for case in cases) else NOT_REPRODUCED
-
-
-# --- readings
 
 
 def under(choice: Choice, cases: Sequence[Case], experiment: str) -> list[Case]:
@@ -132,10 +116,8 @@ def under(choice: Choice, cases: Sequence[Case], experiment: str) -> list[Case]:
 def readings_of(
     claim: dict[str, Any], cases: Sequence[Case], experiment: str, runs: Runs, choices: Sequence[Choice], experiments: Path
 ) -> tuple[Reading, ...]:
-    """The readings that the scene writes, then those that follow from choices; one written for a choice stands for it.
-
-    A choice is none where the mechanics cannot run all variants that stand for others.
-    """
+    """The readings that the scene writes, then those that follow from choices; one written for a choice stands for it. A choice is none where the
+    mechanics cannot run all variants that stand for others."""
     where = f"{experiment}, claim {claim['id']}"
     titles = {choice.id: choice.title for choice in choices}
     written: list[tuple[str, str, list[Case], bool]] = []  # name, choice, cases, whether these are all
@@ -158,9 +140,6 @@ def readings_of(
     return tuple(found)
 
 
-# --- claims
-
-
 def evaluate(claim: dict[str, Any], experiment: str, runs: Runs, choices: Sequence[Choice] = (), experiments: Path = EXPERIMENTS) -> ClaimResult:
     """Evaluate one claim of a scene."""
     where = f"{experiment}, claim {claim.get('id')}"
@@ -170,7 +149,13 @@ def evaluate(claim: dict[str, Any], experiment: str, runs: Runs, choices: Sequen
     asked = [case_of(content, claim["observable"], where) for content in claim["case"]]
     cases = tuple(evaluate_case(case, experiment, runs) for case in asked)
     readings = readings_of(claim, asked, experiment, runs, choices, experiments)
-    verdict, holds, flags = verdict_of(cases, readings), all_hold(cases), list(dict.fromkeys(flag for case in cases for flag in case.flags))
+    holds, flags, verdict = all_hold(cases), list(dict.fromkeys(flag for case in cases for flag in case.flags)), NOT_REPRODUCED
+    if holds:
+        verdict = REPRODUCED
+    elif any(reading.holds and reading.complete for reading in readings):
+        verdict = ONLY_UNDER_A_VARIANT
+    elif holds is None and not all(case.evaluated for case in cases):
+        verdict = NOT_EVALUATED
     if verdict == NOT_REPRODUCED and holds is None:
         flags.append("undecided: a run ended before it could show this")
     if verdict == REPRODUCED:

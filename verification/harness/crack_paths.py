@@ -25,10 +25,8 @@ def path_settings(experiment: int, increment_m: float, turning: str, growth_m: f
 
 
 def exact_path(experiment: int, increment_m: float, turning: str, growth_m: float) -> Array:
-    """Tips of Experiment 5 or 6 by strata-reference crack_path over a length of growth, "corrected" or "forward" turning.
-
-    Perfect interface, pressure everywhere that of the start of growth; x from the first crack; shape (n, 2), m.
-    """
+    """Tips of Experiment 5 or 6 by strata-reference crack_path over a length of growth, "corrected" or "forward" turning. Perfect interface, pressure
+    everywhere that of the start of growth; x from the first crack; shape (n, 2), m."""
     settings = path_settings(experiment, increment_m, turning, growth_m)
     return np.column_stack([values("crack_path", axis, **settings) for axis in ("x_m", "y_m")])
 

@@ -54,25 +54,20 @@ def factors_of(content: dict[str, Any], mechanics: str) -> list[Factor]:
     cell, points = float(numerics["cell_m"]), int(numerics["particles_per_cell"])
     increment, rate = float(content["fracture"]["increment_m"]), float(inlet.get("rate_Pa_s", 0.0))
     half_cell, half_step = f"numerics.cell_m={cell / 2.0!r}", f"fracture.increment_m={increment / 2.0!r}"
-    both = _one("half", f"cells {cell / 2.0:g} m, increment {increment / 2.0:g} m", half_cell, half_step)
+    both = Alternative("half", f"cells {cell / 2.0:g} m, increment {increment / 2.0:g} m", (half_cell, half_step))
     return [
-        Factor("mesh", "mesh", "numerical", (_one("half", f"cells of {cell / 2.0:g} m", half_cell),)),
+        Factor("mesh", "mesh", "numerical", (Alternative("half", f"cells of {cell / 2.0:g} m", (half_cell,)),)),
         # The direction of growth of a path that turns looks at both.
         *([Factor("mesh_increment", "mesh and increment", "beside", (both,))] if turns(content) else []),
         _step(content, mechanics),
-        Factor("ring", "J ring", "numerical", tuple(_one(f"{r:g}", f"{r:g} cells", f"numerics.ring_cells={r!r}") for r in RINGS)),
+        Factor("ring", "J ring", "numerical", tuple(Alternative(f"{r:g}", f"{r:g} cells", (f"numerics.ring_cells={r!r}",)) for r in RINGS)),
         _factor("particles", "particles", "numerical", "as many as there may be",
-                *(_one(str(n), f"{n} a cell", f"numerics.particles_per_cell={n}") for n in (4, 9, 16) if n > points)),
+                *(Alternative(str(n), f"{n} a cell", (f"numerics.particles_per_cell={n}",)) for n in (4, 9, 16) if n > points)),
         _factor("increment", "increment", "model", "", *_half_and_double(increment, "m", "fracture.increment_m")),
         Factor("block", "block", "model", tuple(_larger(content, mechanics, k) for k in (1.5, 2.0))),
         _factor("rate", "loading rate", "model", "the inlet's pressure does not rise",
                 *(_half_and_double(rate, "MPa/s", "fluid.inlet.rate_Pa_s", 1e6) if rate > 0.0 else [])),
     ]  # fmt: skip
-
-
-def _one(id_: str, label: str, *settings: str) -> Alternative:
-    """An alternative."""
-    return Alternative(id_, label, settings)
 
 
 def _factor(id_: str, label: str, group: str, why_not: str, *alternatives: Alternative) -> Factor:
@@ -82,7 +77,7 @@ def _factor(id_: str, label: str, group: str, why_not: str, *alternatives: Alter
 
 def _half_and_double(own: float, unit: str, key: str, size: float = 1.0) -> list[Alternative]:
     """Half and twice a number, in words in a unit of so many SI ones."""
-    return [_one(name, f"{own * k / size:g} {unit}", f"{key}={own * k!r}") for name, k in (("half", 0.5), ("double", 2.0))]
+    return [Alternative(name, f"{own * k / size:g} {unit}", (f"{key}={own * k!r}",)) for name, k in (("half", 0.5), ("double", 2.0))]
 
 
 def _step(content: dict[str, Any], mechanics: str) -> Factor:
@@ -90,31 +85,25 @@ def _step(content: dict[str, Any], mechanics: str) -> Factor:
     numerics = content["numerics"]
     if mechanics == "explicit":
         half = float(numerics["courant"]) / 2.0
-        return _factor("step", "time step", "numerical", "", _one("half", f"Courant number {half:g}", f"numerics.courant={half!r}"))
-    if content["fluid"]["law"] == "uniform":
-        return _factor("step", "flow step", "numerical", "no flow")
-    change = float(numerics["flow_change"]) / 2.0
-    error = float(numerics["flow_error"]) / 8.0  # goes by the third power of the step
-    words = f"flow change {change:g}, flow error {error:g}"
-    return _factor("step", "flow step", "numerical", "", _one("half", words, f"numerics.flow_change={change!r}", f"numerics.flow_error={error!r}"))
+        return Factor("step", "time step", "numerical", (Alternative("half", f"Courant number {half:g}", (f"numerics.courant={half!r}",)),))
+    change, error = float(numerics["flow_change"]) / 2.0, float(numerics["flow_error"]) / 8.0  # which goes by the third power of the step
+    words, keys = f"flow change {change:g}, flow error {error:g}", (f"numerics.flow_change={change!r}", f"numerics.flow_error={error!r}")
+    flows = content["fluid"]["law"] != "uniform"
+    return _factor("step", "flow step", "numerical", "no flow", *([Alternative("half", words, keys)] if flows else []))
 
 
 def _larger(content: dict[str, Any], mechanics: str, factor: float) -> Alternative:
-    """A block wider on both sides and higher at the top; the fracture and the layers beside it stay in its middle.
-
-    Where the path is straight and there is no inertia the cells beyond are graded; a path that turns would meet them, and its grid is uniform.
-    """
+    """A block wider on both sides and higher at the top; the fracture and the layers beside it stay in its middle. Where the path is straight and
+    there is no inertia the cells beyond are graded; a path that turns would meet them, and its grid is uniform."""
     domain, strata = content["domain"], content["strata"]
     width, height = (factor * float(domain[key]) for key in ("width_m", "height_m"))
     shift = (width - float(domain["width_m"])) / 2.0
     path = [[float(x) + shift, float(y)] for x, y in content["fracture"]["path_m"]]
     settings = [f"domain.width_m={width!r}", f"domain.height_m={height!r}", f"fracture.path_m={toml(path)}"]
     layers = [dict(layer) for layer in strata["layers"]]
-    along_x = strata["along"] == "x"
-    if along_x and "thickness_m" in layers[0]:
+    if strata["along"] == "x" and "thickness_m" in layers[0]:
         layers[0]["thickness_m"] = float(layers[0]["thickness_m"]) + shift
-    if "thickness_m" in layers[-1]:
-        layers[-1].pop("thickness_m")  # takes what remains
+    layers[-1].pop("thickness_m", None)  # takes what remains
     if layers != list(strata["layers"]):
         settings.append(f"strata.layers={toml(layers)}")
     numerics = content["numerics"]
@@ -124,4 +113,4 @@ def _larger(content: dict[str, Any], mechanics: str, factor: float) -> Alternati
         settings.append(f"numerics.far_cell_m={cell!r}")
     elif mechanics == "quasistatic":
         settings.append(f"numerics.far_cell_m={FAR_CELLS * cell!r}")
-    return _one(f"{factor:g}", f"{width:g} m x {height:g} m", *settings)
+    return Alternative(f"{factor:g}", f"{width:g} m x {height:g} m", tuple(settings))

@@ -3,21 +3,19 @@
 usage: python3 -m verification.harness.front_table LADDER.json [--write]     (LADDER.json as ci/verify leaves it; --write puts it into README.md)
 """
 
-import argparse
 import json
 import sys
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
+from verification.harness.command import command
 from verification.harness.paths import ROOT
 
 README = ROOT / "README.md"
 START, END = "<!-- ladder -->\n", "<!-- end of ladder -->"
 
 
-@dataclass(frozen=True)
-class Line:
+class Line(NamedTuple):
     """A quantity of a case of the ladder, and what of it the table says."""
 
     case: str
@@ -36,19 +34,15 @@ LINES = (
 )  # fmt: skip
 
 
-def found(rows: list[dict[str, Any]], line: Line, level: str) -> dict[str, Any]:
-    """The ladder's row of a quantity at a level; raises ValueError where it is not there or was not measured."""
-    for row in rows:
-        if (row["case"], row["quantity"], row["level"]) == (line.case, line.quantity, level) and row["error"] is not None:
-            return row
-    raise ValueError(f"the ladder has no {line.quantity} of {line.case} at {level}: run ci/verify whole")
-
-
 def table(rows: list[dict[str, Any]]) -> str:
-    """The table as Markdown; the time is that of the finest run named."""
+    """The table as Markdown; the time is that of the finest run named. Raises ValueError for a row that is not there or was not measured."""
+    known = {(row["case"], row["quantity"], row["level"]): row for row in rows if row["error"] is not None}
     lines = ["| what | against | error | seconds |", "|---|---|---|---|"]
     for line in LINES:
-        measured = [found(rows, line, level) for level in line.levels]
+        for level in line.levels:
+            if (line.case, line.quantity, level) not in known:
+                raise ValueError(f"the ladder has no {line.quantity} of {line.case} at {level}: run ci/verify whole")
+        measured = [known[line.case, line.quantity, level] for level in line.levels]
         errors = ", ".join(f"{100.0 * abs(row['error']):.2g} % ({row['level']})" for row in measured)
         lines.append(f"| {line.says} | {line.against} | {errors} | {measured[-1]['cost']['wall_s']:.1f} |")
     return "\n".join(lines) + "\n"
@@ -65,7 +59,7 @@ def with_table(readme: str, new: str) -> str:
 
 def main(arguments: list[str] | None = None) -> int:
     """Print the table; with --write put it into README.md."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command("front_table", __doc__)
     parser.add_argument("ladder", type=Path)
     parser.add_argument("--write", action="store_true")
     options = parser.parse_args(arguments)

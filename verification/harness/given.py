@@ -2,19 +2,17 @@
 
 import math
 from collections.abc import Callable
-from typing import Any
+from functools import reduce
+from operator import getitem
 
-from verification.harness.load import Array, LoadError, Run, Tip, frames
+from verification.harness.load import Array, Event, LoadError, Run, Tip, frames
 
 Point = tuple[float, float]
 
 
 def given(run: Run, key: str) -> float:
     """The number of a scene key, "in_situ.horizontal_Pa" say."""
-    found: Any = run.scene
-    for name in key.split("."):
-        found = found[name]
-    return float(found)
+    return float(reduce(getitem, key.split("."), run.scene))  # type: ignore[arg-type]
 
 
 def rock(run: Run, of: str | int = "stiff", prefix: str = "", density: bool = False) -> dict[str, float]:
@@ -74,6 +72,14 @@ def last(run: Run, group: str) -> tuple[float, dict[str, Array]]:
     if not stored:
         raise LoadError(f"{run.folder}: no fields of {group}")
     return stored[-1]
+
+
+def start_of(run: Run) -> Event:
+    """The first growth of a fracture; raises LoadError where there is none."""
+    for event in run.summary.events:
+        if event.kind == "start":
+            return event
+    raise LoadError(f"{run.folder}: the fracture did not start")
 
 
 def first_failed_Pa(run: Run) -> float:

@@ -40,10 +40,8 @@ class Event:
 
 @dataclass(frozen=True)
 class Tip:
-    """A tip at the end of a run: place (m), K (Pa sqrt(m)), J (N/m), ring spread (of J) and next kink (degrees).
-
-    G_N_m is the energy released per length over the next finite increment (N/m), NaN where the run does not measure it.
-    """
+    """A tip at the end of a run: place (m), K (Pa sqrt(m)), J (N/m), ring spread (of J) and next kink (degrees). G_N_m is the energy released per
+    length over the next finite increment (N/m), NaN where the run does not measure it."""
 
     x_m: float
     y_m: float
@@ -61,10 +59,8 @@ OF_SPEEDS = "surface_energy_share"
 
 @dataclass(frozen=True)
 class Suspicion:
-    """Why a run is suspect: the monitor, its value (NaN where it was no finite number), the threshold and a sentence.
-
-    The threshold is NaN for a figure that marks a run only where it is no number.
-    """
+    """Why a run is suspect: the monitor, its value (NaN where it was no finite number), the threshold and a sentence. The threshold is NaN for a
+    figure that marks a run only where it is no number."""
 
     monitor: str
     value: float

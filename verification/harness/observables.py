@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from verification.harness.claim_data import BY_J
-from verification.harness.load import GROWTH_M, Array, Event, LoadError, Run, frames
+from verification.harness.load import GROWTH_M, Array, LoadError, Run, frames
 
 Parameters = dict[str, Any]
 NONE: Parameters = {}
@@ -77,9 +77,6 @@ def ratio(a: Measured, b: Measured) -> Measured:
     return Measured(low, a.high / b.low if b.low > 0.0 else math.inf, note, flags)
 
 
-# --- building blocks
-
-
 def grew(run: Run) -> bool:
     """Whether any tip moved."""
     return len(run.path) > len(run.scene["fracture"]["path_m"])
@@ -112,16 +109,6 @@ def height_of(run: Run, given: Any) -> float:
     return float(given)
 
 
-def is_at(event: Event, run: Run, height_m: float) -> bool:
-    """Whether an event is at an interface at a height (m).
-
-    It counts from 1.5 increments below, where growth would meet the interface, to 4 cells above: an interface that gives way
-    attracts the tip and arrests it after the crossing, and up to 4 cells away K and J are not independent of it.
-    """
-    lowest = height_m - 1.5 * run.increment_m - SLACK_M
-    return lowest <= event.tip_y_m <= height_m + 4.0 * float(run.scene["numerics"]["cell_m"]) + SLACK_M
-
-
 def resample(path: Array, step_m: float) -> Array:
     """Points every step (m) along a polyline, from its first point."""
     arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
@@ -143,9 +130,6 @@ def distances_to(points: Array, path: Array) -> Array:
     return np.sqrt(((points[:, None, :] - feet) ** 2).sum(axis=2)).min(axis=1)
 
 
-# --- observables of one run
-
-
 def start_Pa(run: Run, _: Parameters = NONE) -> Measured:
     """Pressure of the first growth."""
     start = next((event for event in run.summary.events if event.kind == "start"), None)
@@ -163,11 +147,14 @@ def final_height_m(run: Run, parameters: Parameters = NONE) -> Measured:
 
 def plateau_Pa(run: Run, parameters: Parameters = NONE) -> Measured:
     """Rise of the inlet pressure between arrest and restart, summed from 1.5 increments below an interface to 4 cells above."""
-    height = interface_height(run, int(parameters["interface"]))
-    if np.max(run.history["tip_y_m"]) < height - 1.5 * run.increment_m - SLACK_M:
+    # Growth would meet the interface from below; one that gives way attracts the tip and arrests it after the crossing, and up to 4 cells away K
+    # and J are not independent of it.
+    height, cell_m = interface_height(run, int(parameters["interface"])), float(run.scene["numerics"]["cell_m"])
+    lowest, highest = height - 1.5 * run.increment_m - SLACK_M, height + 4.0 * cell_m + SLACK_M
+    if np.max(run.history["tip_y_m"]) < lowest:
         return nothing(f"{run.name} does not reach the interface at {height:g} m")
     events = [event for event in run.summary.events if event.kind in ("arrest", "restart")]
-    arrested = [(event, events[k + 1 :]) for k, event in enumerate(events) if event.kind == "arrest" and is_at(event, run, height)]
+    arrested = [(event, events[k + 1 :]) for k, event in enumerate(events) if event.kind == "arrest" and lowest <= event.tip_y_m <= highest]
     by_J = any(event.by == "J" and event.at_interface for event, _ in arrested)
     low, high, note = 0.0, 0.0, ""
     for event, later in arrested:
@@ -205,10 +192,8 @@ def final_angle_deg(run: Run, parameters: Parameters = NONE) -> Measured:
 
 
 def failed_length_m(arrays: dict[str, Array], number: int) -> float:
-    """Length of interface `number` (from 1) that has two separate sides at an output time, m.
-
-    Each of its places stands for half of the way to its neighbours, those at the ends for as much outwards as inwards.
-    """
+    """Length of interface `number` (from 1) that has two separate sides at an output time, m. Each of its places stands for half of the way to its
+    neighbours, those at the ends for as much outwards as inwards."""
     place = str(number - 1)
     x, split = arrays[f"{place}/x_m"], arrays[f"{place}/split"]
     if len(x) < 2:
@@ -232,25 +217,18 @@ def interface_failure_excess_Pa(run: Run, parameters: Parameters) -> Measured:
     return Measured(run.summary.inlet_Pa - near.low, math.inf, f"{run.name}: interface {number} does not fail")
 
 
-def interface_energy(run: Run, height_m: float) -> Measured:
-    """Energy in interfaces (stored in springs, spent on sliding and failure) when the tip is at a height, J/m."""
-    return when_at(run, run.history["interface_strain_J"] + run.history["friction_J"] + run.history["failure_J"], height_m)
-
-
-# --- observables of two runs
-
-
 def between(combine: Callable[[Measured, Measured], Measured], one: Callable[[Run, Parameters], Measured]) -> Callable[..., Measured]:
     """An observable of one run, taken of two."""
     return lambda run, against, parameters: combine(one(run, parameters), one(against, parameters))
 
 
-def at_height(one: Callable[[Run, float], Measured]) -> Callable[..., Measured]:
-    """Something at a height of the first run (height_m) less that of the other run there."""
+def at_height(*names: str) -> Callable[..., Measured]:
+    """Columns of the history, in sum, at a height of the first run (height_m) less those of the other run there."""
 
     def function(run: Run, against: Run, parameters: Parameters) -> Measured:
         height = height_of(run, parameters["height_m"])
-        return difference(one(run, height), one(against, height))
+        one, other = (when_at(each, sum(each.history[name] for name in names), height) for each in (run, against))
+        return difference(one, other)
 
     return function
 
@@ -325,12 +303,12 @@ OBSERVABLES: dict[str, Observable] = {
     "lateral_deflection_m": Observable("m", lateral_deflection_m),
     "final_angle_deg": Observable("degrees", final_angle_deg),
     "interface_failure_excess_Pa": Observable("Pa", interface_failure_excess_Pa),
-    "interface_energy_difference_J": Observable("J/m", at_height(interface_energy), _ENERGY, True),
+    "interface_energy_difference_J": Observable("J/m", at_height("interface_strain_J", "friction_J", "failure_J"), _ENERGY, True),
     "start_shift_Pa": Observable("Pa", between(difference, start_Pa), "Pressure of the first growth less that of the other run.", True),
     "plateau_difference_Pa": Observable("Pa", between(difference, plateau_Pa), "Plateau at an interface less that of the other run.", True),
     "plateau_ratio": Observable("", between(ratio, plateau_Pa), "Plateau at an interface divided by that of the other run.", True),
     "pressure_shift_Pa": Observable("Pa", pressure_shift_Pa, compares=True),
-    "pressure_at_height_difference_Pa": Observable("Pa", at_height(pressure_at_height), _AT_HEIGHT, True),
+    "pressure_at_height_difference_Pa": Observable("Pa", at_height("inlet_Pa"), _AT_HEIGHT, True),
     "height_ratio": Observable("", height_ratio, compares=True),
     "path_change": Observable("", path_change, compares=True),
 }

@@ -8,8 +8,7 @@ from functools import partial
 from typing import Any
 
 from verification.harness.load import LoadError, Run, load
-from verification.harness.paths import solver
-from verification.harness.run import BAD_INPUT, Job, Outcome, done_before, key_of, load_outcome, run
+from verification.harness.run import BAD_INPUT, Job, Outcome, done_before, load_outcome, run
 from verification.harness.scenes import content_of
 from verification.harness.side_by_side import Task, side_by_side
 
@@ -46,12 +45,10 @@ def name_of(job: Job) -> str:
 
 def affordable(jobs: Sequence[Job], options: argparse.Namespace) -> bool:
     """Print what the jobs that are still to be made will cost; whether they may be made, by options.limit (minutes) or options.yes."""
-    binary = solver()
-    costs = {job: expected_s(job) for job in jobs if done_before(job, key_of(job, binary)) is None}
+    costs = {job: expected_s(job) for job in jobs if done_before(job) is None}
     minutes = sum(costs.values()) / 60.0 / max(options.jobs, 1)
     if costs:
-        lines = [f"  {name_of(job)}: {seconds:.0f} s" for job, seconds in costs.items()]
-        print("\n".join([f"{len(costs)} of {len(jobs)} runs to make, by estimate:", *lines]))
+        print(f"{len(costs)} of {len(jobs)} runs to make, by estimate:", *(f"  {name_of(job)}: {seconds:.0f} s" for job, seconds in costs.items()), sep="\n")
         print(f"  together about {minutes:.1f} min with {options.jobs} at a time", flush=True)
     if minutes <= options.limit or options.yes:
         return True
@@ -60,10 +57,8 @@ def affordable(jobs: Sequence[Job], options: argparse.Namespace) -> bool:
 
 
 def make(job: Job, stop: threading.Event | None = None, force: bool = False, limit_s: float | None = None) -> Made:
-    """Run a job (see run) and read what it wrote: one that failed as far as it came, one that was refused not at all.
-
-    A folder that cannot be used fails its run alone.
-    """
+    """Run a job (see run) and read what it wrote: one that failed as far as it came, one that was refused not at all. A folder that cannot be used
+    fails its run alone."""
     try:
         outcome = run(job, force=force, limit_s=limit_s, stop=stop)
         return outcome, None if outcome.exit_status == BAD_INPUT else load(job.out)
@@ -82,5 +77,4 @@ def made_words(made: Made) -> str:
 
 def make_all(jobs: Sequence[Job], at_a_time: int, words: Callable[[Made], str] = made_words) -> list[Made]:
     """Make all jobs, so many at a time, each on one thread, with a line for each."""
-    tasks: list[Task[Made]] = [Task(name_of(job), partial(make, job), words, expected_s(job)) for job in jobs]
-    return side_by_side(tasks, at_a_time)
+    return side_by_side([Task(name_of(job), partial(make, job), words, expected_s(job)) for job in jobs], at_a_time)

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from verification.harness.load import GROWTH_M, Array, Run
+from verification.harness.load import GROWTH_M, Run
 from verification.harness.observables import (
     SLACK_M, Measured, distances_to, exactly, final_angle_deg, final_height_m, grew, interface_height, lateral_deflection_m,
     nothing, path_length, pressure_at_height, resample, start_Pa,
@@ -68,10 +68,8 @@ def pauses(run: Run) -> list[Pause]:
 
 
 def pause_at(run: Run, interface: int) -> Pause | Measured:
-    """The longest pause at an interface (counted from 1 below), or why there is none.
-
-    It counts from 1.5 increments below, where growth would meet the interface, to 4 m above, as in observables.is_at.
-    """
+    """The longest pause at an interface (counted from 1 below), or why there is none. It counts from 1.5 increments below, where growth would meet
+    the interface, to 4 m above."""
     height = interface_height(run, interface)
     low, high = height - 1.5 * run.increment_m - SLACK_M, height + ABOVE_M + SLACK_M
     found = [pause for pause in pauses(run) if low <= pause.height_m <= high]
@@ -82,10 +80,8 @@ def pause_at(run: Run, interface: int) -> Pause | Measured:
 
 
 def interface_quantities(number: int, of: int) -> list[Quantity]:
-    """Arrest height, restart pressure and rise between them at one of so many interfaces across the fracture.
-
-    All are of the longest pause there, flagged where it is no arrest; where the run ends in it, it leaves a bound of the last two.
-    """
+    """Arrest height, restart pressure and rise between them at one of so many interfaces across the fracture. All are of the longest pause there,
+    flagged where it is no arrest; where the run ends in it, it leaves a bound of the last two."""
 
     def of_pause(value: Callable[[Pause], float]) -> Callable[[Run], Measured]:
         def measure(run: Run) -> Measured:
@@ -120,12 +116,10 @@ def quantities_of(content: dict[str, Any], heights_m: Sequence[float] = HEIGHTS_
     for height in heights_m:
         if tip < height <= top:
             found.append(Quantity(f"pressure_at_{height:g}_Pa", f"pressure at {height:g} m", "Pa", partial(pressure_at_height, height_m=height)))
-    found.append(Quantity("final_height_m", "final height", "m", final_height_m))
-    found.append(Quantity("final_Pa", "final pressure", "Pa", lambda run: exactly(run.summary.inlet_Pa)))
-    if turns(content):
-        found.append(Quantity("deflection_m", "farthest deflection", "m", lateral_deflection_m))
-        found.append(Quantity("final_angle_deg", "final angle", "degrees", final_angle_deg))
-    return found
+    found += [Quantity("final_height_m", "final height", "m", final_height_m),
+              Quantity("final_Pa", "final pressure", "Pa", lambda run: exactly(run.summary.inlet_Pa))]  # fmt: skip
+    turned = [Quantity("deflection_m", "farthest deflection", "m", lateral_deflection_m), Quantity("final_angle_deg", "final angle", "degrees", final_angle_deg)]
+    return found + (turned if turns(content) else [])
 
 
 def lack_words(measured: Measured, run: Run, unit: str) -> str:
@@ -140,11 +134,8 @@ def turns(content: dict[str, Any]) -> bool:
 
 
 def noise_of(quantity: Quantity, run: Run, value: float) -> float:
-    """Differences of a quantity below this are not seen by the solver.
-
-    Pressures: without inertia an event is found to 1e-4 of its margin in K, that is of the net pressure; with inertia to a time
-    step. Others: round-off.
-    """
+    """Differences of a quantity below this are not seen by the solver. Pressures: without inertia an event is found to 1e-4 of its margin in K, that
+    is of the net pressure; with inertia to a time step. Others: round-off."""
     if quantity.unit != "Pa":
         return 1e-6
     if run.summary.mechanics == "quasistatic":
@@ -154,25 +145,15 @@ def noise_of(quantity: Quantity, run: Run, value: float) -> float:
 
 
 def path_gap(run: Run, against: Run, length_m: float = math.inf) -> tuple[float, float] | None:
-    """Root mean square and largest distance of a path from another's, m, over the length both have (no more than length_m).
-
-    Both are counted from their first points, so that blocks of different width compare; None where one does not grow.
-    """
+    """Root mean square and largest distance of a path from another's, m, over the length both have (no more than length_m). Both are counted from
+    their first points, so that blocks of different width compare; None where one does not grow."""
     if not (grew(run) and grew(against)):
         return None
-    own, other = run.path - run.path[0], against.path - against.path[0]
-    step = 0.25
+    own, other, step = run.path - run.path[0], against.path - against.path[0], 0.25
     common = min(path_length(own), path_length(other), length_m)
-    far = distances_to(_first(resample(own, step), common, step), other)
+    far = distances_to(resample(own, step)[: int(common / step + 1e-9) + 1], other)
     return float(np.sqrt(np.mean(far**2))), float(np.max(far))
 
-
-def _first(points: Array, length_m: float, step_m: float) -> Array:
-    """The points of a resampled path up to a length."""
-    return points[: int(length_m / step_m + 1e-9) + 1]
-
-
-# --- what one change of a scene moves
 
 # The height at which the pressure is compared where the base gets there, m; else the highest below that it reaches.
 HEIGHT_M = 40.0
@@ -190,21 +171,20 @@ class Effect:
 
 def followed(content: dict[str, Any], base: Run) -> list[Quantity]:
     """What is compared: start, arrests that the base has, and the pressure at a height that it reaches."""
-    top = min(float(base.history["tip_y_m"].max()), HEIGHT_M)
-    reached = [height for height in HEIGHTS_M if height <= top]
+    reached = [height for height in HEIGHTS_M if height <= min(float(base.history["tip_y_m"].max()), HEIGHT_M)]
     own = [(one, one.measure(base)) for one in quantities_of(content, reached[-1:]) if not one.name.startswith(NOT_FOLLOWED)]
     return [one for one, measured in own if measured.exact and NO_ARREST not in measured.flags]
 
 
 def effects_of(quantities: Sequence[Quantity], with_path: bool, base: Run, run: Run, short: str = "") -> dict[str, Effect]:
     """What a run moves each quantity by against the base, by its name, and how far its path is off (`short`: a note on that)."""
-    effects: dict[str, Effect] = {}
-    for quantity in quantities:
-        measured = quantity.measure(run)
-        if measured.exact:
-            effects[quantity.name] = Effect(measured.low - quantity.measure(base).low, ", ".join(measured.flags))
-        else:
-            effects[quantity.name] = Effect(None, lack_words(measured, run, quantity.unit))
+    def moved(quantity: Quantity) -> Effect:
+        found = quantity.measure(run)
+        if not found.exact:
+            return Effect(None, lack_words(found, run, quantity.unit))
+        return Effect(found.low - quantity.measure(base).low, ", ".join(found.flags))
+
+    effects = {quantity.name: moved(quantity) for quantity in quantities}
     if with_path:
         gap = path_gap(run, base)
         effects["path_m"] = Effect(None, "does not grow") if gap is None else Effect(gap[1], short)

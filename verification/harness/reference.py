@@ -4,7 +4,7 @@ import json
 import subprocess
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -27,7 +27,7 @@ class Value:
 Setting = float | str | list[float]
 
 
-@lru_cache(maxsize=None)
+@cache
 def _answer(name: str, settings: tuple[str, ...]) -> dict[str, Any]:
     """What strata-reference says for a name and settings."""
     command = [str(reference_program()), name, *(word for setting in settings for word in ("--set", setting))]

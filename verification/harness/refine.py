@@ -12,6 +12,7 @@ import math
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
@@ -65,18 +66,13 @@ class Study:
 
 
 def job_of(scene: Path, mechanics: str, variant: str, cell_m: float, settings: Sequence[str] = (), root: Path = REFINE_RUNS) -> Job:
-    """The run at a cell size (m), the increment fixed to what scene, variant and settings say.
-
-    Its grid is uniform unless settings say otherwise: with its cells the fine part of a graded one would shrink, too.
-    """
+    """The run at a cell size (m), the increment fixed to what scene, variant and settings say. Its grid is uniform unless settings say otherwise:
+    with its cells the fine part of a graded one would shrink, too."""
     content = content_of(scene, variant, (f"numerics.mechanics={mechanics}", *settings))
     own = [f"numerics.mechanics={mechanics}", f"numerics.cell_m={cell_m!r}", f"fracture.increment_m={content['fracture']['increment_m']!r}", *settings]
     if "far_cell_m" in content["numerics"] and not any(setting.startswith("numerics.far_cell_m=") for setting in settings):
         own.append(f"numerics.far_cell_m={cell_m!r}")
     return Job(scene, variant, root / scene.stem / mechanics / variant / f"{cell_m:g}m", tuple(own))
-
-
-# --- what the runs say
 
 
 def shown(quantity: Quantity, level: Level) -> tuple[float | None, str]:
@@ -120,18 +116,16 @@ def path_rows(levels: Sequence[Level]) -> list[Row]:
     return [row("path_to_finest_m", "finest", [*to_finest, 0.0], plain), row("path_to_next_m", "next finer", to_next, said)]
 
 
-def arrests_nowhere(row: Row) -> bool:
-    """Whether a quantity of an arrest has no arrest behind it at any size."""
-    flagged = sum(note.endswith(NO_ARREST) for note in row.notes)
-    return flagged > 0 and flagged == sum(value is not None for value in row.values)
-
-
 def study_of(
     scene: Path, mechanics: str, variant: str, levels: Sequence[Level], settings: Sequence[str] = (), heights_m: Sequence[float] = HEIGHTS_M
 ) -> Study:
     """What the runs of one variant in one mechanics say."""
     content = content_of(scene, variant, (f"numerics.mechanics={mechanics}", *settings))
-    rows = [row for row in (row_of(quantity, levels) for quantity in quantities_of(content, heights_m)) if not arrests_nowhere(row)]
+    rows = []
+    for row in (row_of(quantity, levels) for quantity in quantities_of(content, heights_m)):
+        without_arrest = sum(note.endswith(NO_ARREST) for note in row.notes)
+        if not without_arrest or without_arrest < sum(value is not None for value in row.values):
+            rows.append(row)
     nowhere = [row.label for row in rows if all(value is None for value in row.values)]
     rows = [row for row in rows if row.label not in nowhere] + (path_rows(levels) if turns(content) else [])
     notes = unlike(content, [level.cell_m for level in levels])
@@ -141,16 +135,14 @@ def study_of(
 
 
 def unlike(content: dict[str, Any], cells_m: Sequence[float]) -> tuple[str, ...]:
-    """Where the first tip or an interface lies in its cell otherwise than at the finest size: such sizes are of another family.
-
-    The solver's error depends on that place, so that values at these sizes and at the others need not lie on one line.
-    """
+    """Where the first tip or an interface lies in its cell otherwise than at the finest size: such sizes are of another family. The solver's error
+    depends on that place, so that values at these sizes and at the others need not lie on one line."""
     path, strata = content["fracture"]["path_m"], content["strata"]
     axis = "x" if strata.get("along", "y") == "x" else "y"
     thickness = [float(layer["thickness_m"]) for layer in strata["layers"][:-1]]
+    names = ["the interface"] if len(thickness) == 1 else [f"interface {k + 1}" for k in range(len(thickness))]
     places = {"the first tip": ("y", max(float(y) for _, y in path)), "the fracture": ("x", float(path[0][0]))}
-    for k in range(len(thickness)):
-        places["the interface" if len(thickness) == 1 else f"interface {k + 1}"] = (axis, sum(thickness[: k + 1]))
+    places |= {name: (axis, place) for name, place in zip(names, accumulate(thickness))}
 
     def words(place_m: float, cell_m: float) -> str:
         share = round(place_m / cell_m % 1.0, 6) % 1.0
@@ -163,42 +155,31 @@ def unlike(content: dict[str, Any], cells_m: Sequence[float]) -> tuple[str, ...]
     )  # fmt: skip
 
 
-# --- what is written
-
-
 def as_json(scene: Path, settings: Sequence[str], studies: Sequence[Study]) -> dict[str, Any]:
-    """The whole as plain data."""
+    """The whole as plain data: of each level how its run ended and what it cost."""
+
+    def plain(level: Level) -> dict[str, Any]:
+        found = {"cell_m": level.cell_m, "status": level.outcome.word, "reason": level.outcome.reason}
+        cost = {name: getattr(level.run.summary, name) for name in ("particles", "steps", "wall_s")} if level.run else {}
+        return found | cost | ({"run": str(level.run.folder)} if level.run else {})
+
     versions = sorted({level.run.summary.version for study in studies for level in study.levels if level.run})
-    plain = [store.plain(replace(study, levels=())) | {"levels": [_level_json(level) for level in study.levels]} for study in studies]
-    return {"experiment": scene.stem, "settings": list(settings), "versions": versions, "studies": plain}
-
-
-def _level_json(level: Level) -> dict[str, Any]:
-    """How one run ended and what it cost."""
-    found: dict[str, Any] = {"cell_m": level.cell_m, "status": level.outcome.word, "reason": level.outcome.reason}
-    if level.run is not None:
-        summary = level.run.summary
-        found |= {"particles": summary.particles, "steps": summary.steps, "wall_s": summary.wall_s, "run": str(level.run.folder)}
-    return found
+    all_plain = [store.plain(replace(study, levels=())) | {"levels": [plain(level) for level in study.levels]} for study in studies]
+    return {"experiment": scene.stem, "settings": list(settings), "versions": versions, "studies": all_plain}
 
 
 def value_words(value: float | None, unit: str) -> str:
     """A value in the unit of the tables: pressures in MPa."""
-    if value is None:
-        return "-"
-    return f"{value / 1e6:.5f}" if unit == "Pa" else f"{value:.4g}"
+    return "-" if value is None else f"{value / 1e6:.5f}" if unit == "Pa" else f"{value:.4g}"
 
 
 def estimate_words(row: Row) -> str:
     """What refinement says of a row, with the extrapolate where there is one."""
-    said = row.estimate
-    if said.kind != "clean":
-        return said.says
-    factor, unit = (1e-6, "MPa") if row.unit == "Pa" else (1.0, row.unit)
+    said, (factor, unit) = row.estimate, (1e-6, "MPa") if row.unit == "Pa" else (1.0, row.unit)
     uncertainty = f"{factor * (said.uncertainty or 0.0):.2g} {unit}"
-    if said.extrapolate is None:
-        return f"{said.says}; the finest is within {uncertainty} of the limit"
-    return f"{value_words(said.extrapolate, row.unit)} +- {uncertainty} ({said.says})"
+    if said.extrapolate is not None:
+        return f"{value_words(said.extrapolate, row.unit)} +- {uncertainty} ({said.says})"
+    return said.says if said.kind != "clean" else f"{said.says}; the finest is within {uncertainty} of the limit"
 
 
 def table(study: Study) -> str:

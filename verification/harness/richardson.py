@@ -8,11 +8,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from scipy.optimize import brentq
+
 # Orders outside this range are no order of a scheme whose terms are of first and second order.
 CLEAN_ORDERS = (0.5, 3.0)
 
-# Factors of safety of the grid convergence index: three sizes and an order that nothing speaks against; and where the
-# coarser sizes do not show the same order.
+# Factors of safety of the grid convergence index; the second where the coarser sizes do not show the same order.
 SAFETY, SAFETY_UNCONFIRMED = 1.25, 3.0
 
 # Orders of two successive triples within this are the same order.
@@ -21,10 +22,8 @@ SAME_ORDER = 0.5
 
 @dataclass(frozen=True)
 class Triple:
-    """Three sizes from coarse to fine: kind 'converges', 'oscillates', 'diverges' or 'still'; the order where there is one.
-
-    'still': no two values differ by more than the noise. 'settled': the last two do not, the first two do.
-    """
+    """Three sizes from coarse to fine: kind 'converges', 'oscillates', 'diverges' or 'still'; the order where there is one. 'still': no two values
+    differ by more than the noise. 'settled': the last two do not, the first two do."""
 
     sizes: tuple[float, float, float]
     kind: str
@@ -38,12 +37,9 @@ class Triple:
 
 @dataclass(frozen=True)
 class Estimate:
-    """What refinement says of a number; `says` in words, the unit is that of the values.
-
-    kind: 'clean' (order, extrapolate and uncertainty are given), 'still' (the same at all sizes but for the noise), 'settled' (the
-    last refinement moved it by no more than the noise), else 'oscillates', 'diverges', 'odd order', 'too few'. spread is the
-    largest difference among the finest three values.
-    """
+    """What refinement says of a number; `says` in words, the unit is that of the values. kind: 'clean' (order, extrapolate and uncertainty are
+    given), 'still' (the same at all sizes but for the noise), 'settled' (the last refinement moved it by no more than the noise), else 'oscillates',
+    'diverges', 'odd order', 'too few'. spread is the largest difference among the finest three values."""
 
     kind: str
     says: str
@@ -56,10 +52,8 @@ class Estimate:
 
 def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float:
     """Order p for which three values lie on f + C h^p, of any three sizes; NaN where the differences differ in sign.
-
-    (f1 - f2)/(f2 - f3) = (h1^p - h2^p)/(h2^p - h3^p), whose right side grows with p (Celik et al. 2008, eq. 3, solved by
-    bisection). Sizes coarse to fine. Infinite where f2 = f3; raises ValueError for sizes that do not fall.
-    """
+    (f1 - f2)/(f2 - f3) = (h1^p - h2^p)/(h2^p - h3^p), whose right side grows with p (Celik et al. 2008, eq. 3). Sizes coarse to fine. Infinite where
+    f2 = f3; raises ValueError for sizes that do not fall."""
     h1, h2, h3 = sizes
     if not h1 > h2 > h3 > 0.0:
         raise ValueError(f"sizes {h1:g}, {h2:g}, {h3:g} do not fall")
@@ -71,22 +65,11 @@ def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float:
     a, b, wanted = math.log(h1 / h2), math.log(h2 / h3), math.log(coarse / fine)
 
     def off(p: float) -> float:
-        return b * p + _log_expm1_ratio(a * p, b * p, a / b) - wanted
+        return b * p + math.log(math.expm1(a * p) / math.expm1(b * p) if abs(p) * max(a, b) > 1e-9 else a / b) - wanted
 
-    low, high = -60.0, 60.0
-    if off(low) > 0.0 or off(high) < 0.0:
-        return -math.inf if off(low) > 0.0 else math.inf
-    for _ in range(200):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if off(middle) < 0.0 else (low, middle)
-    return 0.5 * (low + high)
-
-
-def _log_expm1_ratio(x: float, y: float, limit: float) -> float:
-    """log((e^x - 1)/(e^y - 1)), whose limit for x, y -> 0 at x/y = limit is log(limit)."""
-    if abs(x) < 1e-9 and abs(y) < 1e-9:
-        return math.log(limit)
-    return math.log(math.expm1(x) / math.expm1(y))
+    if off(-60.0) > 0.0 or off(60.0) < 0.0:
+        return math.copysign(math.inf, -off(0.0))
+    return float(brentq(off, -60.0, 60.0, xtol=1e-12))
 
 
 def triple(sizes: Sequence[float], values: Sequence[float], noise: float) -> Triple:
@@ -95,10 +78,8 @@ def triple(sizes: Sequence[float], values: Sequence[float], noise: float) -> Tri
     coarse, fine = values[0] - values[1], values[1] - values[2]
     if abs(fine) <= noise:
         return Triple(three, "still" if abs(coarse) <= noise else "settled", None)
-    if abs(coarse) <= noise:
-        return Triple(three, "diverges", None)
-    if coarse * fine < 0.0:
-        return Triple(three, "oscillates", None)
+    if abs(coarse) <= noise or coarse * fine < 0.0:
+        return Triple(three, "diverges" if abs(coarse) <= noise else "oscillates", None)
     order = observed_order(three, values)
     return Triple(three, "converges" if order > 0.0 else "diverges", order if math.isfinite(order) else None)
 
@@ -109,11 +90,9 @@ def told(value: float, unit: str) -> str:
 
 
 def estimate(sizes: Sequence[float], values: Sequence[float], noise: float = 0.0, unit: str = "") -> Estimate:
-    """Order, extrapolate and uncertainty of values at sizes (coarse to fine), judged by the finest three.
-
-    Extrapolate f3 + (f3 - f2)/(r^p - 1), uncertainty F_s |f3 - f2|/(r^p - 1) with r = h2/h3 (Roache 1994). F_s is 1.25, and 3 where
-    the three sizes before show another order or none. The unit is for the words.
-    """
+    """Order, extrapolate and uncertainty of values at sizes (coarse to fine), judged by the finest three. Extrapolate f3 + (f3 - f2)/(r^p - 1),
+    uncertainty F_s |f3 - f2|/(r^p - 1) with r = h2/h3 (Roache 1994). F_s is 1.25, and 3 where the three sizes before show another order or none. The
+    unit is for the words."""
     if len(sizes) != len(values):
         raise ValueError(f"{len(sizes)} sizes and {len(values)} values")
     if len(sizes) < 3:
@@ -136,10 +115,8 @@ def estimate(sizes: Sequence[float], values: Sequence[float], noise: float = 0.0
 
 
 def estimate_of_changes(sizes: Sequence[float], changes: Sequence[float], noise: float = 0.0, unit: str = "") -> Estimate:
-    """The same for something of which only the distances between successive sizes are known, such as a path.
-
-    The extrapolate is left out; the uncertainty is that of the finest, F_s d/(r^p - 1) with d the last distance.
-    """
+    """The same for something of which only the distances between successive sizes are known, such as a path. The extrapolate is left out; the
+    uncertainty is that of the finest, F_s d/(r^p - 1) with d the last distance."""
     if len(changes) != max(len(sizes) - 1, 0):
         raise ValueError(f"{len(sizes)} sizes have {len(sizes) - 1} changes, not {len(changes)}")
     values = [math.fsum(changes[k:]) for k in range(len(sizes))]
@@ -151,21 +128,18 @@ def _triple_words(item: Triple) -> str:
     if item.kind == "converges" and item.order is not None:
         return f"order {item.order:.2f}"
     words = {"converges": "too fast for an order", "still": "no change beyond the noise", "settled": "no change beyond the noise"}
-    order = f" (order {item.order:.2f})" if item.order is not None else ""
-    return words.get(item.kind, item.kind) + order
+    return words.get(item.kind, item.kind) + (f" (order {item.order:.2f})" if item.order is not None else "")
 
 
 def _why_not(last: Triple, spread: float, change: float, noise: float, unit: str) -> str:
     """Why the finest three values show no order."""
-    if last.kind == "still":
-        return f"the same at the finest three sizes to {told(noise, unit)}" if noise > 0.0 else "the same at the finest three sizes"
-    if last.kind == "settled":
-        return f"settled: the last refinement moves it by no more than {told(noise, unit)}"
-    range_words = f"spread {told(spread, unit)} over the finest three, last change {told(change, unit)}"
-    if last.kind == "oscillates":
-        return f"oscillates: {range_words}"
-    if last.kind == "diverges":
-        order = "" if last.order is None else f"order {last.order:.2f}: "
-        return f"{order}not converging, {range_words}"
-    shown = "above 60" if last.order is None else f"{last.order:.2f}"
-    return f"order {shown} is outside {CLEAN_ORDERS[0]:g} to {CLEAN_ORDERS[1]:g}: no extrapolate, {range_words}"
+    moves = f"spread {told(spread, unit)} over the finest three, last change {told(change, unit)}"
+    order = "" if last.order is None else f"order {last.order:.2f}: "
+    return {
+        "still": "the same at the finest three sizes" + (f" to {told(noise, unit)}" if noise > 0.0 else ""),
+        "settled": f"settled: the last refinement moves it by no more than {told(noise, unit)}",
+        "oscillates": f"oscillates: {moves}",
+        "diverges": f"{order}not converging, {moves}",
+        "converges": f"order {'above 60' if last.order is None else f'{last.order:.2f}'} is outside {CLEAN_ORDERS[0]:g} to {CLEAN_ORDERS[1]:g}: "
+        f"no extrapolate, {moves}",
+    }[last.kind]

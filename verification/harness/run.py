@@ -10,6 +10,7 @@ import threading
 import time
 import tomllib
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -65,20 +66,12 @@ class Outcome:
         return {BAD_INPUT: "refused", TOO_LONG: "too long"}.get(self.exit_status, self.status)
 
 
-def without_claims(scene_text: str, variant: str) -> dict[str, Any]:
-    """What of a scene decides on a run: all but its title, its claims and the other variants."""
-    scene = tomllib.loads(scene_text)
-    variants = scene.pop("variants", {})
-    for key in ("claim", "title"):
-        scene.pop(key, None)
-    if variant:
-        scene["variant"] = variants.get(variant, f"no variant {variant}")
-    return scene
-
-
 def key_of(job: Job, binary: Path) -> str:
-    """A hash of scene, variant, settings and solver; the thread count is left out, results do not depend on it."""
-    content = without_claims(job.scene.read_text(encoding="utf-8"), job.variant)
+    """A hash of what decides on a run: solver, settings, and the scene but for its title, claims and other variants. Threads do not."""
+    scene = tomllib.loads(job.scene.read_text(encoding="utf-8"))
+    content = {key: value for key, value in scene.items() if key not in ("claim", "title", "variants")}
+    if job.variant:
+        content["variant"] = scene.get("variants", {}).get(job.variant, f"no variant {job.variant}")
     digest = hashlib.sha256(json.dumps(content, sort_keys=True, default=str).encode())
     digest.update(json.dumps([job.variant, list(job.settings)]).encode())
     digest.update(hashlib.sha256(binary.read_bytes()).digest())
@@ -100,12 +93,12 @@ def load_outcome(folder: Path) -> Outcome | None:
         return None
 
 
-def done_before(job: Job, key: str) -> Outcome | None:
+def done_before(job: Job, binary: Path | None = None) -> Outcome | None:
     """The outcome of the same run made before, if it was final and its summary is there."""
     before = load_outcome(job.out)
-    if before is None or before.key != key or before.exit_status not in FINAL:
+    if before is None or before.exit_status not in FINAL or not (job.out / "summary.json").is_file():
         return None
-    return before if (job.out / "summary.json").is_file() else None
+    return before if before.key == key_of(job, binary or solver()) else None
 
 
 def clear(folder: Path) -> None:
@@ -120,19 +113,16 @@ def clear(folder: Path) -> None:
 
 def reason_of(folder: Path, exit_status: int, log: str) -> str:
     """Why a run failed: its summary's reason, or the end of what it said."""
-    try:
-        reason = json.loads((folder / "summary.json").read_text(encoding="utf-8")).get("reason") or ""
-    except (OSError, ValueError):
-        reason = ""
+    with suppress(OSError, ValueError):
+        if reason := json.loads((folder / "summary.json").read_text(encoding="utf-8")).get("reason"):
+            return str(reason)
     meaning = MEANING.get(exit_status, f"killed by signal {-exit_status}" if exit_status < 0 else "unknown exit status")
-    return reason or " / ".join(log.strip().splitlines()[-3:]) or meaning
+    return " / ".join(log.strip().splitlines()[-3:]) or meaning
 
 
 def ended(words: list[str], limit_s: float | None, stop: threading.Event | None = None) -> tuple[int, str]:
-    """Exit status and what was said; a command that takes longer than the limit is killed (TOO_LONG, with that as its word).
-
-    Once `stop` is set it is interrupted as by Ctrl-C, and killed where that does not end it.
-    """
+    """Exit status and what was said; a command that takes longer than the limit is killed (TOO_LONG, with that as its word). Once `stop` is set it is
+    interrupted as by Ctrl-C, and killed where that does not end it."""
     begun, asked = time.monotonic(), False
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
         while True:
@@ -166,17 +156,13 @@ def timed(action: Callable[[], Any]) -> tuple[Any, Timed]:
 
 
 def run(job: Job, binary: Path | None = None, force: bool = False, limit_s: float | None = None, stop: threading.Event | None = None) -> Outcome:
-    """Run a job unless its folder has it already; the outcome says how it ended and never raises for a failed run.
-
-    A run that takes longer than limit_s is killed: it failed, with exit status TOO_LONG. One that `stop` interrupts goes on where it was
-    the next time.
-    """
+    """Run a job unless its folder has it already; the outcome says how it ended and never raises for a failed run. A run that takes longer than
+    limit_s is killed: it failed, with exit status TOO_LONG. One that `stop` interrupts goes on where it was the next time."""
     binary = binary or solver()
-    key = key_of(job, binary)
-    done, before = (None, None) if force else (done_before(job, key), load_outcome(job.out))
+    done, before = (None, None) if force else (done_before(job, binary), load_outcome(job.out))
     if done is not None:
         return replace(done, skipped=True)
-    start = time.monotonic()
+    start, key = time.monotonic(), key_of(job, binary)
     if before is not None and before.key == key and before.exit_status == INTERRUPTED and (job.out / "scene.toml").is_file():
         words = [str(binary), "resume", str(job.out), "--threads", str(job.threads), "--quiet"]
         start -= before.wall_s

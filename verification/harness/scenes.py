@@ -74,10 +74,8 @@ def _resolved(program: Path, scene: Path, variant: str, settings: tuple[str, ...
 
 
 def content_of(scene: Path, variant: str, settings: Sequence[str] = ()) -> dict[str, Any]:
-    """The keys of a scene as a run with this variant and settings has them, defaults included. Do not change it: it is shared.
-
-    Raises ValueError for what the solver refuses.
-    """
+    """The keys of a scene as a run with this variant and settings has them, defaults included. Do not change it: it is shared. Raises ValueError for
+    what the solver refuses."""
     times = tuple(path.stat().st_mtime_ns for path in (solver(), scene))
     return _resolved(solver(), scene, variant, tuple(settings), times)
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from typing import Generic, TypeVar
 
 from verification.harness.run import INTERRUPTED
@@ -20,10 +21,8 @@ SILENCE_S = 60.0
 
 @dataclass(frozen=True)
 class Task(Generic[Made]):
-    """Something to do: its name, what does it, what to say of what it made, how long it may take (s), how many threads it wants.
-
-    What does it is given an event, and is to end soon once that is set. Times count against each other: 1 for all where none is known.
-    """
+    """Something to do: its name, what does it, what to say of what it made, how long it may take (s), how many threads it wants. What does it is
+    given an event, and is to end soon once that is set. Times count against each other: 1 for all where none is known."""
 
     name: str
     make: Callable[[threading.Event], Made]
@@ -32,9 +31,7 @@ class Task(Generic[Made]):
     threads: int = 1
 
 
-def say(line: str) -> None:
-    """Print a line at once."""
-    print(line, flush=True)
+say: Tell = partial(print, flush=True)
 
 
 def duration(seconds: float) -> str:
@@ -43,10 +40,8 @@ def duration(seconds: float) -> str:
 
 
 def time_left(waiting: Sequence[float], at_work: Sequence[tuple[float, float]], pace: float, jobs: int) -> float:
-    """Time to the end of all (s): expected times of those that wait, expected and spent ones of those at work, what an expected second takes.
-
-    All of it on `jobs` threads, but no less than the longest alone.
-    """
+    """Time to the end of all (s): expected times of those that wait, expected and spent ones of those at work, what an expected second takes. All of
+    it on `jobs` threads, but no less than the longest alone."""
     rest = [pace * expected for expected in waiting] + [max(pace * expected - spent, 0.0) for expected, spent in at_work]
     return max(sum(rest) / jobs, max(rest, default=0.0))
 
@@ -66,22 +61,17 @@ def interruptible() -> Iterator[threading.Event]:
 
 
 def side_by_side(tasks: Sequence[Task[Made]], jobs: int, tell: Tell = say) -> list[Made]:
-    """What the tasks made, in their order, done on `jobs` threads; a task that wants more threads than that gets all of them.
-
-    An exception of a task is raised when all others are done. An interrupt ends those at work, leaves the rest and is a SystemExit.
-    """
+    """What the tasks made, in their order, done on `jobs` threads; a task that wants more threads than that gets all of them. An exception of a task
+    is raised when all others are done. An interrupt ends those at work, leaves the rest and is a SystemExit."""
     queue = sorted(range(len(tasks)), key=lambda k: tasks[k].expected_s, reverse=True)
     at_work: dict[Future[Made], int] = {}
     done: dict[int, Future[Made]] = {}
+    threads = [min(task.threads, jobs) for task in tasks]
     begun, took, start = {}, {}, time.monotonic()
-
-    def threads(k: int) -> int:
-        return min(tasks[k].threads, jobs)
-
     with ThreadPoolExecutor(max_workers=jobs) as pool, interruptible() as stop:
         try:
             while queue or at_work:
-                while queue and threads(queue[0]) + sum(map(threads, at_work.values())) <= jobs:
+                while queue and threads[queue[0]] + sum(threads[k] for k in at_work.values()) <= jobs:
                     k = queue.pop(0)
                     begun[k] = time.monotonic()
                     at_work[pool.submit(tasks[k].make, stop)] = k
@@ -91,18 +81,13 @@ def side_by_side(tasks: Sequence[Task[Made]], jobs: int, tell: Tell = say) -> li
                     tell("at work: " + ", ".join(f"{tasks[k].name} ({duration(now - begun[k])})" for k in at_work.values()))
                 for future in ended:
                     k = at_work.pop(future)
-                    done[k], took[k] = future, now - begun[k]
+                    done[k], took[k], error = future, now - begun[k], future.exception()
+                    said = tasks[k].words(future.result()) if error is None else f"FAILED: {error}"
                     pace = sum(took.values()) / (sum(tasks[j].expected_s for j in took) or 1.0)
                     going = [(tasks[j].expected_s, now - begun[j]) for j in at_work.values()]
                     left = duration(time_left([tasks[j].expected_s for j in queue], going, pace, jobs))
-                    tell(f"[{len(done):{len(str(len(tasks)))}d}/{len(tasks)}] {duration(now - start)}, {left} left  {result(tasks[k], future)}")
+                    tell(f"[{len(done):{len(str(len(tasks)))}d}/{len(tasks)}] {duration(now - start)}, {left} left  {tasks[k].name}: {said}")
         except KeyboardInterrupt:
             tell("interrupted: what is done stays, the same command goes on from there")
             raise SystemExit(INTERRUPTED) from None
     return [done[k].result() for k in range(len(tasks))]
-
-
-def result(task: Task[Made], future: Future[Made]) -> str:
-    """What became of a task, in words."""
-    error = future.exception()
-    return f"{task.name}: {task.words(future.result()) if error is None else f'FAILED: {error}'}"

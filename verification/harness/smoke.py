@@ -29,10 +29,9 @@ VARIANTS: dict[str, tuple[str, ...]] = {
     "exp6_stress_reversal": ("perfect", "weak"),
 }
 
-# Tolerances of the regression. Results are the same to the last digit on one machine; another compiler or processor may
-# round differently, and a growth event then falls into another step. Pressures: with inertia the rise over three crossings
-# of the block by a P wave; without, where the solver looks for the pressure of an event, a quarter of that. Lengths: half
-# an increment.
+# Results are the same to the last digit on one machine; another compiler or processor may round differently, and a growth event then
+# falls into another step. Pressures: with inertia the rise over three crossings of the block by a P wave; without, where the solver
+# looks for the pressure of an event, a quarter of that. Lengths: half an increment.
 PRESSURE_TOLERANCE_PA = {"explicit": 4.0e4, "quasistatic": 1.0e4}
 LENGTH_TOLERANCE_M = 1.0
 
@@ -40,20 +39,13 @@ LENGTH_TOLERANCE_M = 1.0
 SURE_ARREST_PA = 6.0e4
 
 Values = dict[str, dict[str, Any]]
-
-
 Case = tuple[str, str, str]  # mechanics, experiment, variant
 
 
 def cases(mechanics: tuple[str, ...] = MECHANICS) -> list[Case]:
     """All mechanics, experiments and variants of the regression."""
-    return [
-        (one, experiment, variant)
-        for one in mechanics
-        for experiment, variants in VARIANTS.items()
-        for variant in variants
-        if one in mechanics_of(EXPERIMENTS / f"{experiment}.toml", variant)
-    ]
+    every = [(one, experiment, variant) for one in mechanics for experiment, variants in VARIANTS.items() for variant in variants]
+    return [case for case in every if case[0] in mechanics_of(EXPERIMENTS / f"{case[1]}.toml", case[2])]
 
 
 def settings_of(mechanics: str) -> tuple[str, ...]:
@@ -73,9 +65,7 @@ def measured_values(found: Run) -> Values:
         values[name] = {"value": round(value, 6), "unit": "m", "tolerance": LENGTH_TOLERANCE_M}
 
     events = [event for event in found.summary.events if event.kind in ("arrest", "restart")]
-    for event, after in zip(events, [*events[1:], None]):
-        if event.kind != "arrest":
-            continue
+    for event, after in [pair for pair in zip(events, [*events[1:], None]) if pair[0].kind == "arrest"]:
         sure = (after.inlet_Pa if after else found.summary.inlet_Pa) - event.inlet_Pa >= SURE_ARREST_PA
         pressure(f"arrest_at_{round(event.tip_y_m)}m_Pa", event.inlet_Pa, sure)
         if after is not None:
@@ -91,10 +81,8 @@ def measured_values(found: Run) -> Values:
 
 
 def differences(found: Values, expected: Values) -> list[str]:
-    """What is not as expected, a line a value; of arrests too short to be sure of, one that is there on one side only is none.
-
-    Raises ValueError for an expectation so loose that zero or twice the value would pass.
-    """
+    """What is not as expected, a line a value; of arrests too short to be sure of, one that is there on one side only is none. Raises ValueError for
+    an expectation so loose that zero or twice the value would pass."""
     lines = []
     for name, item in sorted((expected | found).items()):
         if not (name in expected and name in found):

@@ -32,10 +32,8 @@ def _fields(kind: type) -> dict[str, Any]:
 
 
 def built(kind: Any, content: Any) -> Any:
-    """The value of a type that `plain` made this of; null is NaN where a number is asked for.
-
-    Raises KeyError, TypeError or ValueError for content of another shape; fields with defaults may be absent.
-    """
+    """The value of a type that `plain` made this of; null is NaN where a number is asked for. Raises KeyError, TypeError or ValueError for content of
+    another shape; fields with defaults may be absent."""
     if dataclasses.is_dataclass(kind):
         known = _fields(typing.cast(type, kind))
         return kind(**{name: built(known[name], item) for name, item in content.items()})  # type: ignore[operator]

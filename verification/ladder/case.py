@@ -1,10 +1,11 @@
 """What a rung of the accuracy ladder is: a scene at several sizes, and what of its runs is held against which reference.
 
-A case only describes; running, judging and reporting are elsewhere. `verification/ladder/cases/FAMILY.py` lists the cases
-of a family as CASES, `verification/ladder/gates/FAMILY.json` holds what each may be off by.
+A case only describes. `verification/ladder/cases/FAMILY.py` lists the cases of a family as CASES, `verification/ladder/gates/FAMILY.json`
+holds what each may be off by.
 """
 from __future__ import annotations
 
+import importlib
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
@@ -13,18 +14,17 @@ from typing import Any
 
 import numpy as np
 
+from verification.harness import choose
 from verification.harness.load import Run
+from verification.ladder import cases as package
 
 Array = np.ndarray
 
 
 @dataclass(frozen=True)
 class Sample:
-    """Values of a run beside the exact ones, same shape and unit; a single number is an array of one.
-
-    weights (of the norm, such as volumes) default to 1. scale (same unit, > 0) replaces the size of the exact values
-    where these are zero. reference_error is the reference's own relative error.
-    """
+    """Values of a run beside the exact ones, same shape and unit; a single number is an array of one. weights (of the norm, such as volumes) default
+    to 1. scale (same unit, > 0) replaces the size of the exact values where these are zero. reference_error is the reference's own relative error."""
 
     values: Array
     exact: Array
@@ -107,13 +107,8 @@ class Case:
 
 def case_of(scene: Path, mechanics: str = "quasistatic", usual: tuple[Quantity, ...] = (), smoke_levels: int = 2) -> Callable[..., Case]:
     """What makes a case of a scene: by name, words and levels, and by quantities, smoke levels and mechanics where they are not as usual."""
-
-    def case(
-        name: str, says: str, levels: tuple[Level, ...], quantities: tuple[Quantity, ...] = usual, smoke: int = smoke_levels, mechanics: str = mechanics
-    ) -> Case:
-        return Case(name, says, scene, mechanics, levels, quantities, smoke)
-
-    return case
+    return lambda name, says, levels, quantities=usual, smoke=smoke_levels, mechanics=mechanics: Case(
+        name, says, scene, mechanics, levels, quantities, smoke)  # fmt: skip
 
 
 Keys = Callable[[float], tuple[str, ...]]  # the further scene keys of a size of cells (m)
@@ -122,3 +117,58 @@ Keys = Callable[[float], tuple[str, ...]]  # the further scene keys of a size of
 def cell_levels(*cells_m: float, settings: tuple[str, ...] = (), variant: str = "", of: Iterable[Keys] = ()) -> tuple[Level, ...]:
     """Levels of cell sizes (m), coarse to fine, all with the same further settings, and with those that each size asks for."""
     return tuple(Level(f"{h:g} m", h, (f"numerics.cell_m={h!r}", *settings, *(key for keys in of for key in keys(h))), variant) for h in cells_m)
+
+
+Families = dict[str, tuple[Case, ...]]
+
+
+class BadCase(ValueError):
+    """A case that the ladder cannot judge; the message says which and why."""
+
+
+def families() -> Families:
+    """All families by name; raises BadCase for one that is not as it should be."""
+    found = {name: tuple(cases) for name, cases in choose.listed(package, "CASES").items()}
+    for family, members in found.items():
+        check(family, members)
+    return found
+
+
+def about(family: str) -> str:
+    """What a family's module says of itself in its first sentences; nothing for one that is not there."""
+    try:
+        module = importlib.import_module(f"{package.__name__}.{family}")
+    except ModuleNotFoundError:
+        return ""
+    return " ".join((module.__doc__ or "").strip().split("\n\n")[0].split())
+
+
+def check(family: str, members: Iterable[Case]) -> None:
+    """Names are unique, sizes fall from level to level, something is measured; raises BadCase otherwise."""
+    members = tuple(members)
+    double = {f"{family}: cases": choose.twice(case.name for case in members)}
+    wrong = {}
+    for case in members:
+        where, labels, sizes = f"{family}/{case.name}", [level.label for level in case.levels], [level.size for level in case.levels]
+        double[f"{where}: levels"] = choose.twice(map(choose.folder_name, labels))
+        double[f"{where}: quantities"] = choose.twice(quantity.name for quantity in case.quantities)
+        strangers = {label for quantity in case.quantities for label in quantity.no_order_at} - set(labels)
+        wrong |= {
+            f"{where}: no_order_at names no level: {', '.join(sorted(strangers))}": strangers,
+            f"{where} has no levels or no quantities": not case.levels or not case.quantities,
+            f"{where}: no scene {case.scene}": not case.scene.is_file(),
+            f"{where}: sizes {sizes} do not fall from level to level": not all(a > b > 0.0 for a, b in zip(sizes, [*sizes[1:], 0.5 * sum(sizes[-1:])])),
+            f"{where}: {case.smoke} smoke levels of {len(case.levels)}": not 1 <= case.smoke <= len(case.levels),
+        }
+    wrong |= {f"{what} of the same name: {', '.join(names)}": names for what, names in double.items()}
+    for words, is_so in wrong.items():
+        if is_so:
+            raise BadCase(words)
+
+
+def chosen(known: Families, wanted: Iterable[str] = (), names: Iterable[str] = ()) -> Families:
+    """The cases whose families and names begin as is asked (all where nothing is); raises ValueError for a beginning that none has."""
+    own = choose.choose(known, wanted)
+    kept = choose.choose({case.name: case for members in own.values() for case in members}, names, "case")
+    found = {family: tuple(case for case in members if case.name in kept) for family, members in own.items()}
+    return {family: members for family, members in found.items() if members}

@@ -62,10 +62,8 @@ Exact = Callable[[Run, End, tuple[str, ...], float], list[Array]]  # of fields b
 
 
 def field_quantity(name: str, unit: str, fields: tuple[str, ...], exact: Exact, **further: object) -> Quantity:
-    """All components of a field beside the exact ones, in the norm by volume.
-
-    Velocities of explicit runs are half a step behind the output's time, so the exact ones are taken there.
-    """
+    """All components of a field beside the exact ones, in the norm by volume. Velocities of explicit runs are half a step behind the output's time,
+    so the exact ones are taken there."""
 
     def sample(run: Run) -> Sample:
         end = end_of(run)

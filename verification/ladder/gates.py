@@ -6,11 +6,12 @@ what was measured when it was accepted, so that it can be checked to be no wider
 
 import math
 from dataclasses import asdict, dataclass
+from decimal import ROUND_DOWN, Context
 from pathlib import Path
 from typing import Any
 
 from verification.harness import store
-from verification.ladder.catalogue import Families
+from verification.ladder.case import Families
 
 FOLDER = Path(__file__).resolve().parent / "gates"
 
@@ -54,12 +55,8 @@ Gates = dict[Key, Gate]
 
 
 def down(value: float, digits: int = 2) -> float:
-    """A positive number rounded down to so many significant digits."""
-    if value <= 0.0:
-        return 0.0
-    unit = 10.0 ** (math.floor(math.log10(value)) - digits + 1)
-    rounded = float(f"{math.floor(value / unit * (1.0 + 1e-12)) * unit:.{digits}g}")
-    return rounded if rounded <= value else float(f"{(math.floor(value / unit) - 1) * unit:.{digits}g}")
+    """A number >= 0 rounded down to so many significant digits."""
+    return float(Context(digits, ROUND_DOWN).create_decimal(repr(value)))
 
 
 def is_round_off(no_order: str) -> bool:
@@ -96,10 +93,8 @@ def read(family: str, folder: Path | None = None) -> Gates:
     book = store.read(Book, (folder or FOLDER) / f"{family}.json") or Book(family, {})
     return {
         (case, quantity, level): gate
-        for case, quantities in book.cases.items()
-        for quantity, levels in quantities.items()
-        for level, gate in levels.items()
-    }
+        for case, quantities in book.cases.items() for quantity, levels in quantities.items() for level, gate in levels.items()
+    }  # fmt: skip
 
 
 def write(family: str, gates: Gates, folder: Path | None = None) -> None:
@@ -142,11 +137,8 @@ def too_wide(gate: Gate, round_off: bool) -> str:
 
 def loose(gate: Gate, error: float, order: float | None) -> str:
     """In what a result became so much better since its gate was accepted that the gate is no longer tight, or nothing."""
-    better = []
-    if abs(error) < FALLEN * gate.measured:
-        better.append(f"error {abs(error):.3g}, accepted at {gate.measured:g}")
-    if risen(gate, order) > RISEN:
-        better.append(f"order {order:.2f}, accepted at {gate.measured_order:.2f}")
+    better = [f"error {abs(error):.3g}, accepted at {gate.measured:g}"] if abs(error) < FALLEN * gate.measured else []
+    better += [f"order {order:.2f}, accepted at {gate.measured_order:.2f}"] if risen(gate, order) > RISEN else []
     return f"gate can be tightened ({'; '.join(better)}): --accept" if better else ""
 
 
@@ -157,18 +149,14 @@ def risen(gate: Gate, order: float | None) -> float:
 
 def changes(before: Gates, now: Gates) -> list[str]:
     """A line for each gate that is new, gone or changed."""
+
+    def words(gate: Gate | None) -> str:
+        return "none" if gate is None else f"error {gate.error:g}" + (f" order {gate.order:g}" if gate.order is not None else "")
+
     lines = []
     for key in dict.fromkeys([*before, *now]):
         old, new = before.get(key), now.get(key)
-        if _words(old) != _words(new):
-            both = old is not None and new is not None
-            wider = both and (new.error > old.error or (new.order or 0.0) < (old.order or 0.0))
-            lines.append(f"{' / '.join(key)}: {_words(old)} -> {_words(new)}{'  WIDER' if wider else ''}")
+        if words(old) != words(new):
+            wider = old and new and (new.error > old.error or (new.order or 0.0) < (old.order or 0.0))
+            lines.append(f"{' / '.join(key)}: {words(old)} -> {words(new)}{'  WIDER' if wider else ''}")
     return lines
-
-
-def _words(gate: Gate | None) -> str:
-    """A gate in a few words."""
-    if gate is None:
-        return "none"
-    return f"error {gate.error:g}" + (f" order {gate.order:g}" if gate.order is not None else "")

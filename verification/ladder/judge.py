@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 from verification.ladder import gates as book
 from verification.ladder.gates import CannotAccept, Gate, Gates
-from verification.ladder.measure import FAIL, FAILED, Row, order_of
+from verification.ladder.measure import FAIL, FAILED, Row, order_of, with_coarser
 
 HALF_AN_ORDER = "half an order lost"
 
@@ -25,24 +25,13 @@ class Tally:
         """The tally as a line."""
         said = "all refused" if self.refused == self.mutants else f"{self.mutants - self.refused} NOT REFUSED"
         bad = "".join(f", {count} {word}" for count, word in ((self.wrong, "not as their gates ask"), (self.failed, "failed")) if count)
-        passed = self.rows - self.wrong - self.failed
         notes = f"; {self.loose} can be tightened" if self.loose else ""
-        return f"{self.rows} comparisons: {passed} pass{bad}; {self.gates} gates, {self.mutants} mutants, {said}{notes}"
+        return f"{self.rows} comparisons: {self.rows - self.wrong - self.failed} pass{bad}; {self.gates} gates, {self.mutants} mutants, {said}{notes}"
 
 
 def judged(rows: list[Row], gates: dict[str, Gates]) -> list[Row]:
     """Rows with their gates and what is wrong with each; `gates` by family."""
-    coarser = _coarser(rows)
-    return [judge(row, coarser.get(index), gates.get(row.family, {}).get(row.key)) for index, row in enumerate(rows)]
-
-
-def _coarser(rows: list[Row]) -> dict[int, Row]:
-    """For each row by its place, that of the same quantity at the level before."""
-    return {
-        index: before
-        for index, (before, row) in enumerate(zip(rows, rows[1:]), 1)
-        if (before.family, before.case, before.quantity) == (row.family, row.case, row.quantity)
-    }
+    return [judge(row, coarser, gates.get(row.family, {}).get(row.key)) for coarser, row in with_coarser(rows)]
 
 
 def judge(row: Row, coarser: Row | None, gate: Gate | None) -> Row:
@@ -52,9 +41,9 @@ def judge(row: Row, coarser: Row | None, gate: Gate | None) -> Row:
     if gate is None:
         return replace(row, problems=(f"no gate (measured error {row.error:.3g}); see --accept",))
     round_off = book.is_round_off(row.no_order)
-    problems = [book.too_wide(gate, round_off), "" if passes(gate.error, row.error) else f"error {abs(row.error):.3g} above {gate.error:g}"]
+    problems = [book.too_wide(gate, round_off), "" if abs(row.error) <= gate.error else f"error {abs(row.error):.3g} above {gate.error:g}"]
     if coarser is not None and not row.no_order:
-        problems.append(unreadable(row, coarser) or _order_problem(row, gate))
+        problems.append(unreadable(row, coarser) or lost_order(row, gate))
     wrong = mutants_of(row, coarser, gate)
     survivors = [name for name, mutant in wrong.items() if not refuses(gate, row, coarser, name, mutant)]
     problems += [f"the gate lets {name} pass" for name in survivors]
@@ -62,25 +51,19 @@ def judge(row: Row, coarser: Row | None, gate: Gate | None) -> Row:
     return replace(row, gate=gate, problems=tuple(filter(None, problems)), note=note, refused=len(wrong) - len(survivors))
 
 
-def unreadable(row: Row, coarser: Row) -> str:
-    """Why no order can be read from the level before to a row, or nothing."""
-    if coarser.failure:
-        return "no order: the level before failed"
-    if coarser.values == row.values == 1 and coarser.error * row.error < 0.0:
-        return "the error changes its sign from the level before: no order can be read, say so in no_order"
-    return ""
-
-
-def _order_problem(row: Row, gate: Gate) -> str:
+def lost_order(row: Row, gate: Gate) -> str:
     """What is wrong with the order of a row, or nothing."""
     if gate.order is None:
         return f"no gate of order (measured {row.order:.2f}); see --accept"
     return "" if keeps(gate.order, row.order) else f"order {row.order:.2f} below {gate.order:g}"
 
 
-def passes(allowed: float, error: float) -> bool:
-    """Whether an error is within what is allowed; NaN never is."""
-    return abs(error) <= allowed
+def unreadable(row: Row, coarser: Row) -> str:
+    """Why no order can be read from the level before to a row, or nothing."""
+    if coarser.failure:
+        return "no order: the level before failed"
+    changes = coarser.values == row.values == 1 and coarser.error * row.error < 0.0
+    return "the error changes its sign from the level before: no order can be read, say so in no_order" if changes else ""
 
 
 def keeps(least: float, order: float | None) -> bool:
@@ -89,10 +72,8 @@ def keeps(least: float, order: float | None) -> bool:
 
 
 def mutants_of(row: Row, coarser: Row | None, gate: Gate) -> dict[str, float]:
-    """Errors that plainly wrong results would have had: the sample's own, and half an order lost from the level before.
-
-    The half is lost from the order measured, or from the accepted one where that is lower.
-    """
+    """Errors that plainly wrong results would have had: the sample's own, and half an order lost from the level before. The half is lost from the
+    order measured, or from the accepted one where that is lower."""
     wrong = dict(row.mutants)
     if coarser is not None and not coarser.failure and not row.no_order:
         wrong[HALF_AN_ORDER] = row.error * (coarser.size / row.size) ** (0.5 + book.risen(gate, row.order))
@@ -101,7 +82,7 @@ def mutants_of(row: Row, coarser: Row | None, gate: Gate) -> dict[str, float]:
 
 def refuses(gate: Gate, row: Row, coarser: Row | None, name: str, error: float) -> bool:
     """Whether a gate refuses an error in place of the measured one: by its size, or where an order was lost by the order."""
-    if not passes(gate.error, error):
+    if not abs(error) <= gate.error:
         return True
     if name != HALF_AN_ORDER or coarser is None or gate.order is None:
         return False
@@ -110,15 +91,13 @@ def refuses(gate: Gate, row: Row, coarser: Row | None, name: str, error: float) 
 
 def tally(rows: list[Row]) -> Tally:
     """What became of judged rows."""
-    coarser = _coarser(rows)
-    tried = [len(mutants_of(row, coarser.get(k), row.gate)) for k, row in enumerate(rows) if row.gate and not row.failure]
-    ordered = sum(1 for row in rows if row.gate and row.gate.order is not None and not row.failure)
+    tried = [(coarser, row, row.gate) for coarser, row in with_coarser(rows) if row.gate and not row.failure]
     return Tally(
         rows=len(rows),
         wrong=sum(row.verdict == FAIL for row in rows),
         failed=sum(row.verdict == FAILED for row in rows),
-        gates=sum(1 for row in rows if row.gate and not row.failure) + ordered,
-        mutants=sum(tried),
+        gates=sum(1 + (gate.order is not None) for _, _, gate in tried),
+        mutants=sum(len(mutants_of(row, coarser, gate)) for coarser, row, gate in tried),
         refused=sum(row.refused for row in rows),
         loose=sum(bool(row.note) for row in rows),
     )
@@ -126,22 +105,15 @@ def tally(rows: list[Row]) -> Tally:
 
 def accepted(rows: list[Row], before: dict[str, Gates]) -> tuple[dict[str, Gates], list[str]]:
     """Gates by family with those of the rows anew, and a line for each that cannot be: those keep the gate they had."""
-    now, refused, coarser = {family: dict(own) for family, own in before.items()}, [], _coarser(rows)
-    for index, row in enumerate(rows):
-        own = now.setdefault(row.family, {})
+    now, refused = {family: dict(own) for family, own in before.items()}, []
+    for coarser, row in with_coarser(rows):
+        ordered = coarser is not None and not row.no_order
         try:
-            own[row.key] = _gate(row, coarser.get(index))
+            if row.failure:
+                raise CannotAccept(f"failed: {row.failure}")
+            if coarser is not None and ordered and unreadable(row, coarser):
+                raise CannotAccept(unreadable(row, coarser))
+            now.setdefault(row.family, {})[row.key] = book.gate_of(row.no_order, row.error, row.order if ordered else None, row.mutants)
         except CannotAccept as error:
             refused.append(f"{row.name}: {error}")
     return now, refused
-
-
-def _gate(row: Row, coarser: Row | None) -> Gate:
-    """The gate that a row asks for; raises CannotAccept."""
-    if row.failure:
-        raise CannotAccept(f"failed: {row.failure}")
-    if coarser is None or row.no_order:
-        return book.gate_of(row.no_order, row.error, None, row.mutants)
-    if unreadable(row, coarser):
-        raise CannotAccept(unreadable(row, coarser))
-    return book.gate_of(row.no_order, row.error, row.order, row.mutants)

@@ -1,16 +1,71 @@
-"""Puts what runs gave beside their references: a row for each case, quantity and level, as plain data."""
+"""Makes the runs of cases, each in RUNS/FAMILY/CASE/LEVEL, and puts what they gave beside their references: a row a quantity of a run."""
 
 import math
+import threading
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import numpy as np
 
+from verification.harness import paths
+from verification.harness.choose import claimed, folder_name
 from verification.harness.load import Run, load
-from verification.ladder.case import Quantity, Sample
+from verification.harness.run import Job, Outcome, load_outcome, run
+from verification.harness.side_by_side import Task, Tell, say, side_by_side
+from verification.ladder.case import Case, Families, Level, Quantity, Sample
 from verification.ladder.gates import Gate, Key
-from verification.ladder.runner import Made
 
+RUNS = paths.RUNS / "ladder"
 PASS, FAIL, FAILED = "pass", "FAIL", "FAILED"
+
+
+@dataclass(frozen=True)
+class Rung:
+    """A level of a case of a family, and where its run is."""
+
+    family: str
+    case: Case
+    level: Level
+    folder: Path
+
+    def job(self) -> Job:
+        """The run to make; the case's mechanics are set unless the level sets them itself."""
+        settings = self.level.settings
+        own = () if any(setting.startswith("numerics.mechanics=") for setting in settings) else (f"numerics.mechanics={self.case.mechanics}",)
+        return Job(self.case.scene, self.level.variant, self.folder, (*own, *settings))
+
+    def expected_s(self) -> float:
+        """How long the run may take, s: as the last time, or 0.1 s at the coarsest level and 8 times more at each (points and steps)."""
+        before = load_outcome(self.folder)
+        return before.wall_s if before is not None else 0.1 * 8.0 ** self.case.levels.index(self.level)
+
+
+Made = tuple[Rung, Outcome]  # a run and how it ended
+
+
+def rungs_of(chosen: Families, smoke: bool = False, runs: Path = RUNS) -> list[Rung]:
+    """All rungs of the chosen cases (of each case its smoke levels alone if asked), coarse to fine."""
+    return [
+        Rung(family, case, level, runs / family / case.name / folder_name(level.label))
+        for family, members in chosen.items() for case in members for level in case.levels[: case.smoke if smoke else None]
+    ]  # fmt: skip
+
+
+def make_one(rung: Rung, stop: threading.Event | None = None) -> Made:
+    """Make one run unless it is there; another process that wants the same one waits for it."""
+    with claimed(rung.folder):
+        return rung, run(rung.job(), stop=stop)
+
+
+def make_all(rungs: list[Rung], jobs: int = 2, tell: Tell = say) -> list[Made]:
+    """Make the runs of all rungs on `jobs` threads, those that take longest first; in the order given."""
+
+    def words(made: Made) -> str:
+        outcome = made[1]
+        return f"FAILED: {outcome.reason}" if not outcome.ok else "done before" if outcome.skipped else f"{outcome.wall_s:.1f} s"
+
+    names = [f"{rung.family}/{rung.case.name} {rung.level.label}" for rung in rungs]
+    return side_by_side([Task(name, lambda stop, rung=rung: make_one(rung, stop), words, rung.expected_s()) for name, rung in zip(names, rungs)], jobs, tell)
 
 
 @dataclass(frozen=True)
@@ -25,10 +80,8 @@ class Cost:
 
 @dataclass(frozen=True)
 class Row:
-    """A quantity of a case at a level beside its reference. Of many values, `value` and `reference` are the weighted rms.
-
-    error and reference_error are relative; order is that from the level before. `failure` says why there is nothing measured.
-    """
+    """A quantity of a case at a level beside its reference. Of many values, `value` and `reference` are the weighted rms. error and reference_error
+    are relative; order is that from the level before. `failure` says why there is nothing measured."""
 
     family: str
     case: str
@@ -71,58 +124,57 @@ class Row:
 
 def order_of(coarse: float, fine: float, ratio: float) -> float:
     """Observed order from two errors (signs do not count) of levels whose sizes have a ratio > 1: log(e1/e2)/log(ratio)."""
-    if coarse == 0.0 or fine == 0.0:
-        return math.nan
-    return math.log(abs(coarse / fine)) / math.log(ratio)
+    return math.nan if coarse == 0.0 or fine == 0.0 else math.log(abs(coarse / fine)) / math.log(ratio)
+
+
+def with_coarser(rows: list[Row]) -> list[tuple[Row | None, Row]]:
+    """Each row behind that of the same quantity at the level before."""
+    of = [(row.family, row.case, row.quantity) for row in rows]
+    return [(rows[k - 1] if k and of[k - 1] == of[k] else None, row) for k, row in enumerate(rows)]
 
 
 def rows_of(made: list[Made]) -> list[Row]:
-    """The rows of all runs, by case and quantity from coarse to fine, without gates."""
-    groups: dict[tuple[str, str], list[Made]] = {}
-    for one in made:
-        groups.setdefault((one.rung.family, one.rung.case.name), []).append(one)
-    rows = []
-    for group in groups.values():
-        loaded = [_load(one) for one in group]
-        for quantity in group[0].rung.case.quantities:
-            rows += _ladder([row_of(one, run, quantity) for one, run in zip(group, loaded)])
-    return rows
+    """The rows of all runs, by case and quantity from coarse to fine, with their orders and without gates."""
+    groups: dict[tuple[str, str], list[tuple[Rung, Run | str]]] = {}
+    for rung, outcome in made:
+        groups.setdefault((rung.family, rung.case.name), []).append((rung, _load(rung, outcome)))
+    rows = [row_of(rung, run, quantity) for group in groups.values() for quantity in group[0][0].case.quantities for rung, run in group]
+    return [
+        row if before is None or before.failure or row.failure else replace(row, order=order_of(before.error, row.error, before.size / row.size))
+        for before, row in with_coarser(rows)
+    ]
 
 
-def _load(made: Made) -> Run | str:
+def _load(rung: Rung, outcome: Outcome) -> Run | str:
     """The run of a rung, or why there is none."""
-    if not made.outcome.ok:
-        return made.outcome.reason or f"exit status {made.outcome.exit_status}"
+    if not outcome.ok:
+        return outcome.reason or f"exit status {outcome.exit_status}"
     try:
-        run = load(made.rung.folder)
+        run = load(rung.folder)
     except Exception as error:  # whatever is wrong with a run's folder is told in its rows
         return f"{type(error).__name__}: {error}"
-    asked = made.rung.case.mechanics
+    asked = rung.case.mechanics
     return run if run.summary.mechanics == asked else f"the solver ran {run.summary.mechanics} instead of {asked}"
 
 
-def row_of(made: Made, run: Run | str, quantity: Quantity) -> Row:
+def row_of(rung: Rung, run: Run | str, quantity: Quantity) -> Row:
     """One quantity of one run; whatever keeps it from being measured is the row's failure."""
-    rung = made.rung
     case, level = rung.case, rung.level
-    reason = quantity.reason(level.label)
-    head = (rung.family, case.name, case.mechanics, quantity.name, quantity.unit, level.label, level.size, reason)
+    row = Row(rung.family, case.name, case.mechanics, quantity.name, quantity.unit, level.label, level.size, quantity.reason(level.label))
     if isinstance(run, str):
-        return Row(*head, failure=run)
+        return replace(row, failure=run)
     summary = run.summary
-    cost = Cost(summary.wall_s, summary.particles, summary.steps, summary.peak_memory_MB)
+    row = replace(row, cost=Cost(summary.wall_s, summary.particles, summary.steps, summary.peak_memory_MB))
     try:
         sample = quantity.sample(run)
         error, mutants = sample.error(), sample.mutants()
         value, reference = summarised(sample)
     except Exception as defect:  # a defect in one quantity must not cost all others their judgement
-        return Row(*head, cost=cost, failure=f"not measured: {type(defect).__name__}: {defect}")
+        return replace(row, failure=f"not measured: {type(defect).__name__}: {defect}")
     if not math.isfinite(error):
-        return Row(*head, cost=cost, failure=f"not measured: the error is {error}")
-    return Row(
-        *head, values=int(np.size(sample.values)), value=value, reference=reference, reference_error=sample.reference_error,
-        scale=sample.scale, error=error, cost=cost, mutants=mutants,
-    )  # fmt: skip
+        return replace(row, failure=f"not measured: the error is {error}")
+    own = {"values": int(np.size(sample.values)), "reference_error": sample.reference_error, "scale": sample.scale}
+    return replace(row, **own, value=value, reference=reference, error=error, mutants=mutants)  # type: ignore[arg-type]
 
 
 def summarised(sample: Sample) -> tuple[float, float]:
@@ -130,16 +182,4 @@ def summarised(sample: Sample) -> tuple[float, float]:
     values, exact = np.asarray(sample.values, float), np.asarray(sample.exact, float)
     if values.shape != exact.shape:
         raise ValueError(f"{values.shape} values beside {exact.shape} exact ones")
-    if values.size == 1:
-        return float(values.flat[0]), float(exact.flat[0])
-    return sample.norm(values), sample.norm(exact)
-
-
-def _ladder(rows: list[Row]) -> list[Row]:
-    """Rows of one quantity, coarse to fine, with the order from each to the next where an order is to be expected."""
-    found = rows[:1]
-    for coarse, fine in zip(rows, rows[1:]):
-        both = not (coarse.failure or fine.failure)
-        order = order_of(coarse.error, fine.error, coarse.size / fine.size) if both else None
-        found.append(replace(fine, order=order))
-    return found
+    return (float(values.flat[0]), float(exact.flat[0])) if values.size == 1 else (sample.norm(values), sample.norm(exact))

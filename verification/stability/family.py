@@ -9,7 +9,7 @@ import math
 import tomllib
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import cache
 from pathlib import Path
 
 from verification.harness.load import Run
@@ -33,7 +33,7 @@ KINEMATICS = {"total": "points in their places", "updated": "points that move"}
 LEAST_REFUSED = 0.9  # no check may hold for a value that is off by more than this: zero and twice must fail
 
 
-@lru_cache(maxsize=None)
+@cache
 def words() -> dict[str, dict[str, str]]:
     """What the page says of sections, by their headings, and of families, by their names."""
     return tomllib.loads((SCENES.parent / "words.toml").read_text(encoding="utf-8"))
@@ -58,10 +58,8 @@ Check = Callable[[Run], Checked]  # may raise LoadError: then nothing is known o
 
 
 def close(value: float, reference: float, tolerance: float, words: str = "", scale: float | None = None) -> Checked:
-    """A value that is to be within `tolerance` of a reference, relative to it, or to `scale` (same unit, > 0) where that is zero.
-
-    Raises ValueError for a tolerance by which zero would pass.
-    """
+    """A value that is to be within `tolerance` of a reference, relative to it, or to `scale` (same unit, > 0) where that is zero. Raises ValueError
+    for a tolerance by which zero would pass."""
     size = abs(reference) if scale is None else scale
     if not 0.0 < tolerance <= LEAST_REFUSED or not size > 0.0:
         raise ValueError(f"a tolerance of {tolerance:g} of {size:g} would let anything pass")
@@ -76,11 +74,9 @@ def at_most(value: float, bound: float, words: str = "") -> Checked:
 
 @dataclass(frozen=True)
 class Point:
-    """A scene with settings, at a value of the walked parameter.
-
-    program: STRATA, or the name of another measured way (Family.ways). smoke: run in ci/test too; of each family two or three
-    fast ones, on both sides of its edge. beyond: whether it is beyond the edge, where that does not follow from the value.
-    """
+    """A scene with settings, at a value of the walked parameter. program: STRATA, or the name of another measured way (Family.ways). smoke: run in
+    ci/test too; of each family two or three fast ones, on both sides of its edge. beyond: whether it is beyond the edge, where that does not follow
+    from the value."""
 
     label: str  # unique in its family, as in a file name
     value: float
@@ -107,13 +103,10 @@ def walked(at: At, values: Iterable[float], smoke: Collection[float] = (), beyon
 
 @dataclass(frozen=True)
 class Edge:
-    """Where a family ceases to be sound.
-
-    predicted: computed by Python or strata-reference without the solver, None where no theory gives it; source: whose theory, and how
-    it was computed, a sentence. at: the point at any value, by which the edge is measured: bisection in `bracket` (sound end first) until
-    the ends differ by `resolution` of the value. Without it the edge is read from the points' runs by `read`. A difference of more
-    than `tolerance` is a failure.
-    """
+    """Where a family ceases to be sound. predicted: computed by Python or strata-reference without the solver, None where no theory gives it; source:
+    whose theory, and how it was computed, a sentence. at: the point at any value, by which the edge is measured: bisection in `bracket` (sound end
+    first) until the ends differ by `resolution` of the value. Without it the edge is read from the points' runs by `read`. A difference of more than
+    `tolerance` is a failure."""
 
     source: str
     predicted: Callable[[], float] | None = None
@@ -143,12 +136,10 @@ def tip_is_near(run: Run) -> str:
 
 @dataclass(frozen=True)
 class Family:
-    """A known failure, walked across. beyond: what strata does beyond the edge, any of SAFE; without an edge all points must be so.
-
-    section: families of the same section (of words.toml) share a heading, what is said below it, and a figure. check_name: what is on
-    the figure's vertical axis. flag: words for a completed run that is marked otherwise than by `suspect`. ways: other programs
-    than strata by name, each giving what the check would.
-    """
+    """A known failure, walked across. beyond: what strata does beyond the edge, any of SAFE; without an edge all points must be so. section: families
+    of the same section (of words.toml) share a heading, what is said below it, and a figure. check_name: what is on the figure's vertical axis. flag:
+    words for a completed run that is marked otherwise than by `suspect`. ways: other programs than strata by name, each giving what the check
+    would."""
 
     name: str  # unique over all families, as in a file name
     title: str
@@ -180,10 +171,8 @@ class BadFamily(ValueError):
 
 
 def bisected(sound: Callable[[float], bool], good: float, bad: float, resolution: float) -> tuple[float, float]:
-    """Where something ceases to hold: the last sound and first unsound value, halving what is between until they differ by `resolution` of the larger one.
-
-    Raises ValueError where the first is not sound or the second one is.
-    """
+    """Where something ceases to hold: the last sound and first unsound value, halving what is between until they differ by `resolution` of the larger
+    one. Raises ValueError where the first is not sound or the second one is."""
     if not sound(good) or sound(bad):
         raise ValueError(f"{good:g} and {bad:g} do not enclose the edge")
     while abs(bad - good) > resolution * max(abs(good), abs(bad)):

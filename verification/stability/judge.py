@@ -1,7 +1,6 @@
 """Judges what was found of a family: no garbage, the edge where theory says, and beyond it what the family declares."""
 
 import math
-from collections.abc import Iterable
 
 from verification.stability.family import GARBAGE, Family, Point
 from verification.stability.store import Record
@@ -9,9 +8,7 @@ from verification.stability.store import Record
 
 def side(family: Family, point: Point, record: Record) -> bool | None:
     """Whether a point is beyond the family's edge; None where it is so near (the edge's tolerance, or between its bounds) that it may be either.
-
-    Without an edge all points are beyond: what is declared must hold everywhere.
-    """
+    Without an edge all points are beyond: what is declared must hold everywhere."""
     if point.beyond is not None:
         return point.beyond
     if family.edge is None or record.edge is None:
@@ -22,14 +19,6 @@ def side(family: Family, point: Point, record: Record) -> bool | None:
     if abs(point.value - place) <= family.edge.tolerance * abs(place):
         return None
     return (point.value > place) == family.edge.unsound_above
-
-
-def problems_of_points(family: Family, record: Record, smoke: bool = False) -> list[str]:
-    """What is wrong with the outcomes of a family's points."""
-    told = {point.label: problem_of_point(family, point, record) for point in family.points if point.smoke or not smoke}
-    labels = {point.label for point in family.points}
-    gone = [f"{found.label}: no point of the family any more" for found in record.points if found.label not in labels]
-    return [f"{label}: {problem}" for label, problem in told.items() if problem] + gone
 
 
 def problem_of_point(family: Family, point: Point, record: Record) -> str:
@@ -54,22 +43,22 @@ def problems_of_edge(family: Family, record: Record) -> list[str]:
         return [] if found is None else ["an edge was measured that the family does not have"]
     if found is None or found.measured is None:
         return ["the edge was not found"]
-    difference = found.difference
-    if edge.predicted is not None and difference is None:
+    if edge.predicted is not None and found.difference is None:
         return ["the predicted edge was not computed"]
-    if difference is not None and not abs(difference) <= edge.tolerance:
-        return [f"the edge is {100.0 * difference:+.1f} % off what theory says ({found.measured:.4g} for {found.predicted:.4g})"]
-    sides = [side(family, point, record) for point in family.points]
-    if True not in sides or (False not in sides and None not in sides):
-        return ["no points on both sides of the edge"]
-    return []
+    if found.difference is not None and not abs(found.difference) <= edge.tolerance:
+        return [f"the edge is {100.0 * found.difference:+.1f} % off what theory says ({found.measured:.4g} for {found.predicted:.4g})"]
+    sides = {side(family, point, record) for point in family.points}
+    return [] if True in sides and len(sides) > 1 else ["no points on both sides of the edge"]
 
 
 def problems(family: Family, record: Record | None, smoke: bool = False) -> list[str]:
     """All that is wrong with a family; of a smoke run its smoke points alone, by the edge of `record`."""
     if record is None:
         return ["never measured: ci/atlas --accept"]
-    return problems_of_points(family, record, smoke) + ([] if smoke else problems_of_edge(family, record))
+    told = {point.label: problem_of_point(family, point, record) for point in family.points if point.smoke or not smoke}
+    labels = {point.label for point in family.points}
+    gone = [f"{found.label}: no point of the family any more" for found in record.points if found.label not in labels]
+    return [f"{label}: {problem}" for label, problem in told.items() if problem] + gone + ([] if smoke else problems_of_edge(family, record))
 
 
 def changes(before: Record | None, now: Record) -> list[str]:
@@ -96,10 +85,3 @@ def differs(before: float, now: float, share: float = 0.2, floor: float = 1e-6) 
     if math.isnan(before) and math.isnan(now):
         return False
     return not abs(now - before) <= share * abs(before) + floor
-
-
-def headline(judged: Iterable[list[str]]) -> str:
-    """How many families are as they are to be."""
-    verdicts = list(judged)
-    wrong = sum(bool(one) for one in verdicts)
-    return f"{len(verdicts)} families, " + ("all as they are to be" if not wrong else f"{wrong} NOT as they are to be")

@@ -5,13 +5,11 @@ import math
 from pathlib import Path
 
 from verification.harness import paths
-from verification.harness import run as harness
 from verification.harness.choose import claimed, folder_name
 from verification.harness.load import OF_SPEEDS, LoadError, Run, load
 from verification.harness.paths import ROOT
-from verification.harness.run import Job, Outcome
+from verification.harness.run import Job, Outcome, run, timed
 from verification.harness.side_by_side import Tell
-from verification.precision.measure import timed
 from verification.stability.family import FAILED, GARBAGE, MARKED, REFUSED, STABLE, STRATA, Checked, Family, Point, bisected
 from verification.stability.store import EdgeFound, PointFound, Record
 
@@ -27,22 +25,14 @@ def folder_of(family: Family, point: Point | PointFound, runs: Path = RUNS) -> P
     return runs / family.name / folder_name(point.label)
 
 
-def make(family: Family, point: Point, runs: Path = RUNS) -> tuple[Outcome, float]:
+def make(point: Point, folder: Path) -> tuple[Outcome, float]:
     """A point's run and its CPU time (s), made unless it is there; another process that wants the same one waits for it."""
-    folder = folder_of(family, point, runs)
     with claimed(folder):
-        outcome, (_, cpu_s) = timed(lambda: harness.run(Job(point.scene, point.variant, folder, point.settings), limit_s=LIMIT_S))
+        outcome, (_, cpu_s) = timed(lambda: run(Job(point.scene, point.variant, folder, point.settings), limit_s=LIMIT_S))
         if outcome.skipped and (folder / CPU).is_file():
             return outcome, float(json.loads((folder / CPU).read_text(encoding="utf-8")))
         (folder / CPU).write_text(json.dumps(round(cpu_s, 4)), encoding="utf-8")
     return outcome, cpu_s
-
-
-def marks_of(run: Run, family: Family) -> str:
-    """Why a completed run is not to be trusted by its own words; nothing where it says nothing."""
-    suspect = run.summary.raw.get("suspect") or []
-    words = [f"suspect {item['monitor']}: {item['why']}" for item in suspect if item["monitor"] != OF_SPEEDS]
-    return "; ".join(filter(None, [*words, family.flag(run)]))
 
 
 def short(text: str) -> str:
@@ -58,12 +48,13 @@ def of_failure(point: Point, outcome: Outcome, cpu_s: float) -> PointFound:
 
 
 def of_run(family: Family, point: Point, run: Run, cpu_s: float) -> PointFound:
-    """What a completed run is."""
+    """What a completed run is: marked where its own words, or the family's flag, say that it is not to be trusted."""
     try:
         checked, reason = family.check(run), ""
     except LoadError as error:
-        checked, reason = Checked(math.nan, math.nan, math.nan, False), short(str(error))
-    marks = marks_of(run, family)
+        checked, reason = Checked(math.nan, math.nan, math.nan, False), str(error)
+    words = [f"suspect {mark.monitor}: {mark.why}" for mark in run.summary.suspect if mark.monitor != OF_SPEEDS]
+    marks = "; ".join(filter(None, [*words, family.flag(run)]))
     outcome = MARKED if marks else STABLE if checked.holds else GARBAGE
     return PointFound(point.label, point.value, outcome, checked, short(marks or reason), round(cpu_s, 2))
 
@@ -73,11 +64,12 @@ def found(family: Family, point: Point, runs: Path = RUNS) -> PointFound:
     if point.program != STRATA:
         checked = family.ways[point.program](point)
         return PointFound(point.label, point.value, STABLE if checked.holds else GARBAGE, checked, "")
-    outcome, cpu_s = make(family, point, runs)
+    folder = folder_of(family, point, runs)
+    outcome, cpu_s = make(point, folder)
     if not outcome.ok:
         return of_failure(point, outcome, cpu_s)
     try:
-        return of_run(family, point, load(folder_of(family, point, runs)), cpu_s)
+        return of_run(family, point, load(folder), cpu_s)
     except LoadError as error:
         return PointFound(point.label, point.value, GARBAGE, None, short(str(error)), round(cpu_s, 2))
 
@@ -87,11 +79,9 @@ def edge_of(family: Family, points: tuple[PointFound, ...], runs: Path = RUNS, t
     edge = family.edge
     if edge is None:
         return None
-    predicted = edge.predicted() if edge.predicted is not None else None
+    predicted, at = edge.predicted() if edge.predicted is not None else None, edge.at
     if edge.read is not None:
-        made = {point.label: load(folder_of(family, point, runs)) for point in points if point.checked is not None}
-        return EdgeFound(predicted, edge.read(made))
-    at = edge.at
+        return EdgeFound(predicted, edge.read({point.label: load(folder_of(family, point, runs)) for point in points if point.checked is not None}))
     assert at is not None
 
     def sound(value: float) -> bool:
@@ -103,26 +93,15 @@ def edge_of(family: Family, points: tuple[PointFound, ...], runs: Path = RUNS, t
     return EdgeFound(predicted, 0.5 * (good + bad), good, bad)
 
 
-def version_of(family: Family, runs: Path) -> str:
-    """The version that the family's runs name; empty where none completed."""
-    for point in family.points:
-        try:
-            content = json.loads((folder_of(family, point, runs) / "summary.json").read_text(encoding="utf-8"))
-            return str(content["version"])
-        except (OSError, ValueError, KeyError):
-            continue
-    return ""
-
-
 def walk(family: Family, smoke: bool = False, runs: Path = RUNS, tell: Tell = lambda _: None) -> Record:
     """All points of a family (of a smoke run its smoke points alone, and no edge), and its edge."""
     points = []
-    for point in family.points:
-        if smoke and not point.smoke:
-            continue
+    for point in (point for point in family.points if point.smoke or not smoke):
         one = found(family, point, runs)
         error = f", error {one.checked.error:.3g}" if one.checked is not None else ""
         tell(f"{family.name}: {point.label}: {one.outcome}{error} {one.reason[:140]}")
         points.append(one)
     edge = None if smoke else edge_of(family, tuple(points), runs, tell)
-    return Record(family.name, version_of(family, runs), edge, tuple(points))
+    written = [path for point in family.points if (path := folder_of(family, point, runs) / "summary.json").is_file()]
+    version = str(json.loads(written[0].read_text(encoding="utf-8"))["version"]) if written else ""
+    return Record(family.name, version, edge, tuple(points))

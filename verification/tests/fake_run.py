@@ -20,19 +20,10 @@ OF_THE_RUN = {
 
 SCENE = """
 title = "made up"
-[domain]
-width_m = 80
-height_m = 80
-[strata]
-along = "{along}"
-layers = {layers}
-interfaces = {interfaces}
-[fracture]
-path_m = [[40.0, 0.0], [40.0, 5.0]]
-increment_m = 1.0
-[numerics]
-mechanics = "{mechanics}"
-cell_m = 1.0
+domain = {{width_m = 80, height_m = 80}}
+strata = {{along = "{along}", layers = {layers}, interfaces = {interfaces}}}
+fracture = {{path_m = [[40.0, 0.0], [40.0, 5.0]], increment_m = 1.0}}
+numerics = {{mechanics = "{mechanics}", cell_m = 1.0}}
 """
 
 START_PA, RATE_PA_S = 2.0e6, 0.35e6
@@ -91,10 +82,8 @@ def write_result(folder: Path, failed_m: Sequence[tuple[float, float]]) -> None:
         store["times"] = np.array([time_of(inlet_Pa) for inlet_Pa, _ in failed_m])
         store.create_group("interfaces")
         for k, (_, length) in enumerate(failed_m):
-            group = store.create_group(f"interfaces/{k:05d}")
-            place = group.create_group("0")
-            place["x_m"], place["y_m"] = x, np.full_like(x, 10.0)
-            place["split"] = (np.arange(len(x)) < length / 0.5).astype(int)
+            place = store.create_group(f"interfaces/{k:05d}/0")
+            place["x_m"], place["y_m"], place["split"] = x, np.full_like(x, 10.0), (np.arange(len(x)) < length / 0.5).astype(int)
 
 
 def write_run(
@@ -115,6 +104,22 @@ def write_run(
     write_files(folder, scene, history_of(steps, end_Pa, friction_J), summary)
     write_result(folder, failed_m)
     return folder
+
+
+def changed(folder: Path, **content: Any) -> Path:
+    """Put other content into a run's summary; None takes a key out."""
+    path = folder / "summary.json"
+    summary = json.loads(path.read_text(encoding="utf-8")) | content
+    path.write_text(json.dumps({key: value for key, value in summary.items() if value is not None}), encoding="utf-8")
+    return folder
+
+
+def program(path: Path, text: str) -> Path:
+    """Write a program that stands for the solver."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+    path.chmod(0o755)
+    return path
 
 
 def climb(start_Pa: float = 2.36e6, to_m: float = 70.0, slope_Pa_m: float = 5.0e3, plateaus: dict[float, float] | None = None) -> list[Step]:

@@ -7,7 +7,6 @@ import pytest
 from verification.harness.reference import value
 from verification.ladder import gates
 from verification.ladder.cases import crossing, freund, interfaces, paths
-from verification.ladder.gates import Gates
 
 BONDED, SPRINGS = {"4 cells": 0.01, "8 cells": 0.005, "16 cells": 0.005}, {"4 cells": 0.01, "8 cells": 0.01}
 MARKS = (
@@ -41,18 +40,14 @@ def test_gates_keep_the_marks(family: str, cases: str, quantity: str, bounds: di
         assert [(name, level) for name in own for level in marked if known[case.name, name, level].error > bounds[level]] == []
 
 
-def of_kink(family: Gates, held_by: str, distance_m: float) -> list[float]:
-    """Errors of the kink angle that pass, 4 cells from the interface and more."""
-    return [gate.error for key, gate in family.items() if key[:2] == (f"bonded_parallel_{held_by}_{distance_m:g}", "kink angle") and key[2] != "2 cells"]
-
-
 @pytest.mark.parametrize("distance_m", [1.25, 2.5, 5.0])
 @pytest.mark.parametrize(("held_by", "modulus_Pa", "beyond_Pa"), [("stiff", 10e9, 5e9), ("soft", 5e9, 10e9)])
 def test_kink_beside_a_bonded_interface(held_by: str, modulus_Pa: float, beyond_Pa: float, distance_m: float) -> None:
     """The kink angle within 0.2 degrees at 4 cells from it and more, at both tips."""
     rocks = {"youngs_modulus_Pa": modulus_Pa, "beyond_youngs_modulus_Pa": beyond_Pa}
     kink_deg = value("bonded_parallel", "kink_deg", half_length_m=5.0, distance_m=distance_m, **rocks)
-    found = of_kink(gates.read("interfaces"), held_by, distance_m)
+    case = (f"bonded_parallel_{held_by}_{distance_m:g}", "kink angle")
+    found = [gate.error for key, gate in gates.read("interfaces").items() if key[:2] == case and key[2] != "2 cells"]
     assert found and max(found) * abs(kink_deg) <= 0.2
 
 

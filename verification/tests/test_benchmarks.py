@@ -45,9 +45,6 @@ def an_entry(name: str, real_time: float, **more: Any) -> dict[str, Any]:
     }  # fmt: skip
 
 
-# --- figures
-
-
 def test_a_cost_is_taken_relative_to_the_rate_beside_each_repetition() -> None:
     """A machine that is half as fast in some repetitions changes the cost and not the calibrated cost."""
     even = a_figure(peak_flop_s=(50e9,) * 5)
@@ -77,9 +74,6 @@ def test_exponents() -> None:
     assert math.isnan(exponent([1e4], [1.0])) and math.isnan(exponent([1e4, 1e5], [0.0, 1.0]))
 
 
-# --- what strata_bench says
-
-
 def test_repetitions_of_google_benchmark_become_one_figure() -> None:
     """Seconds a unit in the unit of time that is said; means and medians of its own are left out; large blocks wait for memory."""
     name = "step/updated/x/iterations:5"
@@ -102,9 +96,6 @@ def test_a_benchmark_that_failed_is_a_failure() -> None:
     entries = [an_entry("step/a", 1.0), an_entry("step/a", 0.0, error_occurred=True, error_message="no such key")]
     figure = kernels.parse({"benchmarks": entries})[0]
     assert figure.values == () and figure.wrong() == "no such key"
-
-
-# --- now and then
 
 
 @pytest.mark.parametrize(
@@ -164,9 +155,6 @@ def test_another_machine_is_not_compared(tmp_path: Path) -> None:
             last_record(HERE, tmp_path)
 
 
-# --- records
-
-
 def test_a_record_comes_back_as_it_was(tmp_path: Path) -> None:
     """Written, read, and written after it another; the last counts. Failures keep their reason."""
     first = a_record(a_figure(), Figure("experiments/a", "run", (), problem="timed out"))
@@ -203,9 +191,6 @@ def test_the_machine_is_described() -> None:
     here = machine.described()
     assert machine.made_here(here, here) and not machine.made_here({**here, "caches": "L1 1K"}, here) and not machine.made_here({}, here)
     assert machine._idle_and_total("cpu  10 1 5 100 20 0 3 1 0 0\ncpu0 1 2") == (120, 140)
-
-
-# --- marks and words
 
 
 def a_full_record(seconds: float) -> Record:
@@ -247,9 +232,6 @@ def test_the_table_says_all() -> None:
     assert cost(replace(slow, per="solve")) == "50 ns" and cost(replace(slow, values=())) == "-"
 
 
-# --- whole runs
-
-
 def test_memory_a_point_is_that_beyond_what_every_process_holds() -> None:
     """30 MB of the process itself do not count; two runs are needed."""
     assert runs.memory_figure("memory/a", [(1e5, 30e6 + 1e5 * 250), (4e5, 30e6 + 4e5 * 250)]).median == pytest.approx(250.0)
@@ -286,9 +268,6 @@ def test_failed_batches_are_figures_without_values(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(runs, "jobs_of", lambda batch: [job_of(runs.CRACK, "numerics.cell_m=4"), bad])
     whole, first, second = runs.batch_figures(runs.Batch("quasistatic", 4.0, 3, 60.0), lambda: (5e10, 4e10), lambda words: None)
     assert whole.values == () and whole.problem.startswith("1 of 2 runs") and second.problem and not first.problem
-
-
-# --- the whole of it, at its quickest
 
 
 def test_the_quickest_benchmark_runs_and_is_judged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

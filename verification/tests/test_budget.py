@@ -1,8 +1,4 @@
-"""The error budget: factors vary one thing alone, effects and totals are what the runs say, failures are shown; and a small real one.
-
-Mutations that were run and fail here: the fracture left where it was in a wider block, effects of the wrong sign, the root of
-squares taken of signed sums, refused runs counted as no effect, factors shown beside the others summed as well.
-"""
+"""The error budget: factors vary one thing alone, effects and totals are what the runs say, failures are shown; and a small real one."""
 
 import json
 import math
@@ -24,15 +20,11 @@ EXP1, EXP5 = (EXPERIMENTS / f"{name}.toml" for name in ("exp1_single_interface",
 
 # The only keys that a factor may touch.
 KEYS = {
-    "mesh": {"numerics.cell_m"},
-    "mesh_increment": {"numerics.cell_m", "fracture.increment_m"},
-    "step": {"numerics.flow_change", "numerics.flow_error", "numerics.courant"},
-    "ring": {"numerics.ring_cells"},
-    "particles": {"numerics.particles_per_cell"},
-    "increment": {"fracture.increment_m"},
+    "mesh": {"numerics.cell_m"}, "mesh_increment": {"numerics.cell_m", "fracture.increment_m"}, "increment": {"fracture.increment_m"},
+    "step": {"numerics.flow_change", "numerics.flow_error", "numerics.courant"}, "ring": {"numerics.ring_cells"},
+    "particles": {"numerics.particles_per_cell"}, "rate": {"fluid.inlet.rate_Pa_s"},
     "block": {"domain.width_m", "domain.height_m", "fracture.path_m", "strata.layers", "numerics.far_cell_m", "numerics.fine_left_m", "numerics.fine_right_m"},
-    "rate": {"fluid.inlet.rate_Pa_s"},
-}
+}  # fmt: skip
 
 
 def factor(scene: Path, variant: str, id_: str, mechanics: str = "quasistatic") -> Factor:
@@ -73,9 +65,6 @@ def test_factors_that_do_not_apply_say_why() -> None:
     content = content_of(EXP1, "perfect", ("numerics.particles_per_cell=16", "fluid.inlet.rate_Pa_s=0", "stop.time_s=1", "numerics.far_cell_m=1"))
     why = {one.id: one.why_not for one in factors_of(content, "quasistatic") if not one.alternatives}
     assert set(why) == {"particles", "rate"} and all(why.values())
-
-
-def test_values_are_written_as_toml() -> None:
     assert toml([{"rock": "a", "thickness_m": 1.5}, {"rock": "b"}]) == '[{rock = "a", thickness_m = 1.5}, {rock = "b"}]'
     assert toml([[60.0, 0.0], [60.0, 5.0]]) == "[[60.0, 0.0], [60.0, 5.0]]"
 
@@ -86,9 +75,8 @@ def test_the_base_and_half_the_cells_are_the_runs_of_the_refinement_study(tmp_pa
     assert jobs["", ""].out == below / "1m" and jobs["mesh", "half"].out == below / "0.5m"
     rest = [job for key, job in jobs.items() if key[0] not in ("", "mesh")]
     assert len({job.out for job in rest}) == len(rest) and all((tmp_path / "b") in job.out.parents for job in rest)
-    for job in jobs.values():
-        keys = [setting.partition("=")[0] for setting in job.settings]
-        assert len(set(keys)) == len(keys)
+    keys = [[setting.partition("=")[0] for setting in job.settings] for job in jobs.values()]
+    assert all(len(set(own)) == len(own) for own in keys)
     assert "numerics.cell_m=1.0" in jobs["increment", "half"].settings and "fracture.increment_m=0.5" in jobs["increment", "half"].settings
 
 
@@ -110,64 +98,53 @@ def test_totals_by_hand() -> None:
     assert lines[3].size("start_Pa") is None
 
 
-def run_of(folder: Path, start_Pa: float, plateau_Pa: float, **over: float) -> Run:
-    """A made-up run with a plateau at the interface."""
-    return load(write_run(folder, climb(start_Pa=start_Pa, plateaus={10.0: plateau_Pa}, **over), end_Pa=3.2e6, mechanics="quasistatic"))
-
-
-def outcome(status: int = 0, reason: str = "") -> Outcome:
-    """A made-up outcome."""
-    return Outcome("exp1", "soft", "completed" if status == 0 else "failed", status, reason, 1.0, "k")
+def made_up(folder: Path, status: int, start_Pa: float, plateau_Pa: float, reason: str = "", **over: float) -> tuple[Outcome, Run | None]:
+    """A made-up run with a plateau at the interface, or one that was refused, and how it ended."""
+    outcome = Outcome("exp1", "soft", "completed" if status == 0 else "failed", status, reason, 1.0, "k")
+    steps = climb(start_Pa=start_Pa, plateaus={10.0: plateau_Pa}, **over)
+    return outcome, None if status == 2 else load(write_run(folder, steps, end_Pa=3.2e6, mechanics="quasistatic"))
 
 
 def test_effects_are_differences_from_the_base_and_failures_are_failures(tmp_path: Path) -> None:
     factors = [Factor("mesh", "mesh", "numerical", (Alternative("half", "half", ()),)),
                Factor("rate", "rate", "model", (Alternative("half", "half", ()), Alternative("double", "double", ())))]  # fmt: skip
-    keys = [("", ""), ("mesh", "half"), ("rate", "half"), ("rate", "double")]
     jobs = jobs_of(EXP1, "quasistatic", "soft", factors, (), tmp_path, tmp_path)
     made = {
-        keys[0]: (outcome(), run_of(tmp_path / "base", 2.40e6, 0.20e6)),
-        keys[1]: (outcome(), run_of(tmp_path / "mesh", 2.37e6, 0.30e6)),
-        keys[2]: (outcome(2, "unknown key"), None),
-        keys[3]: (outcome(3, "a mechanism"), run_of(tmp_path / "rate", 2.44e6, 0.04e6, to_m=20.0)),
-    }
+        ("", ""): made_up(tmp_path / "base", 0, 2.40e6, 0.20e6), ("mesh", "half"): made_up(tmp_path / "mesh", 0, 2.37e6, 0.30e6),
+        ("rate", "half"): made_up(tmp_path, 2, 0.0, 0.0, "unknown key"),
+        ("rate", "double"): made_up(tmp_path / "rate", 3, 2.44e6, 0.04e6, "a mechanism", to_m=20.0),
+    }  # fmt: skip
     found = budget_of(EXP1, "quasistatic", "soft", factors, jobs, made)
-    names = [name for name, _, _ in found.quantities]
-    assert names == ["start_Pa", "arrest_1_m", "restart_1_Pa", "pressure_at_40_Pa"]
+    assert [name for name, _, _ in found.quantities] == ["start_Pa", "arrest_1_m", "restart_1_Pa", "pressure_at_40_Pa"]
     mesh, rate = found.lines
     assert mesh.tried[0].effects["start_Pa"].value == pytest.approx(-0.03e6)
     assert mesh.tried[0].effects["restart_1_Pa"].value == pytest.approx(0.07e6)
     assert (rate.tried[0].status, rate.tried[0].effects) == ("refused", {})
     effects = rate.tried[1].effects
     assert effects["pressure_at_40_Pa"].value is None and "does not reach 40 m" in effects["pressure_at_40_Pa"].note
-    assert effects["arrest_1_m"].note == "no arrest"
-    assert found.totals["start_Pa"]["all"].rss == pytest.approx(0.05e6)
+    assert effects["arrest_1_m"].note == "no arrest" and found.totals["start_Pa"]["all"].rss == pytest.approx(0.05e6)
     said = table(found)
     silent = replace(found, lines=(replace(rate, tried=(replace(rate.tried[1], status="completed"),)),))
     assert "does not reach 40 m, at least 3.2e+06 Pa" in table(silent)
     assert "refused: unknown key" in said and "failed: a mechanism" in said and "-30.00 -1.25%" in said
-    broken = budget_of(EXP1, "quasistatic", "soft", factors, jobs, {**made, ("", ""): (outcome(3, "no"), made[keys[1]][1])})
+    broken = budget_of(EXP1, "quasistatic", "soft", factors, jobs, {**made, ("", ""): made_up(tmp_path / "mesh", 3, 2.37e6, 0.30e6, "no")})
     assert broken.status == "failed" and "failed: no" in table(broken)
 
 
 def test_every_experiment_has_its_budget_of_variants_that_exist() -> None:
     assert set(VARIANTS) == {scene.stem for scene in scenes_of(EXPERIMENTS)}
-    for scene in scenes_of(EXPERIMENTS):
-        assert set(VARIANTS[scene.stem]) <= set(variants_of(scene))
+    assert all(set(VARIANTS[scene.stem]) <= set(variants_of(scene)) for scene in scenes_of(EXPERIMENTS))
 
 
 def test_a_small_budget_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Experiment 1 with cells and increments of 2 m up to 13 m: factors in one table; a second call makes no run again."""
-    arguments = ["exp1", "--variants", "soft", "--out", str(tmp_path / "b"), "--refined", str(tmp_path / "r")]
-    for setting in ("numerics.cell_m=2.0", "fracture.increment_m=2.0", "stop.tip_y_m=13"):
-        arguments += ["--set", setting]
+    settings = [word for one in ("numerics.cell_m=2.0", "fracture.increment_m=2.0", "stop.tip_y_m=13") for word in ("--set", one)]
+    arguments = ["exp1", "--variants", "soft", "--out", str(tmp_path / "b"), "--refined", str(tmp_path / "r"), *settings]
     assert main(arguments) == 0
-    content = json.loads((tmp_path / "b" / f"{EXP1.stem}.json").read_text())
-    found = content["budgets"][0]
+    found = json.loads((tmp_path / "b" / f"{EXP1.stem}.json").read_text())["budgets"][0]
     assert found["status"] == "completed" and {"start_Pa", "restart_1_Pa", "pressure_at_10_Pa"} <= set(found["base"])
     effects = {(one["id"], k): ran["effects"] for one in found["lines"] for k, ran in enumerate(one["tried"])}
-    assert len(effects) == 12
-    assert all(math.isfinite(one["start_Pa"]["value"]) for one in effects.values())
+    assert len(effects) == 12 and all(math.isfinite(one["start_Pa"]["value"]) for one in effects.values())
     # The first growth knows nothing of the increment, and a slower ramp starts it at a lower pressure, a faster one at a higher.
     assert effects["increment", 0]["start_Pa"]["value"] == effects["increment", 1]["start_Pa"]["value"] == 0.0
     assert effects["rate", 0]["start_Pa"]["value"] < 0.0 < effects["rate", 1]["start_Pa"]["value"]

@@ -12,7 +12,7 @@ from verification.harness.choices import Choice
 from verification.harness.claim_data import NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, read_claims, write_claims
 from verification.harness.claims import BadClaim, Runs, case_of, claims_of, evaluate, evaluate_all, evaluate_each, record_finer
 from verification.harness.paths import EXPERIMENTS
-from verification.tests.fake_run import climb, write_run
+from verification.tests.fake_run import changed, climb, write_run
 
 MPA = 1.0e6
 SCENES = sorted(EXPERIMENTS.glob("*.toml"))
@@ -26,8 +26,13 @@ CLAIM: dict[str, Any] = {
 
 def write(tmp_path: Path, variant: str, plateau_MPa: float, **options: Any) -> None:
     """A run of the experiment 'exp' with a plateau at the interface."""
-    steps = climb(plateaus={10.0: plateau_MPa * MPA} if plateau_MPa else {})
-    write_run(tmp_path / "exp" / variant, steps, **options)
+    write_run(tmp_path / "exp" / variant, climb(plateaus={10.0: plateau_MPa * MPA} if plateau_MPa else {}), **options)
+
+
+def written(tmp_path: Path, **plateaus_MPa: float) -> None:
+    """Runs of some variants."""
+    for variant, plateau in plateaus_MPa.items():
+        write(tmp_path, variant, plateau)
 
 
 @pytest.mark.parametrize("plateau, verdict", [(0.2, REPRODUCED), (0.0, NOT_REPRODUCED), (0.4, NOT_REPRODUCED), (-0.2, NOT_REPRODUCED)])
@@ -38,12 +43,8 @@ def test_right_zero_twice_and_flipped(tmp_path: Path, plateau: float, verdict: s
     assert result.flags == (("J at interface",) if plateau > 0 else ())
 
 
-@pytest.mark.parametrize(
-    "own, other, verdict, flag", [(0.0, 0.2, ONLY_UNDER_A_VARIANT, ()), (0.2, 0.0, REPRODUCED, ("does not hold under: another",))]
-)
-def test_a_reading_rescues_what_does_not_hold_and_flags_what_does(
-    tmp_path: Path, own: float, other: float, verdict: str, flag: tuple[str, ...]
-) -> None:
+@pytest.mark.parametrize("own, other, verdict, flag", [(0.0, 0.2, ONLY_UNDER_A_VARIANT, ()), (0.2, 0.0, REPRODUCED, ("does not hold under: another",))])
+def test_a_reading_rescues_what_does_not_hold_and_flags_what_does(tmp_path: Path, own: float, other: float, verdict: str, flag: tuple[str, ...]) -> None:
     write(tmp_path, "weak", own)
     write(tmp_path, "other", other)
     reading = {"name": "another", "case": [{"variant": "other", "interface": 1, "at_least": 0.05 * MPA}]}
@@ -54,9 +55,7 @@ def test_a_reading_rescues_what_does_not_hold_and_flags_what_does(
 
 def test_a_claim_that_rests_on_a_suspect_run_says_so(tmp_path: Path) -> None:
     write(tmp_path, "weak", 0.2)
-    path = tmp_path / "exp" / "weak" / "summary.json"
-    mark = {"monitor": "momentum", "value": 1.0, "threshold": 1e-8, "why": "it drifted"}
-    path.write_text(json.dumps(json.loads(path.read_text()) | {"suspect": [mark]}))
+    changed(tmp_path / "exp" / "weak", suspect=[{"monitor": "momentum", "value": 1.0, "threshold": 1e-8, "why": "it drifted"}])
     result = evaluate(CLAIM, "exp", Runs(tmp_path))
     assert result.verdict == REPRODUCED and result.flags == ("J at interface", "suspect run exp/weak: it drifted")
 
@@ -75,18 +74,13 @@ def test_a_bound_that_leaves_it_open_is_flagged(tmp_path: Path) -> None:
     assert "undecided: a run ended before it could show this" in result.flags and "bound only" in result.flags
 
 
-@pytest.mark.parametrize(
-    "case",
-    [
-        {"observable": "plateau", "variant": "weak", "at_least": 1},
-        {"observable": "plateau_Pa", "variant": "weak"},
-        {"observable": "plateau_ratio", "variant": "weak", "at_least": 1},
-        {"observable": "plateau_Pa", "variant": "weak", "against": "perfect", "at_least": 1},
-    ],
-)
+@pytest.mark.parametrize("case", [
+    {"observable": "plateau", "at_least": 1}, {"observable": "plateau_Pa"}, {"observable": "plateau_ratio", "at_least": 1},
+    {"observable": "plateau_Pa", "against": "perfect", "at_least": 1},
+])  # fmt: skip
 def test_cases_that_could_not_fail_are_refused(case: dict[str, Any]) -> None:
     with pytest.raises(BadClaim):
-        case_of(case, "plateau_Pa", "here")
+        case_of({"variant": "weak", **case}, "plateau_Pa", "here")
 
 
 def test_every_claim_of_the_study_is_there_once() -> None:
@@ -128,51 +122,27 @@ def write_study(tmp_path: Path) -> None:
     write_run(three / "soft_weak", climb(to_m=24.0, plateaus={10.0: 0.3 * MPA}), end_Pa=4 * MPA, layers=TWO, friction_J=90.0)
 
 
-def verdicts(tmp_path: Path) -> dict[str, str]:
-    """The verdicts on all claims, by id."""
-    return {result.id: result.verdict for result in evaluate_all(EXPERIMENTS, tmp_path)}
+WEAK_SOFT, SOFT_WEAK = "exp3_two_interfaces/weak_soft", "exp3_two_interfaces/soft_weak"
 
 
-def test_claims_of_experiments_1_and_3_can_be_reproduced(tmp_path: Path) -> None:
-    write_study(tmp_path)
-    found = verdicts(tmp_path)
-    assert {id: found[id] for id in ("1a", "1b", "1c", "1d", "3a", "3b", "3c")} == dict.fromkeys(
-        ("1a", "1b", "1c", "1d", "3a", "3b", "3c"), REPRODUCED
-    )
-
-
-@pytest.mark.parametrize(
-    "place, steps, claims",
-    [
-        ("exp1_single_interface/friction", climb(2.5 * MPA), ["1a"]),
-        ("exp1_single_interface/weak", climb(), ["1b", "1c", "1d"]),
-        ("exp1_single_interface/soft", climb(), ["1b", "1d"]),
-        ("exp1_single_interface/soft", climb(plateaus={10.0: 0.4 * MPA}), ["1d"]),
-    ],
-)
-def test_claims_of_experiment_1_fail_where_the_runs_do_otherwise(
-    tmp_path: Path, place: str, steps: list[tuple[float, float, float]], claims: list[str]
-) -> None:
-    write_study(tmp_path)
-    write_run(tmp_path / place, steps)
-    found = verdicts(tmp_path)
-    assert {id for id in claims if found[id] != NOT_REPRODUCED} == set()
-
-
-def test_claims_of_experiment_3_fail_where_the_order_is_swapped(tmp_path: Path) -> None:
-    write_study(tmp_path)
-    three = tmp_path / "exp3_two_interfaces"
-    for name, other in (("weak_soft", "a"), ("soft_weak", "weak_soft"), ("a", "soft_weak")):
-        (three / name).rename(three / other)
-    assert verdicts(tmp_path)["3b"] == NOT_REPRODUCED
-
-
-def test_claims_of_experiment_3_fail_where_nothing_is_held_up(tmp_path: Path) -> None:
-    write_study(tmp_path)
-    for name in ("weak_soft", "soft_weak"):
-        write_run(tmp_path / "exp3_two_interfaces" / name, climb(), layers=TWO)
-    found = verdicts(tmp_path)
-    assert {found[id] for id in ("3a", "3b", "3c")} == {NOT_REPRODUCED}
+@pytest.mark.parametrize(("runs", "claims", "verdict"), [
+    ({}, ["1a", "1b", "1c", "1d", "3a", "3b", "3c"], REPRODUCED),
+    ({"exp1_single_interface/friction": climb(2.5 * MPA)}, ["1a"], NOT_REPRODUCED),
+    ({"exp1_single_interface/weak": climb()}, ["1b", "1c", "1d"], NOT_REPRODUCED), ({"exp1_single_interface/soft": climb()}, ["1b", "1d"], NOT_REPRODUCED),
+    ({"exp1_single_interface/soft": climb(plateaus={10.0: 0.4 * MPA})}, ["1d"], NOT_REPRODUCED),
+    ({WEAK_SOFT: climb(), SOFT_WEAK: climb()}, ["3a", "3b", "3c"], NOT_REPRODUCED),  # nothing is held up
+    ({WEAK_SOFT: SOFT_WEAK, SOFT_WEAK: WEAK_SOFT}, ["3b"], NOT_REPRODUCED),  # the order is swapped
+])  # fmt: skip
+def test_claims_are_reproduced_where_runs_do_as_the_study_says(tmp_path: Path, runs: dict[str, Any], claims: list[str], verdict: str) -> None:
+    write_study(tmp_path / "study")
+    shutil.copytree(tmp_path / "study", tmp_path / "runs")
+    for place, instead in runs.items():
+        if isinstance(instead, str):
+            shutil.copytree(tmp_path / "study" / instead, tmp_path / "runs" / place, dirs_exist_ok=True)
+        else:
+            write_run(tmp_path / "runs" / place, instead, **({"layers": TWO} if "exp3" in place else {}))
+    found = {result.id: result.verdict for result in evaluate_all(EXPERIMENTS, tmp_path / "runs")}
+    assert {id: found[id] for id in claims} == dict.fromkeys(claims, verdict)
 
 
 def test_claims_come_back_from_json_as_they_were(tmp_path: Path) -> None:
@@ -185,8 +155,6 @@ def test_claims_come_back_from_json_as_they_were(tmp_path: Path) -> None:
         read_claims(tmp_path / "claims.json")
 
 
-# --- readings that follow from a choice
-
 OTHER = Choice("c", "unit: another", "another", {"exp": {"weak": "other", "soft": "soft"}})
 TWICE: dict[str, Any] = {**CLAIM, "case": [*CLAIM["case"], {"variant": "soft", "interface": 1, "at_least": 0.05 * MPA}]}
 
@@ -196,15 +164,12 @@ def scenes(tmp_path: Path) -> Path:
     """A folder with a scene 'exp' of four variants, one of which only quasi-static runs can do."""
     folder = tmp_path / "scenes"
     folder.mkdir()
-    (folder / "exp.toml").write_text(
-        "[variants.weak]\n[variants.soft]\n[variants.other]\n[variants.flow]\nfluid.law = \"reynolds\"\n", encoding="utf-8"
-    )
+    (folder / "exp.toml").write_text('[variants.weak]\n[variants.soft]\n[variants.other]\n[variants.flow]\nfluid.law = "reynolds"\n')
     return folder
 
 
 def test_a_choice_puts_its_variants_in_place_of_those_named(tmp_path: Path, scenes: Path) -> None:
-    for variant, plateau in (("weak", 0.2), ("soft", 0.2), ("other", 0.0)):
-        write(tmp_path, variant, plateau)
+    written(tmp_path, weak=0.2, soft=0.2, other=0.0)
     result = evaluate(TWICE, "exp", Runs(tmp_path), [OTHER], scenes)
     (reading,) = result.readings
     assert [case.case.variant for case in reading.cases] == ["other", "soft"]
@@ -215,37 +180,26 @@ def test_a_choice_puts_its_variants_in_place_of_those_named(tmp_path: Path, scen
 
 
 def test_a_choice_without_runs_for_all_cases_cannot_rescue_a_claim(tmp_path: Path, scenes: Path) -> None:
-    for variant, plateau in (("weak", 0.0), ("soft", 0.2), ("other", 0.2)):
-        write(tmp_path, variant, plateau)
+    written(tmp_path, weak=0.0, soft=0.2, other=0.2)
     assert evaluate(TWICE, "exp", Runs(tmp_path), [OTHER], scenes).verdict == ONLY_UNDER_A_VARIANT
     part = Choice("c", "unit: another", "another", {"exp": {"weak": "other"}})
     result = evaluate(TWICE, "exp", Runs(tmp_path), [part], scenes)
-    assert result.verdict == NOT_REPRODUCED
-    assert (result.readings[0].holds, result.readings[0].complete) == (True, False)
+    assert (result.verdict, result.readings[0].holds, result.readings[0].complete) == (NOT_REPRODUCED, True, False)
 
 
-def test_a_choice_that_changes_no_case_is_no_reading(tmp_path: Path, scenes: Path) -> None:
-    same = Choice("c", "unit: another", "another", {"exp": {"weak": "weak"}})
-    assert evaluate(CLAIM, "exp", Runs(tmp_path), [same], scenes).readings == ()
-
-
-def test_a_choice_that_a_mechanics_cannot_run_is_no_reading_there(tmp_path: Path, scenes: Path) -> None:
-    flow = Choice("c", "flow: another", "another", {"exp": {"weak": "flow"}})
-    assert evaluate(CLAIM, "exp", Runs(tmp_path, "explicit"), [flow], scenes).readings == ()
-    assert len(evaluate(CLAIM, "exp", Runs(tmp_path, "quasistatic"), [flow], scenes).readings) == 1
+@pytest.mark.parametrize(("other", "mechanics", "readings"), [("weak", "explicit", 0), ("flow", "explicit", 0), ("flow", "quasistatic", 1)])
+def test_a_choice_that_changes_nothing_or_cannot_be_run_is_no_reading(tmp_path: Path, scenes: Path, other: str, mechanics: str, readings: int) -> None:
+    choice = Choice("c", "unit: another", "another", {"exp": {"weak": other}})
+    assert len(evaluate(CLAIM, "exp", Runs(tmp_path, mechanics), [choice], scenes).readings) == readings
 
 
 def test_a_reading_written_for_a_choice_stands_for_it(tmp_path: Path, scenes: Path) -> None:
-    write(tmp_path, "weak", 0.0)
-    write(tmp_path, "other", 0.2)
+    written(tmp_path, weak=0.0, other=0.2)
     own = {"choice": "c", "case": [{"variant": "other", "interface": 1, "at_least": 0.3 * MPA}]}
     (reading,) = evaluate({**CLAIM, "reading": [own]}, "exp", Runs(tmp_path), [OTHER], scenes).readings
     assert reading.holds is False and reading.name == "unit: another"
     with pytest.raises(BadClaim, match="no choice d"):
         evaluate({**CLAIM, "reading": [{**own, "choice": "d"}]}, "exp", Runs(tmp_path), [OTHER], scenes)
-
-
-# --- two mechanics, two sizes
 
 
 def test_cells_of_half_the_size_have_verdicts_of_their_own_run_or_recorded(tmp_path: Path) -> None:

@@ -11,34 +11,14 @@ from verification.tests.cases import summary_in
 
 # A closed fracture of 5 m under 10 MPa whose inlet rises by 1 MPa/s from 5 MPa.
 RAMP = """\
-[domain]
-width_m = 40
-height_m = 40
-[in_situ]
-vertical_Pa = 12e6
-horizontal_Pa = 10e6
-[rock.r]
-youngs_modulus_Pa = 10e9
-poisson_ratio = 0.2
-toughness_Pa_sqrt_m = 1e6
-[strata]
-layers = [{rock = "r"}]
-[fracture]
-path_m = [[20, 0], [20, 5]]
-increment_m = 0.5
-[fluid]
-law = "reynolds"
-viscosity_Pa_s = 1e-3
-bulk_modulus_Pa = 2.2e9
-minimum_opening_m = 1e-5
-inlet = {start_Pa = 5e6, rate_Pa_s = 1e6}
-[numerics]
-mechanics = "quasistatic"
-cell_m = 0.5
-far_cell_m = 4
-[stop]
-tip_y_m = 5.5
-time_s = 20
+domain = {width_m = 40, height_m = 40}
+in_situ = {vertical_Pa = 12e6, horizontal_Pa = 10e6}
+rock.r = {youngs_modulus_Pa = 10e9, poisson_ratio = 0.2, toughness_Pa_sqrt_m = 1e6}
+strata.layers = [{rock = "r"}]
+fracture = {path_m = [[20, 0], [20, 5]], increment_m = 0.5}
+fluid = {law = "reynolds", viscosity_Pa_s = 1e-3, bulk_modulus_Pa = 2.2e9, minimum_opening_m = 1e-5, inlet = {start_Pa = 5e6, rate_Pa_s = 1e6}}
+numerics = {mechanics = "quasistatic", cell_m = 0.5, far_cell_m = 4}
+stop = {tip_y_m = 5.5, time_s = 20}
 """
 
 

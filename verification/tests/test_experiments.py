@@ -53,9 +53,7 @@ def test_the_regression_fails_a_missing_and_an_unexpected_value() -> None:
 
 
 def test_arrests_are_compared_by_height_and_only_short_ones_may_be_missing(tmp_path: Path) -> None:
-    long = smoke.measured_values(load(write_run(tmp_path / "exp" / "long", climb(plateaus={10.0: 0.2e6}))))
-    short = smoke.measured_values(load(write_run(tmp_path / "exp" / "short", climb(plateaus={10.0: 0.047e6}))))
-    none = smoke.measured_values(load(write_run(tmp_path / "exp" / "none", climb(plateaus={10.0: 0.043e6}))))
+    long, short, none = (smoke.measured_values(load(write_run(tmp_path / f"{rise}", climb(plateaus={10.0: rise})))) for rise in (0.2e6, 0.047e6, 0.043e6))
     assert "restart_from_10m_Pa" in long and "restart_from_10m_Pa" in short and "restart_from_10m_Pa" not in none
     assert smoke.differences(short, none) == smoke.differences(none, short) == []
     for found, expected in ((long, none), (none, long), (long, short)):

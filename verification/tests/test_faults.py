@@ -14,21 +14,19 @@ from pathlib import Path
 
 import pytest
 
-from verification.faults.__main__ import RECORD
-from verification.faults.kill import KILLED, Killed, command, run_until
-from verification.faults.kill import campaign as kill_campaign
+from verification.faults.__main__ import KILLED, RECORD, campaign, run_words
 from verification.faults.same import differences, torn
 from verification.harness.paths import solver
+from verification.harness.run import Job, ended
 from verification.tests.cases import strata, summary_of
 
-BY_NAME = {killed.name: killed for killed in KILLED}
-LONG = BY_NAME["explicit updated"]
+LONG = KILLED["explicit updated"]
 
 
-def started(killed: Killed, folder: Path, until: str = "result.h5.fields/00000.h5", every_s: float = 0.0) -> subprocess.Popen[str]:
-    """A run that has begun to write: `until` is in its folder. It writes a checkpoint every so often."""
-    process = subprocess.Popen(command(killed, folder, every_s), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    while not (folder / until).exists() and process.poll() is None:
+def started(arguments: list[str], file: Path) -> subprocess.Popen[str]:
+    """A run that has begun to write: a file of its folder is there."""
+    process = subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    while not file.exists() and process.poll() is None:
         time.sleep(0.002)
     return process
 
@@ -37,7 +35,7 @@ def started(killed: Killed, folder: Path, until: str = "result.h5.fields/00000.h
 def alone(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run of LONG that nothing happens to."""
     folder = tmp_path_factory.mktemp("alone") / "run"
-    assert run_until(command(LONG, folder, 60.0), None) == (0, "")
+    assert ended(run_words(LONG, folder, 60.0), None) == (0, "")
     return folder
 
 
@@ -50,9 +48,7 @@ def test_a_second_run_is_refused_unless_it_is_to_replace_the_first(tmp_path: Pat
     assert (first.returncode, first.stderr) == (0, "")
     before = {file.name: file.read_bytes() for file in (tmp_path / "X").iterdir()}
     second = strata(tmp_path, "run", "block.toml", "--variant", "longer", "--out", "X")
-    assert second.returncode == 2
-    for word in ("X: holds a run already", "strata resume X", "--replace", "--out"):
-        assert word in second.stderr
+    assert second.returncode == 2 and all(word in second.stderr for word in ("X: holds a run already", "strata resume X", "--replace", "--out"))
     assert {file.name: file.read_bytes() for file in (tmp_path / "X").iterdir()} == before
     assert strata(tmp_path, "resume", "X").returncode == 0
     assert {file.name: file.read_bytes() for file in (tmp_path / "X").iterdir()} == before
@@ -61,23 +57,17 @@ def test_a_second_run_is_refused_unless_it_is_to_replace_the_first(tmp_path: Pat
 
 
 def test_a_folder_in_use_is_refused(tmp_path: Path, alone: Path) -> None:
-    process = started(LONG, tmp_path / "X")
+    process = started(run_words(LONG, tmp_path / "X", 0.0), tmp_path / "X" / "result.xdmf")
     process.send_signal(signal.SIGSTOP)  # it is in the middle of its run, and stays there
     try:
-        again = [str(tmp_path / "X") if word == str(tmp_path / "Y") else word for word in command(LONG, tmp_path / "Y", 60.0)[1:]]
+        again = [str(tmp_path / "X") if word == str(tmp_path / "Y") else word for word in run_words(LONG, tmp_path / "Y", 60.0)[1:]]
         for arguments in (["resume", "X"], [*again, "--replace"]):
             done = strata(tmp_path, *arguments)
-            assert done.returncode == 2
-            assert "X: in use by a run that is going on" in done.stderr
+            assert done.returncode == 2 and "X: in use by a run that is going on" in done.stderr
     finally:
         process.send_signal(signal.SIGCONT)
     assert process.wait() == 0, process.communicate()
     assert differences(alone, tmp_path / "X") == []
-
-
-def limited(folder: Path, bytes_: int) -> subprocess.CompletedProcess[str]:
-    """Run or resume LONG where no file may grow beyond so many bytes."""
-    return strata(folder.parent, *command(LONG, folder, 0.0)[1:], preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (bytes_, bytes_)))
 
 
 def test_a_file_that_may_not_grow_ends_the_run_and_loses_nothing(tmp_path: Path, alone: Path) -> None:
@@ -85,16 +75,13 @@ def test_a_file_that_may_not_grow_ends_the_run_and_loses_nothing(tmp_path: Path,
     folder = tmp_path / "X"
     refusals, limits = [], [400, *range(20_000, (alone / "result.h5").stat().st_size + 900_000, 400_000), 1 << 30]
     for limit in limits:
-        done = limited(folder, limit)
+        done = strata(tmp_path, *run_words(LONG, folder, 0.0)[1:], preexec_fn=lambda most=limit: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)))
         assert torn(folder) == []
         if done.returncode == 0:
             break
-        assert done.returncode == 2, done.stderr
-        assert "cannot be written: File too large" in done.stderr
-        assert "a bug" not in done.stderr
+        assert done.returncode == 2 and "cannot be written: File too large" in done.stderr and "a bug" not in done.stderr, done.stderr
         refusals.append(done.stderr)
-    assert len(refusals) > 3
-    assert any("strata resume" in text and "goes on from step" in text for text in refusals)
+    assert len(refusals) > 3 and any("strata resume" in text and "goes on from step" in text for text in refusals)
     assert differences(alone, folder) == []
 
 
@@ -111,16 +98,13 @@ def small_disc(tmp_path: Path) -> Iterator[Path]:
 
 def test_a_disc_that_is_full_ends_the_run_and_loses_nothing(small_disc: Path, alone: Path) -> None:
     folder = small_disc / "X"
-    done = strata(small_disc, *command(LONG, folder, 0.0)[1:])
-    assert done.returncode == 2, done.stderr
-    assert "cannot be written: No space left on device" in done.stderr
-    assert f"`strata resume {folder}` goes on" in done.stderr
-    assert torn(folder) == []
+    done = strata(small_disc, *run_words(LONG, folder, 0.0)[1:])
+    assert done.returncode == 2 and "cannot be written: No space left on device" in done.stderr, done.stderr
+    assert f"`strata resume {folder}` goes on" in done.stderr and torn(folder) == []
     written = len(list((folder / "result.h5.fields").glob("?????.h5")))
     subprocess.run(["mount", "-o", "remount,size=64m", str(small_disc)], check=True)
     done = strata(small_disc, "resume", str(folder), "--quiet")
-    assert (done.returncode, done.stderr) == (0, "")  # from the checkpoint, not from the start
-    assert written > 0
+    assert (done.returncode, done.stderr) == (0, "") and written > 0  # from the checkpoint, not from the start
     assert differences(alone, folder) == []
 
 
@@ -140,15 +124,13 @@ def make_read_only(disc: Path, process: subprocess.Popen[str]) -> None:
 def test_a_disc_that_becomes_read_only_ends_the_run_and_loses_nothing(small_disc: Path, alone: Path) -> None:
     subprocess.run(["mount", "-o", "remount,size=64m", str(small_disc)], check=True)
     folder = small_disc / "X"
-    process = started(LONG, folder, "checkpoint.bin")
+    process = started(run_words(LONG, folder, 0.0), folder / "checkpoint.bin")
     make_read_only(small_disc, process)
     said = process.communicate(timeout=60)[1]
-    assert process.returncode == 2
-    assert "Read-only file system" in said
-    assert torn(folder) == []
+    assert process.returncode == 2 and "Read-only file system" in said and torn(folder) == []
     refused = strata(small_disc, "resume", str(folder))
     assert refused.returncode == 2 and "Read-only file system" in refused.stderr
-    assert strata(small_disc, *command(LONG, small_disc / "new", 60.0)[1:]).returncode == 2
+    assert strata(small_disc, *run_words(LONG, small_disc / "new", 60.0)[1:]).returncode == 2
     subprocess.run(["mount", "-o", "remount,rw", str(small_disc)], check=True)
     assert strata(small_disc, "resume", str(folder)).returncode == 0
     assert differences(alone, folder) == []
@@ -158,21 +140,15 @@ def test_a_disc_that_becomes_read_only_ends_the_run_and_loses_nothing(small_disc
 def test_a_folder_that_may_not_be_written_is_refused_before_the_run() -> None:
     with tempfile.TemporaryDirectory() as name:
         Path(name).chmod(0o755)
-        scene = shutil.copy(LONG.scene, name)
-        program = shutil.copy(solver(), name)
-        done = subprocess.run(
-            [program, "run", scene, "--out", f"{name}/X"], user=65534, group=65534, extra_groups=[],
-            capture_output=True, text=True, check=False,
-        )
-        assert done.returncode == 2
-        assert "X: cannot be made: Permission denied" in done.stderr
-        assert not Path(name, "X").exists()
+        words = [shutil.copy(solver(), name), "run", shutil.copy(LONG.scene, name), "--out", f"{name}/X"]
+        done = subprocess.run(words, user=65534, group=65534, extra_groups=[], capture_output=True, text=True, check=False)
+        assert done.returncode == 2 and "X: cannot be made: Permission denied" in done.stderr and not Path(name, "X").exists()
 
 
 @pytest.mark.parametrize("way", ["moved", "removed"])
 def test_a_folder_that_vanishes_ends_the_run(tmp_path: Path, alone: Path, way: str) -> None:
     folder = tmp_path / "X"
-    process = started(LONG, folder, "checkpoint.bin")
+    process = started(run_words(LONG, folder, 0.0), folder / "checkpoint.bin")
     process.send_signal(signal.SIGSTOP)
     if way == "moved":
         folder.rename(tmp_path / "Y")
@@ -180,23 +156,21 @@ def test_a_folder_that_vanishes_ends_the_run(tmp_path: Path, alone: Path, way: s
         shutil.rmtree(folder)
     process.send_signal(signal.SIGCONT)
     said = process.communicate(timeout=60)[1]
-    assert process.returncode == 2, said
-    assert "No such file or directory" in said and "once its folder is there" in said
-    assert not folder.exists()
+    assert process.returncode == 2 and "No such file or directory" in said and "once its folder is there" in said and not folder.exists(), said
     if way == "moved":
         assert torn(tmp_path / "Y") == []
         assert strata(tmp_path, "resume", str(tmp_path / "Y")).returncode == 0
         assert differences(alone, tmp_path / "Y") == []
 
 
-@pytest.mark.parametrize("name, which", [*((name, signal.SIGINT) for name in BY_NAME), ("quasi-static turning", signal.SIGTERM)])
+@pytest.mark.parametrize("name, which", [*((name, signal.SIGINT) for name in KILLED), ("quasi-static turning", signal.SIGTERM)])
 def test_a_run_that_is_interrupted_ends_at_once_and_goes_on_to_the_same_digits(tmp_path: Path, name: str, which: signal.Signals) -> None:
-    killed, folder, whole = BY_NAME[name], tmp_path / "X", tmp_path / "whole"
+    folder, whole = tmp_path / "X", tmp_path / "whole"
     begin = time.monotonic()
-    assert run_until(command(killed, whole, 60.0), None) == (0, "")
+    assert ended(run_words(KILLED[name], whole, 60.0), None) == (0, "")
     wall_s = time.monotonic() - begin
     for wait_s in (wall_s / 4, wall_s / 16, 0.0):  # it may take a fraction now of what it took beside other tests
-        process = started(killed, folder, every_s=60.0)  # so that the interrupt alone writes one
+        process = started(run_words(KILLED[name], folder, 60.0), folder / "result.h5.fields/00000.h5")  # the interrupt alone writes a checkpoint
         time.sleep(wait_s)
         begin = time.monotonic()
         process.send_signal(which)
@@ -205,11 +179,9 @@ def test_a_run_that_is_interrupted_ends_at_once_and_goes_on_to_the_same_digits(t
         if process.returncode != 0:
             break
         shutil.rmtree(folder)  # it had ended before
-    assert process.returncode == 130, said
-    assert "strata resume" in said
+    assert process.returncode == 130 and "strata resume" in said, said
     assert took_s < max(2.0, wall_s / 2)  # 2 s; more where others keep the machine busy
-    assert not (folder / "summary.json").exists()
-    assert torn(folder) == []
+    assert not (folder / "summary.json").exists() and torn(folder) == []
     assert strata(tmp_path, "resume", str(folder), "--quiet").returncode == 0
     assert differences(whole, folder) == []
 
@@ -217,36 +189,27 @@ def test_a_run_that_is_interrupted_ends_at_once_and_goes_on_to_the_same_digits(t
 def test_a_signal_before_the_first_step_ends_the_process(tmp_path: Path) -> None:
     """There is nothing to save yet, and a large block takes its time to be set up."""
     folder = tmp_path / "X"
-    arguments = command(BY_NAME["quasi-static paper"], folder, 60.0) + ["--set", "numerics.cell_m=0.25"]
-    process = subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    while not (folder / "scene.toml").exists():
-        time.sleep(0.002)
+    process = started([*run_words(KILLED["quasi-static paper"], folder, 60.0), "--set", "numerics.cell_m=0.25"], folder / "scene.toml")
     begin = time.monotonic()
     process.send_signal(signal.SIGINT)
     said = process.communicate(timeout=60)[1]
-    assert process.returncode == 130, said
-    assert time.monotonic() - begin < 1.0
-    assert "interrupted" in said
+    assert process.returncode == 130 and "interrupted" in said and time.monotonic() - begin < 1.0, said
 
 
 def test_runs_that_are_killed_end_as_those_that_are_not() -> None:
     """Ten kills at random moments; `python3 -m verification.faults` kills as often as one likes."""
     for name in ("explicit total", "explicit updated", "quasi-static turning", "quasi-static reynolds"):
-        tally = kill_campaign(BY_NAME[name], 2 if name != "explicit total" else 4, 0.02, seed=7)
-        assert tally.kills >= 2
-        assert tally.identical == tally.trials > 0
-        assert tally.problems == []
+        tally = campaign(name, 2 if name != "explicit total" else 4, 0.02, seed=7)
+        assert tally.kills >= 2 and tally.identical == tally.trials > 0 and tally.problems == []
 
 
 @pytest.mark.parametrize("name, changed", [("explicit total", ()), ("explicit updated", ()), ("quasi-static paper", ("stop.tip_y_m=12",))])
 def test_memory_is_estimated_a_little_above_what_a_run_takes(tmp_path: Path, name: str, changed: tuple[str, ...]) -> None:
     """At 1 m cells, checkpoints written: within 30 % above the peak, never below."""
-    killed = BY_NAME[name]
-    short = Killed(name, killed.scene, killed.variant, (*killed.settings, "numerics.cell_m=1", "fracture.increment_m=1", *changed))
-    if name.startswith("explicit"):  # too short for equilibria to decide about growth
-        short = Killed(name, short.scene, short.variant, (*short.settings, "stop.time_s=0.12", "fracture.crossing=J"))
-    arguments = [word for word in command(short, tmp_path / "X", 0.0)[1:] if word != "--quiet"]
-    done = strata(tmp_path, *arguments)
+    brief = ("stop.time_s=0.12", "fracture.crossing=J") if name.startswith("explicit") else ()  # too short for equilibria to decide about growth
+    own = KILLED[name]
+    short = Job(own.scene, own.variant, own.out, (*own.settings, "numerics.cell_m=1", "fracture.increment_m=1", *changed, *brief))
+    done = strata(tmp_path, *(word for word in run_words(short, tmp_path / "X", 0.0)[1:] if word != "--quiet"))
     assert done.returncode == 0, done.stderr
     estimate_MB = 1e3 * float(re.search(r"([\d.e+-]+) GB", done.stderr).group(1))  # type: ignore[union-attr]
     peak_MB = summary_of(tmp_path / "X")["peak_memory_MB"]
@@ -256,10 +219,8 @@ def test_memory_is_estimated_a_little_above_what_a_run_takes(tmp_path: Path, nam
 def test_two_hundred_kills_and_every_run_the_same() -> None:
     """What is kept of the kills: as many as are claimed, of every scene, and not one run that ended otherwise."""
     record = json.loads(RECORD.read_text(encoding="utf-8"))
-    assert record["kills"] >= 200
-    assert record["identical"] == record["trials"] > 0
-    assert record["from_checkpoint"] > 100
-    assert [scene["name"] for scene in record["scenes"]] == [killed.name for killed in KILLED]
+    assert record["kills"] >= 200 and record["identical"] == record["trials"] > 0 and record["from_checkpoint"] > 100
+    assert [scene["name"] for scene in record["scenes"]] == list(KILLED)
     for scene in record["scenes"]:
         assert scene["kills"] >= 30 and scene["problems"] == []
         assert scene["identical"] == scene["trials"] > 10

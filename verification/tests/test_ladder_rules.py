@@ -8,17 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verification.harness.load import Run
 from verification.ladder import __main__ as command
-from verification.ladder import catalogue, gates, runner
-from verification.ladder.case import Case, Level, Quantity, Sample, cell_levels
-from verification.ladder.catalogue import BadCase, Families
+from verification.ladder import case as catalogue
+from verification.ladder import gates
+from verification.ladder.case import BadCase, Case, Families, Level, Quantity, Sample, cell_levels
 from verification.ladder.gates import CannotAccept, Gate
 from verification.ladder.judge import HALF_AN_ORDER, accepted, judged, mutants_of, tally
-from verification.ladder.measure import Row, order_of, rows_of
-from verification.ladder.runner import make_all, rungs_of
-from verification.ladder.table import text
-from verification.tests.fake_run import write_run
+from verification.ladder.measure import Row, make_all, order_of, rows_of, rungs_of
+from verification.ladder.__main__ import text
+from verification.tests.fake_run import changed, program, write_run
 
 MUTANTS = {"zero": -1.0, "twice": 1.02, "flipped sign": -2.0}
 
@@ -43,38 +41,30 @@ def gated(rows: list[Row]) -> dict[str, gates.Gates]:
     return now
 
 
-def test_errors_of_samples() -> None:
-    assert Sample.of(1.1, 1.0).error() == pytest.approx(0.1) and Sample.of(0.9, 1.0).error() == pytest.approx(-0.1)
-    assert Sample.of(-0.9, -1.0).error() == pytest.approx(0.1), "signed as value less exact, by the size of the exact one"
-    many = Sample(np.array([1.0, 2.0, 4.0]), np.array([1.0, 2.0, 3.0]), np.array([1.0, 1.0, 2.0]))
-    assert many.error() == pytest.approx(math.sqrt(2.0 / (1.0 + 4.0 + 18.0)))
-    assert Sample.of(3.0, 0.0, scale=100.0).error() == pytest.approx(0.03)
+@pytest.mark.parametrize(("sample", "error", "mutants"), [
+    (Sample.of(1.1, 1.0), 0.1, {"zero": -1.0, "twice": 1.2, "flipped sign": -2.1}),
+    (Sample.of(0.9, 1.0), -0.1, {"zero": -1.0, "twice": 0.8, "flipped sign": -1.9}),
+    (Sample.of(-0.9, -1.0), 0.1, {"zero": 1.0, "twice": -0.8, "flipped sign": 1.9}),  # value less exact, by the size of the exact one
+    (Sample(np.array([1.0, 2.0, 4.0]), np.array([1.0, 2.0, 3.0]), np.array([1.0, 1.0, 2.0])), math.sqrt(2.0 / (1.0 + 4.0 + 18.0)), None),
+    (Sample(np.array([3.0, 4.0]), np.array([3.0, 4.0])), 0.0, {"zero": 1.0, "twice": 1.0, "flipped sign": 2.0}),
+    (Sample.of(1e-3, 0.0, scale=10.0), 1e-4, {"off by its scale": 1.0001}), (Sample.of(3.0, 0.0, scale=100.0), 0.03, None),
+])  # fmt: skip
+def test_errors_of_samples_and_of_their_mutants(sample: Sample, error: float, mutants: dict[str, float] | None) -> None:
+    assert sample.error() == pytest.approx(error)
+    assert mutants is None or sample.mutants() == {name: pytest.approx(value) for name, value in mutants.items()}
     with pytest.raises(ValueError, match="needs a scale"):
         Sample.of(3.0, 0.0).error()
 
 
-def test_mutants_of_samples_are_far_off() -> None:
-    right = Sample.of(1.01, 1.0).mutants()
-    assert right == {"zero": pytest.approx(-1.0), "twice": pytest.approx(1.02), "flipped sign": pytest.approx(-2.01)}
-    field = Sample(np.array([3.0, 4.0]), np.array([3.0, 4.0])).mutants()
-    assert field == {"zero": pytest.approx(1.0), "twice": pytest.approx(1.0), "flipped sign": pytest.approx(2.0)}
-    assert Sample.of(1e-3, 0.0, scale=10.0).mutants() == {"off by its scale": pytest.approx(1.0001)}
-
-
 @pytest.mark.parametrize("no_order", ["", "the reference's own error is as large"])
-def test_gates_are_never_wider_than_one_and_a_half_times_the_error(no_order: str) -> None:
+def test_gates_are_never_wider_than_one_and_a_half_times_the_error_and_lose_less_than_half_an_order(no_order: str) -> None:
     for error in np.geomspace(2e-12, 0.6, 997):
         gate = gates.gate_of(no_order, float(error), None, MUTANTS)
-        assert 1.36 * error < gate.error <= 1.5 * error
-        assert gate.error == float(f"{gate.error:.2g}"), "two digits"
+        assert 1.36 * error < gate.error <= 1.5 * error and gate.error == float(f"{gate.error:.2g}"), "two digits"
         assert gate.measured <= error and gates.too_wide(gate, False) == ""
-
-
-def test_gates_of_order_lose_less_than_half_an_order() -> None:
     for order in np.linspace(0.31, 4.0, 370):
         gate = gates.gate_of("", 1e-3, float(order), MUTANTS)
-        assert order - 0.3 - 1e-9 <= gate.order < order - 0.28
-        assert gates.too_wide(gate, False) == ""
+        assert order - 0.3 - 1e-9 <= gate.order < order - 0.28 and gates.too_wide(gate, False) == ""
 
 
 @pytest.mark.parametrize(("error", "allowed"), [(0.0, 1e-12), (3e-16, 1e-12), (9e-14, 1e-12), (2e-13, 1e-11), (4e-10, 1e-8), (3e-8, 1e-6), (3e-7, 1e-6)])
@@ -115,23 +105,20 @@ def test_gates_are_written_and_read_back(tmp_path: Path) -> None:
 
 
 def test_changed_gates_are_told_and_wider_ones_marked() -> None:
-    one, two, w, v = ("c", "K", "1 m"), ("c", "K", "2 m"), ("c", "w", "1 m"), ("c", "v", "1 m")
+    one, two, w, v = (("c", *key) for key in (("K", "1 m"), ("K", "2 m"), ("w", "1 m"), ("v", "1 m")))
     before = {one: Gate(0.01, 0.007), two: Gate(0.1, 0.07), w: Gate(0.02, 0.014, 0.7, 1.0)}
     now = {one: Gate(0.02, 0.014), w: Gate(0.02, 0.014, 0.6, 0.9), v: Gate(0.1, 0.08)}
     assert gates.changes(before, now) == [
-        "c / K / 1 m: error 0.01 -> error 0.02  WIDER",
-        "c / K / 2 m: error 0.1 -> none",
-        "c / w / 1 m: error 0.02 order 0.7 -> error 0.02 order 0.6  WIDER",
-        "c / v / 1 m: none -> error 0.1",
-    ]
+        "c / K / 1 m: error 0.01 -> error 0.02  WIDER", "c / K / 2 m: error 0.1 -> none",
+        "c / w / 1 m: error 0.02 order 0.7 -> error 0.02 order 0.6  WIDER", "c / v / 1 m: none -> error 0.1",
+    ]  # fmt: skip
     assert gates.changes(now, now) == []
 
 
 def test_what_was_accepted_passes_and_refuses_its_mutants() -> None:
     rows = judged(ladder_of(0.04, 0.021, 0.005), gated(ladder_of(0.04, 0.021, 0.005)))
-    assert [row.verdict for row in rows] == ["pass"] * 3
     found = tally(rows)
-    assert (found.gates, found.mutants, found.refused) == (5, 11, 11)
+    assert [row.verdict for row in rows] == ["pass"] * 3 and (found.gates, found.mutants, found.refused) == (5, 11, 11)
     assert found.words() == "3 comparisons: 3 pass; 5 gates, 11 mutants, all refused"
 
 
@@ -146,12 +133,10 @@ def test_what_went_wrong_fails(finest: float, why: str) -> None:
 
 def test_what_became_better_is_noted_and_passes() -> None:
     known = gated(ladder_of(0.04, 0.0201, 0.005))
-    rows = judged(ladder_of(0.04, 0.0201, 0.0046), known)
-    assert [(row.verdict, row.note) for row in rows] == [("pass", "")] * 3, "0.92 of the accepted error is the same"
-    rows = judged(ladder_of(0.04, 0.0201, 0.0044), known)
-    assert rows[2].verdict == "pass" and rows[2].note == "gate can be tightened (error 0.0044, accepted at 0.005): --accept"
-    rows = judged(ladder_of(0.04, 0.0201, 0.0025), known)
-    assert rows[2].verdict == "pass" and "error 0.0025, accepted at 0.005; order 3.01, accepted at 2.01" in rows[2].note
+    for finest, note in ((0.0046, ""), (0.0044, "gate can be tightened (error 0.0044, accepted at 0.005): --accept"),  # 0.92 of the error is the same
+                         (0.0025, "gate can be tightened (error 0.0025, accepted at 0.005; order 3.01, accepted at 2.01): --accept")):  # fmt: skip
+        rows = judged(ladder_of(0.04, 0.0201, finest), known)
+        assert [(row.verdict, row.note) for row in rows] == [("pass", ""), ("pass", ""), ("pass", note)]
     assert f"pass: {rows[2].note}" in text(rows)
     found = tally(rows)
     assert (found.mutants, found.refused, found.loose) == (11, 11, 1) and found.words().endswith("all refused; 1 can be tightened")
@@ -161,8 +146,7 @@ def test_what_became_better_is_noted_and_passes() -> None:
 
 def test_a_missing_gate_fails() -> None:
     known = gated(ladder_of(0.04, 0.02))
-    for row in judged(ladder_of(0.04, 0.02), {}):
-        assert row.verdict == "FAIL" and "no gate" in row.problems[0]
+    assert all(row.verdict == "FAIL" and "no gate" in row.problems[0] for row in judged(ladder_of(0.04, 0.02), {}))
     key = ladder_of(0.04, 0.02)[1].key
     known["made_up"][key] = replace(known["made_up"][key], order=None, measured_order=None)
     assert "no gate of order" in judged(ladder_of(0.04, 0.02), known)[1].problems[0]
@@ -198,78 +182,60 @@ def test_a_gate_that_lets_a_mutant_pass_fails() -> None:
 
 
 def test_a_reason_spares_the_order_and_nothing_else() -> None:
-    rows = ladder_of(0.002, -0.003, no_order="the error changes its sign")
+    rows, worse = (ladder_of(0.002, finest, no_order="the error changes its sign") for finest in (-0.003, -0.005))
     known = gated(rows)
-    assert [row.verdict for row in judged(rows, known)] == ["pass", "pass"]
+    assert [row.verdict for row in judged(rows, known)] == ["pass", "pass"] and judged(worse, known)[1].verdict == "FAIL"
     assert all(gate.order is None for gate in known["made_up"].values())
-    assert judged(ladder_of(0.002, -0.005, no_order="the error changes its sign"), known)[1].verdict == "FAIL"
 
 
 def test_a_failed_level_takes_the_order_with_it_and_keeps_its_gate() -> None:
     known = gated(ladder_of(0.04, 0.02))
     rows = ladder_of(0.04, 0.02)
     rows = judged([replace(rows[0], failure="a mechanism"), replace(rows[1], order=None)], known)
-    assert [row.verdict for row in rows] == ["FAILED", "FAIL"] and "level before failed" in rows[1].problems[0]
-    assert tally(rows).failed == 1
+    assert [row.verdict for row in rows] == ["FAILED", "FAIL"] and "level before failed" in rows[1].problems[0] and tally(rows).failed == 1
     now, refused = accepted(rows, known)
     assert now == known and len(refused) == 2
 
 
-SCENE = 'title = "made up"\n[numerics]\ncell_m = 1.0\n'
-
-
-def mouth(run: Run) -> Sample:
-    """The mouth's opening beside a made-up answer."""
-    return Sample.of(run.summary.mouth_opening_m, 1.0e-3, reference_error=1e-6)
-
-
-def broken(run: Run) -> Sample:
-    """A quantity that cannot be had."""
-    raise KeyError("no such column")
+MOUTH = Quantity("mouth", "m", lambda run: Sample.of(run.summary.mouth_opening_m, 1.0e-3, reference_error=1e-6))
+BROKEN = Quantity("broken", "m", lambda run: run.history["no such column"])
 
 
 @pytest.fixture()
 def a_case(tmp_path: Path) -> Case:
     scene = tmp_path / "made_up.toml"
-    scene.write_text(SCENE)
-    return Case("two_levels", "Nothing.", scene, "explicit", cell_levels(1.0, 0.5), (Quantity("mouth", "m", mouth),), smoke=1)
+    scene.write_text('title = "made up"\nnumerics.cell_m = 1.0\n')
+    return Case("two_levels", "Nothing.", scene, "explicit", cell_levels(1.0, 0.5), (MOUTH,), smoke=1)
 
 
 @pytest.fixture()
 def solver(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A program in the solver's place: copies a run whose opening is off by cell / 100, and fails on cells of 0.25 m."""
     for name, opening in (("1.0", 1.01e-3), ("0.5", 1.005e-3)):
-        folder = write_run(tmp_path / "runs_of" / name, [(2.4e6, 40.0, 6.0)])
-        summary = json.loads((folder / "summary.json").read_text())
-        (folder / "summary.json").write_text(json.dumps({**summary, "mouth_opening_m": opening}))
-    program = tmp_path / "strata"
-    program.write_text(
-        f"""#!/bin/sh
+        changed(write_run(tmp_path / "runs_of" / name, [(2.4e6, 40.0, 6.0)]), mouth_opening_m=opening)
+    made = program(tmp_path / "strata", f"""#!/bin/sh
 echo "$@" >> {tmp_path}/calls
 while [ $# -gt 0 ]; do case "$1" in --out) out=$2;; numerics.cell_m=*) cell=${{1#*=}};; esac; shift; done
 [ "$cell" = 0.25 ] && {{ echo "the block is a mechanism"; exit 3; }}
 cp {tmp_path}/runs_of/$cell/* "$out"
-"""
-    )
-    program.chmod(0o755)
-    monkeypatch.setenv("STRATA", str(program))
-    return program
+""")
+    monkeypatch.setenv("STRATA", str(made))
+    return made
 
 
 def test_runs_are_made_once_and_measured(tmp_path: Path, solver: Path, a_case: Case) -> None:
     rungs = rungs_of({"fam": (a_case,)}, runs=tmp_path / "ladder")
     rows = rows_of(make_all(rungs, jobs=2))
     assert [row.error for row in rows] == [pytest.approx(0.01), pytest.approx(0.005)]
-    assert rows[0].order is None and rows[1].order == pytest.approx(1.0)
-    assert rows[1].cost.particles == 25600 and rows[1].reference_error == 1e-6
+    assert rows[0].order is None and rows[1].order == pytest.approx(1.0) and rows[1].cost.particles == 25600 and rows[1].reference_error == 1e-6
     again = make_all(rungs)
-    assert all(one.outcome.skipped for one in again) and len((tmp_path / "calls").read_text().splitlines()) == 2
+    assert all(outcome.skipped for _, outcome in again) and len((tmp_path / "calls").read_text().splitlines()) == 2
     assert (tmp_path / "ladder" / "fam" / "two_levels" / "0.5_m" / "summary.json").is_file()
     assert "numerics.mechanics=explicit" in (tmp_path / "calls").read_text()
 
 
 def test_a_failed_run_is_a_failed_row(tmp_path: Path, solver: Path, a_case: Case) -> None:
-    case = replace(a_case, levels=cell_levels(1.0, 0.5, 0.25), quantities=(*a_case.quantities, Quantity("broken", "m", broken)))
+    case = replace(a_case, levels=cell_levels(1.0, 0.5, 0.25), quantities=(MOUTH, BROKEN))
     rows = judged(rows_of(make_all(rungs_of({"fam": (case,)}, runs=tmp_path / "ladder"))), {})
     assert [row.verdict for row in rows] == ["FAIL", "FAIL", "FAILED", "FAILED", "FAILED", "FAILED"]
     assert rows[2].failure == "the block is a mechanism" and rows[3].failure == "not measured: KeyError: 'no such column'"
@@ -287,7 +253,6 @@ def ladder(tmp_path: Path, solver: Path, a_case: Case, monkeypatch: pytest.Monke
     known = {"fam": (a_case,)}
     monkeypatch.setattr(command, "families", lambda: known)
     monkeypatch.setattr(gates, "FOLDER", tmp_path / "gates")
-    monkeypatch.setattr(runner, "RUNS", tmp_path / "ladder")
     return known
 
 
@@ -322,15 +287,12 @@ def test_the_command_at_smoke_size_keeps_the_other_gates(tmp_path: Path, ladder:
     assert len(content["rows"]) == 1 and content["part"]
 
 
-def test_the_command_tells_a_run_that_fails(tmp_path: Path, ladder: Families, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_tells_a_run_that_fails_and_gates_of_nothing(tmp_path: Path, ladder: Families, capsys: pytest.CaptureFixture[str]) -> None:
     assert asked(tmp_path, "--accept") == 0
-    ladder["fam"] = (replace(ladder["fam"][0], levels=cell_levels(1.0, 0.5, 0.25)),)
-    assert asked(tmp_path) == 3
-    assert "1 failed" in capsys.readouterr().out
-
-
-def test_the_command_tells_gates_of_nothing(tmp_path: Path, ladder: Families, capsys: pytest.CaptureFixture[str]) -> None:
-    assert asked(tmp_path, "--accept") == 0
+    known = ladder["fam"]
+    ladder["fam"] = (replace(known[0], levels=cell_levels(1.0, 0.5, 0.25)),)
+    assert asked(tmp_path) == 3 and "1 failed" in capsys.readouterr().out
+    ladder["fam"] = known
     ladder["fam"] = (replace(ladder["fam"][0], name="renamed"),)
     assert asked(tmp_path) == 1
     assert "gate of nothing: fam/two_levels / mouth / 1 m" in capsys.readouterr().out
@@ -341,16 +303,19 @@ def test_the_command_tells_gates_of_nothing(tmp_path: Path, ladder: Families, ca
 
 
 def test_accepting_touches_the_files_of_its_families_alone(tmp_path: Path, ladder: Families, a_case: Case) -> None:
+    def content() -> dict[str, tuple[str, int]]:
+        return {path.name: (path.read_text(), path.stat().st_mtime_ns) for path in folder.iterdir()}
+
     folder = tmp_path / "gates"
     ladder["other"] = (replace(a_case, name="another"),)
     assert asked(tmp_path, "--accept") == 0 and {path.name for path in folder.iterdir()} == {"fam.json", "other.json"}
     gates.write("later", gates.read("fam"), folder)  # of a family that came after the command began
     for path in folder.iterdir():
         path.write_text(path.read_text().replace("0.01", "0.02"))
-    before = {path.name: (path.read_text(), path.stat().st_mtime_ns) for path in folder.iterdir()}
+    before = content()
     assert asked(tmp_path, "--family", "fam", "--accept") == 0
     assert asked(tmp_path, "--case", "two_levels", "--smoke", "--accept") == 0
-    after = {path.name: (path.read_text(), path.stat().st_mtime_ns) for path in folder.iterdir()}
+    after = content()
     assert after.pop("fam.json") != before.pop("fam.json") and after == before
     asked(tmp_path, "--accept")
     assert (folder / "later.json").is_file()
@@ -385,7 +350,7 @@ def test_the_command_with_nothing_to_judge_is_no_pass(tmp_path: Path, ladder: Fa
     ({"levels": ()}, "no levels"), ({"levels": cell_levels(1.0, 2.0)}, "do not fall"), ({"levels": (Level("a", 1.0), Level("a", 0.5))}, "same name"),
     ({"quantities": ()}, "no levels or no quantities"), ({"smoke": 3}, "3 smoke levels of 2"), ({"smoke": 0}, "0 smoke levels"),
     ({"scene": Path("nowhere.toml")}, "no scene"),
-    ({"quantities": (Quantity("mouth", "m", mouth, no_order_at={"4 m": "why"}),)}, "names no level: 4 m"),
+    ({"quantities": (replace(MOUTH, no_order_at={"4 m": "why"}),)}, "names no level: 4 m"),
 ])  # fmt: skip
 def test_cases_that_cannot_be_judged_are_refused(a_case: Case, change: dict[str, object], why: str) -> None:
     catalogue.check("fam", (a_case,))

@@ -14,36 +14,20 @@ from verification.harness.paths import solver
 from verification.tests.cases import strata, summary_of
 
 BLOCK = """\
-[domain]
-width_m = 20
-height_m = 20
-[in_situ]
-vertical_Pa = 3.0e6
-horizontal_Pa = 2.0e6
-[rock.shale]
-youngs_modulus_Pa = 10.0e9
-[strata]
-layers = [{rock = "shale"}]
-[fracture]
-path_m = [[10, 0], [10, 5]]
-[fluid]
-law = "uniform"
-inlet = {start_Pa = 2.0e6, rate_Pa_s = 0.35e6}
-[numerics]
-mechanics = "quasistatic"
-cell_m = 1.0
-[stop]
-tip_y_m = 12
-[variants.explicit]
-numerics.mechanics = "explicit"
-numerics.damping_1_s = 20
+domain = {width_m = 20, height_m = 20}
+in_situ = {vertical_Pa = 3.0e6, horizontal_Pa = 2.0e6}
+rock.shale.youngs_modulus_Pa = 10.0e9
+strata.layers = [{rock = "shale"}]
+fracture.path_m = [[10, 0], [10, 5]]
+fluid = {law = "uniform", inlet = {start_Pa = 2.0e6, rate_Pa_s = 0.35e6}}
+numerics = {mechanics = "quasistatic", cell_m = 1.0}
+stop.tip_y_m = 12
+variants.explicit.numerics = {mechanics = "explicit", damping_1_s = 20}
 [variants.mechanism]
 domain.sides = "traction"
 rock.shale.toughness_Pa_sqrt_m = 1e9
-strata.layers = [{rock = "shale", thickness_m = 10}, {rock = "shale"}]
-strata.interfaces = ["cut"]
-interface.cut.law = "friction"
-interface.cut.coefficient = 0
+strata = {layers = [{rock = "shale", thickness_m = 10}, {rock = "shale"}], interfaces = ["cut"]}
+interface.cut = {law = "friction", coefficient = 0}
 fracture.path_m = [[10, 0], [10, 9]]
 stop.inlet_Pa = 4e6
 """
@@ -92,20 +76,17 @@ def test_a_run_that_fails_says_so_in_its_first_line(tmp_path: Path) -> None:
     (tmp_path / "block.toml").write_text(BLOCK)
     done = strata(tmp_path, "run", "block.toml", "--variant", "mechanism", "--out", "X")
     assert done.returncode == 3, done.stderr
-    reason = summary_of(tmp_path / "X")["reason"]
-    first = next(line for line in done.stderr.splitlines() if line.startswith("failed at step "))
-    assert first.endswith(reason)
-    assert done.stderr.count(reason) == 1
-    assert done.stderr.splitlines()[-1].startswith("results in X: summary.json")
+    reason, lines = summary_of(tmp_path / "X")["reason"], done.stderr.splitlines()
+    assert next(line for line in lines if line.startswith("failed at step ")).endswith(reason) and done.stderr.count(reason) == 1
+    assert lines[-1].startswith("results in X: summary.json")
 
 
 def interrupted(folder: Path) -> str:
-    """Make folder/X a run that was interrupted; what it said."""
+    """Make folder/X a run that was interrupted after its first output; what it said."""
     (folder / "block.toml").write_text(BLOCK)
     arguments = [str(solver()), "run", "block.toml", "--variant", "explicit", "--out", "X", "--threads", "1"]
-    process = subprocess.Popen(arguments, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    history = folder / "X" / "history.csv"
-    while process.poll() is None and (not history.exists() or history.read_text().count("\n") < 2):  # until its first output
+    process, history = subprocess.Popen(arguments, cwd=folder, stderr=subprocess.PIPE, text=True), folder / "X" / "history.csv"
+    while process.poll() is None and (not history.exists() or history.read_text().count("\n") < 2):
         time.sleep(0.002)
     process.send_signal(signal.SIGINT)
     said = process.communicate(timeout=60)[1]
@@ -141,9 +122,8 @@ def test_a_changed_scene_is_refused_and_nothing_is_lost(edit: str, ended: bool, 
     scene.write_text(before.replace(old, new, 1))
     files = content(tmp_path / "X")
     done = strata(tmp_path, "resume", "X", "--quiet")
-    assert done.returncode == 2
-    for word in (f"X/scene.toml: was changed after the run began: {told}.", "strata run X/scene.toml --out DIR", "--replace"):
-        assert word in done.stderr
+    words = (f"X/scene.toml: was changed after the run began: {told}.", "strata run X/scene.toml --out DIR", "--replace")
+    assert done.returncode == 2 and all(word in done.stderr for word in words), done.stderr
     assert content(tmp_path / "X") == files
     scene.write_text("# a comment changes nothing\n" + before)
     assert strata(tmp_path, "resume", "X", "--quiet", "--threads", "1").returncode == 0
@@ -165,8 +145,7 @@ def test_a_run_that_has_ended_is_left_as_it_is_and_says_so(tmp_path: Path, whole
     files = content(tmp_path / "X")
     done = strata(tmp_path, "resume", "X")
     reason = summary_of(tmp_path / "X")["reason"]
-    assert (done.returncode, done.stdout) == (0, "")
-    assert done.stderr == f"X: has ended and is left as it is (completed: {reason})\n"
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", f"X: has ended and is left as it is (completed: {reason})\n")
     assert content(tmp_path / "X") == files
 
 
@@ -175,5 +154,4 @@ def test_another_version_is_named(tmp_path: Path) -> None:
     with h5py.File(tmp_path / "X" / "result.h5.fields" / "00000.h5", "r+") as store:
         store.attrs["version"] = "0.0.1"
     done = strata(tmp_path, "resume", "X", "--threads", "1")
-    assert done.returncode == 0
-    assert "X: begun by strata 0.0.1, goes on with " in done.stderr
+    assert done.returncode == 0 and "X: begun by strata 0.0.1, goes on with " in done.stderr

@@ -26,16 +26,9 @@ def reference_kink_deg(scene: Path) -> float:
     content = tomllib.loads(scene.read_text(encoding="utf-8"))
     here, beyond = (content["rock"][layer["rock"]] for layer in content["strata"]["layers"])
     (x, _), (_, height) = content["fracture"]["path_m"]
-    return value(
-        "bonded_parallel",
-        "kink_deg",
-        youngs_modulus_Pa=here["youngs_modulus_Pa"],
-        poisson_ratio=here["poisson_ratio"],
-        beyond_youngs_modulus_Pa=beyond["youngs_modulus_Pa"],
-        beyond_poisson_ratio=beyond["poisson_ratio"],
-        half_length_m=float(height),
-        distance_m=float(content["strata"]["layers"][0]["thickness_m"]) - x,
-    )
+    rocks = {f"{prefix}{key}": one[key] for prefix, one in (("", here), ("beyond_", beyond)) for key in ("youngs_modulus_Pa", "poisson_ratio")}
+    distance_m = float(content["strata"]["layers"][0]["thickness_m"]) - x
+    return value("bonded_parallel", "kink_deg", half_length_m=float(height), distance_m=distance_m, **rocks)
 
 
 @pytest.mark.slow

@@ -54,9 +54,6 @@ def panel(methods: tuple[Method, ...], points: list[Point], one: Wanted | None =
     return panel_of(problem, problem.wanted[0], Sheet("made_up", MACHINE, tuple(points)))
 
 
-# --- what is judged
-
-
 def test_the_front_is_what_nothing_beats() -> None:
     one = panel((method("a", 1.0, 0.5), method("b", 1.0, 0.5), method("c", 1.0)), [
         point("a", 1.0, 0.1, 1.0), point("a", 0.5, 0.01, 4.0), point("b", 1.0, -0.05, 2.0), point("b", 0.5, 0.02, 5.0), point("c", 1.0, 0.05, 3.0),
@@ -124,9 +121,6 @@ def test_methods_with_inertia_and_boundary_elements_have_rows_of_their_own() -> 
     assert chosen == {"any method": "a", "with inertia": "m", "boundary elements": "e"}
 
 
-# --- what an experiment should use
-
-
 def two_panels(errors: dict[str, tuple[float, float]]) -> list[Panel]:
     """Two numbers of one problem, each method with an error in both; times in the order given."""
     both = (wanted("K"), wanted("L"))
@@ -149,9 +143,6 @@ def test_where_none_is_right_it_uses_the_nearest_and_says_so() -> None:
     found = choice_for(panels, 0.01)
     assert found is not None and not found.within and found.dots[0].method.name == "good"
     assert run_at(panels, "half", "1 m") is not None and run_at(panels, "half", "2 m") is None
-
-
-# --- what is measured
 
 
 def test_the_key_changes_with_scene_settings_and_program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -62,33 +62,23 @@ def test_a_broken_record_is_named(tmp_path: Path, broken: str) -> None:
         store.read(Outer, path)
 
 
-def test_names_are_chosen_by_their_beginnings() -> None:
+def test_names_are_chosen_by_their_beginnings(tmp_path: Path) -> None:
     """All without any; one that nothing begins with is named, with what there is."""
     known = {"tip": 1, "tip_near": 2, "edge": 3}
     assert choose(known, ()) == known
     assert choose(known, beginnings("tip,,e")) == known and list(choose(known, ["tip_"])) == ["tip_near"]
     with pytest.raises(ValueError, match="no case x; there are tip, tip_near, edge"):
         choose(known, ["x", "tip"], "case")
-    assert twice(["a", "b", "a"]) == ["a"]
-    assert folder_name("0.5 m, 1e+3/x=-2") == "0.5_m__1e+3_x=-2"
-
-
-def test_a_folder_is_claimed_by_one(tmp_path: Path) -> None:
-    """The lock stands beside the folder, which the run may empty."""
-    with claimed(tmp_path / "runs" / "a"):
+    assert twice(["a", "b", "a"]) == ["a"] and folder_name("0.5 m, 1e+3/x=-2") == "0.5_m__1e+3_x=-2"
+    with claimed(tmp_path / "runs" / "a"):  # the lock stands beside the folder, which the run may empty
         assert [path.name for path in (tmp_path / "runs").iterdir()] == ["a.lock"]
 
 
-def test_a_table_is_aligned() -> None:
-    """Numbers right, words left, nothing after the last column."""
-    assert aligned([("name", "size", "why"), ("a", "1.25", "long words"), ("bcd", "10", "")], right=(1,)) == [
-        "name  size  why", "a     1.25  long words", "bcd     10",
-    ]  # fmt: skip
+def test_tables_and_options() -> None:
+    """Numbers right, words left, nothing after the last column; a command takes the shared options that it names, with its own defaults."""
+    table = aligned([("name", "size", "why"), ("a", "1.25", "long words"), ("bcd", "10", "")], right=(1,))
+    assert table == ["name  size  why", "a     1.25  long words", "bcd     10"]
     assert (number(1.0 / 3.0), number(math.nan), count(12345), count(2.5e6), count(12)) == ("0.333333", "-", "12.3k", "2.5M", "12")
-
-
-def test_options_are_told_once() -> None:
-    """A command takes the shared options that it names, with its own defaults."""
     options = command("x", "About.", "family", "smoke", "runs", runs=Path("here")).parse_args(["--family", "a,b"])
     assert (options.family, options.smoke, options.runs) == ("a,b", False, Path("here"))
     with pytest.raises(SystemExit):

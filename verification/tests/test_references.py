@@ -9,13 +9,11 @@ from verification.harness.reference import values
 from verification.ladder.fields import at_points, lattice
 
 
-def test_farthest_is_of_points_from_the_line_over_the_common_length() -> None:
+def test_farthest_and_rise_of_paths() -> None:
+    """Of points from the line over the common length; where the path first gets there."""
     line = np.array([[0.0, 5.0], [0.0, 15.0]])
     assert farthest(np.array([[0.0, 5.0], [0.3, 8.0], [-0.5, 11.0]]), line) == pytest.approx(0.5)
     assert farthest(np.array([[0.0, 5.0], [0.3, 8.0], [4.0, 20.0]]), line) == pytest.approx(0.3)
-
-
-def test_rise_is_where_the_path_first_gets_there() -> None:
     path = np.array([[0.0, 5.0], [0.5, 7.0], [1.5, 8.0], [0.9, 9.0], [2.0, 10.0]])
     assert rise_at(path, 1.0) == pytest.approx(2.5)
     with pytest.raises(LoadError, match="never"):
@@ -34,9 +32,6 @@ def test_experiments_turn_as_the_parallel_crack_says() -> None:
 def test_places_return_to_the_lattice_that_single_precision_left() -> None:
     exact = (np.arange(80) + 0.5) * 0.125
     assert np.array_equal(lattice(exact.astype(np.float32).astype(float) + 1e-6, 0.125), exact)
-
-
-def test_places_off_the_lattice_are_refused() -> None:
     with pytest.raises(LoadError, match="lattice"):
         lattice(np.array([0.1, 0.3, 0.5 + 0.02]), 0.2)
 

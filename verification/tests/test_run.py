@@ -1,6 +1,5 @@
 """Runs are made once for the same scene and solver, and a failing one is told, not raised."""
 
-import json
 import threading
 import time
 from pathlib import Path
@@ -10,17 +9,13 @@ import pytest
 from verification.harness import run as harness
 from verification.harness.run import Job, Outcome, key_of, load_outcome, run
 from verification.tests.cases import wait_for
+from verification.tests.fake_run import program
 
 SCENE = """
 title = "a"
-[domain]
-width_m = 80
-[variants.one]
-domain.width_m = 40
-[variants.two]
-domain.width_m = 20
-[[claim]]
-id = "1a"
+domain.width_m = 80
+variants = {one.domain.width_m = 40, two.domain.width_m = 20}
+claim = [{id = "1a"}]
 """
 
 # Stands for the solver: counts its calls and does as the variant says.
@@ -40,11 +35,7 @@ echo '{"status": "completed"}' > "$out/summary.json"
 
 @pytest.fixture()
 def solver(tmp_path: Path) -> Path:
-    path = tmp_path / "solver" / "strata"
-    path.parent.mkdir()
-    path.write_text(SOLVER)
-    path.chmod(0o755)
-    return path
+    return program(tmp_path / "solver" / "strata", SOLVER)
 
 
 @pytest.fixture()
@@ -84,17 +75,13 @@ def test_what_decides_on_a_run_changes_its_key(tmp_path: Path, solver: Path, sce
     assert key_of(job, solver) != key
 
 
-def test_numerical_failure_is_kept_with_its_reason(tmp_path: Path, solver: Path, scene: Path) -> None:
-    job = Job(scene, "two", tmp_path / "out")
+@pytest.mark.parametrize(("variant", "exit_status", "reason"), [("two", 3, "the block is a mechanism"), ("crash", -11, "killed by signal 11")])
+def test_a_failure_is_kept_with_its_reason_and_tried_again_where_there_is_no_summary(
+    tmp_path: Path, solver: Path, scene: Path, variant: str, exit_status: int, reason: str
+) -> None:
+    job = Job(scene, variant, tmp_path / "out")
     outcome = run(job, solver)
-    assert (outcome.status, outcome.exit_status, outcome.reason) == ("failed", 3, "the block is a mechanism")
-    assert json.loads((job.out / "outcome.json").read_text())["status"] == "failed"
-
-
-def test_a_crash_is_told_and_tried_again(tmp_path: Path, solver: Path, scene: Path) -> None:
-    job = Job(scene, "crash", tmp_path / "out")
-    outcome = run(job, solver)
-    assert outcome.status == "failed" and "signal 11" in outcome.reason
+    assert (outcome.status, outcome.exit_status, outcome.reason) == ("failed", exit_status, reason) and load_outcome(job.out) == outcome
     run(job, solver)
     assert calls(solver) == 2
 

@@ -31,26 +31,15 @@ def test_smoke_points_end_as_recorded(name: str) -> None:
     assert changes(record, found) == []
 
 
-def test_smoke_points_are_on_both_sides() -> None:
-    """Of each section with an edge ci/test runs sound points and points beyond it."""
+def test_records_and_families_belong_together() -> None:
+    """No record is left over, nor what the page says of sections and families; no family consists of points beyond its edge alone; of each section with an
+    edge ci/test runs sound points and points beyond it."""
+    assert {path.stem for path in store.RECORDS.glob("*.json")} | set(words()["remark"]) <= set(FAMILIES)
+    assert set(words()["section"]) == {family.section for family in FAMILIES.values()}
     sides: dict[str, set[bool | None]] = {}
     for name, family in FAMILIES.items():
         record = store.read(name)
-        if family.edge is None or record is None:
-            continue
-        own = {side(family, point, record) for point in family.points if point.smoke}
-        sides.setdefault(family.section or name, set()).update(own)
-    assert [name for name, found in sides.items() if not {True, False} <= found] == []
-
-
-def test_no_record_is_left_over() -> None:
-    """Every record belongs to a family, and so does what the page says of sections and families."""
-    assert {path.stem for path in store.RECORDS.glob("*.json")} | set(words()["remark"]) <= set(FAMILIES)
-    assert set(words()["section"]) == {family.section for family in FAMILIES.values()}
-
-
-def test_every_family_has_points_whose_check_holds() -> None:
-    """No family consists of points beyond its edge alone."""
-    for name in FAMILIES:
-        record = store.read(name)
         assert record is not None and any(point.checked is not None and point.checked.holds for point in record.points), name
+        if family.edge is not None:
+            sides.setdefault(family.section or name, set()).update(side(family, point, record) for point in family.points if point.smoke)
+    assert [name for name, found in sides.items() if not {True, False} <= found] == []

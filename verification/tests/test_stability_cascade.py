@@ -48,13 +48,9 @@ def test_the_largest_is_the_closed_form(chain: Chain, ratio: float) -> None:
     assert most(chain, 0.0, cascade.SWING_S) == pytest.approx((R + 1.0) / (R - 1.0), rel=1e-6)
 
 
-def test_one_block_never_carries_more_than_before() -> None:
-    """phi = cos(w t)."""
-    assert most(Chain((1e4,), (0.5e6,)), 0.0, 5.0) == pytest.approx(1.0, abs=1e-12)
-
-
 def test_damping_at_the_edge() -> None:
-    """At the damping found the largest is the strength; there is none for strengths that are never or always reached."""
+    """At the damping found the largest is the strength; there is none for strengths that are never or always reached. One block: phi = cos(w t)."""
+    assert most(Chain((1e4,), (0.5e6,)), 0.0, 5.0) == pytest.approx(1.0, abs=1e-12)
     c = damping_for(LIKE, 1.2, cascade.SWING_S)
     assert most(LIKE, c, cascade.SWING_S) == pytest.approx(1.2, rel=1e-5)
     for strength in (1.5, 0.9):
@@ -102,13 +98,10 @@ def test_without_inertia_one_bond_fails_at_the_weaker_strength(monkeypatch: pyte
 def test_an_edge_between_mixed_runs_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     """Feet that fail must all be weaker than those that hold."""
     runs = {str(ratio): made(monkeypatch, 1.0, None, ratio) for ratio in (1.2, 1.3, 1.4, 1.5)}
-    for weakest, expected in ((1.35, 1.35), (1.25, 1.25), (1.1, None), (2.0, None)):
-        monkeypatch.setattr(cascade, "failed_s", lambda run, interface, edge=weakest: 2.0 if cascade.strength(run) < edge else None)
-        if expected is None:
-            with pytest.raises(LoadError):
-                cascade.by_strength(runs)
-        else:
-            assert cascade.by_strength(runs) == pytest.approx(expected)
-    monkeypatch.setattr(cascade, "failed_s", lambda run, interface: 2.0 if cascade.strength(run) in (1.2, 1.4) else None)
-    with pytest.raises(LoadError):
-        cascade.by_strength(runs)
+    for weaker, expected in (((1.2, 1.3), 1.35), ((1.2,), 1.25), ((), None), ((1.2, 1.3, 1.4, 1.5), None), ((1.2, 1.4), None)):
+        monkeypatch.setattr(cascade, "failed_s", lambda run, interface, weaker=weaker: 2.0 if cascade.strength(run) in weaker else None)
+        if expected is not None:
+            assert cascade.turns(cascade.strength, runs) == pytest.approx(expected)
+            continue
+        with pytest.raises(LoadError):
+            cascade.turns(cascade.strength, runs)

@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 from verification.stability.families import lagging
-from verification.stability.theory import ramped
-from verification.stability.theory.ramped import FLOOR_M, diffused, doubling, paper, reynolds
-from verification.stability.theory.staggered import BULK_PA, E_PRIME_PA, HALF_LENGTH_M, compliance
+from verification.stability.theory import flow
+from verification.stability.theory.flow import BULK_PA, E_PRIME_PA, FLOOR_M, HALF_LENGTH_M, compliance, diffused, doubling, paper, reynolds
 
 CELLS = 20
 DS = HALF_LENGTH_M / CELLS
@@ -28,15 +27,11 @@ def test_a_step_diffuses_as_fourier_has_it() -> None:
         assert found == pytest.approx(1e5 * wave * math.exp(-0.5 * (0.5 * math.pi) ** 2), rel=2e-3, abs=1e-9)
 
 
-def test_a_ramp_ends_at_its_end() -> None:
-    """The inlet's pressure, and that of all else after a long time."""
+def test_a_ramp_ends_at_its_end_and_opening_is_sneddons() -> None:
+    """The inlet's pressure, and that of all else after a long time. 4 p a/E' at the middle under even pressure, to half a per cent with 20 cells."""
+    assert (compliance(CELLS)[0] @ np.full(CELLS, 3e5))[0] == pytest.approx(4.0 * 3e5 * HALF_LENGTH_M / E_PRIME_PA, rel=5e-3)
     p = diffused(np.zeros(CELLS + 1), np.full(CELLS, 1e-3), DS, 1e3, 1.0, (0.0, 2e5))
     assert p[0] == pytest.approx(2e5, rel=1e-12) and p[-1] == pytest.approx(2e5, rel=1e-2) and p[-1] < 2e5
-
-
-def test_opening_is_sneddons() -> None:
-    """4 p a/E' at the middle under even pressure, to half a per cent with 20 cells."""
-    assert (compliance(CELLS)[0] @ np.full(CELLS, 3e5))[0] == pytest.approx(4.0 * 3e5 * HALF_LENGTH_M / E_PRIME_PA, rel=5e-3)
 
 
 def test_the_crack_takes_up_what_comes_in(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -46,7 +41,7 @@ def test_the_crack_takes_up_what_comes_in(monkeypatch: pytest.MonkeyPatch) -> No
     assert w == pytest.approx(compliance(CELLS)[0] @ slow, rel=1e-9)
     quick, _ = reynolds([0.01] * 10, 3e5, 1e6, CELLS)
     assert quick[0] > 3.2e5 > quick[-1]
-    monkeypatch.setattr(ramped, "BULK_PA", 1e2 * BULK_PA)  # what is stored by compression is next to nothing: the crack's own answer stays
+    monkeypatch.setattr(flow, "BULK_PA", 1e2 * BULK_PA)  # what is stored by compression is next to nothing: the crack's own answer stays
     assert reynolds([0.01] * 10, 3e5, 1e6, CELLS)[0] == pytest.approx(quick, rel=2e-2)
 
 
@@ -69,11 +64,9 @@ def test_doubling_steps() -> None:
 
 def made(monkeypatch: pytest.MonkeyPatch, tip_Pa: float, opened_m: float) -> Any:
     """A run that ends at this net pressure at its tip, its mean opening grown by so much in a second."""
-    def fields(share: float) -> dict[str, np.ndarray]:
-        """An output at a share of the way."""
-        return {"pressure_Pa": np.array([2.1e6, lagging.CLOSING_PA + tip_Pa]), "opening_m": np.full(4, 1e-4 + share * opened_m)}
-
-    monkeypatch.setattr(lagging, "frames", lambda run, group: [(0.1 * k, fields(0.1 * k)) for k in range(11)])
+    p = np.array([2.1e6, lagging.CLOSING_PA + tip_Pa])
+    outputs = [(0.1 * k, {"pressure_Pa": p, "opening_m": np.full(4, 1e-4 + 0.1 * k * opened_m)}) for k in range(11)]
+    monkeypatch.setattr(lagging, "frames", lambda run, group: outputs)
     return SimpleNamespace(scene={"fluid": {"viscosity_Pa_s": 1.0}}, folder=Path("made"), summary=SimpleNamespace(steps=10))
 
 

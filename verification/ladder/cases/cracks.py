@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from verification.harness.given import energy, given, last, net_Pa, tip
+from verification.harness.given import energy, given, last, net_Pa, start_of, tip
 from verification.harness.load import LoadError, Run
 from verification.harness.paths import ANALYTIC
 from verification.harness.reference import value, values
@@ -24,9 +24,6 @@ RINGS = "the rings are 4 cells wide at every size: the error of the tip inside t
 SYMMETRY = "round-off: the crack is its own mirror image"
 PLACES = "where in their cells the tips lie differs from size to size"
 BALANCE = "round-off: the fluid carries just the in-situ stress"
-
-
-# --- references
 
 
 def block(run: Run, half_length_m: float | None = None, pressure: dict[str, Any] | None = None) -> dict[str, Any]:
@@ -64,9 +61,6 @@ def exact(quantity: str, share: float = 1.0, settings: Callable[[Run], dict[str,
     return lambda run: share * value(of, quantity, **settings(run))
 
 
-# --- what a run has
-
-
 def by_J(run: Run) -> float:
     """The K_I that J stands for, sqrt(J E'); Pa sqrt(m)."""
     return math.sqrt(run.summary.tips[0].J_N_m * value("block_crack", "E_prime_Pa", **block(run)))
@@ -99,11 +93,8 @@ def profile(share: float) -> Callable[[Run], Sample]:
 
 
 def volume_at(run: Run, tip_y_m: float) -> float:
-    """Volume of the modelled half of a growing fracture when its tip is at a height, m^2."""
-    found = run.history["fracture_volume_m2"][np.abs(run.history["tip_y_m"] - tip_y_m) < 1e-6]
-    if found.size == 0:
-        raise LoadError(f"{run.folder}: the tip was never at {tip_y_m} m")
-    return float(found[0])
+    """Volume of the modelled half of a growing fracture when its tip is at a height, m^2; IndexError where it never was."""
+    return float(run.history["fracture_volume_m2"][np.abs(run.history["tip_y_m"] - tip_y_m) < 1e-6][0])
 
 
 def volume_of(run: Run, half_length_m: float) -> float:
@@ -118,10 +109,9 @@ def K_by_energy(volume: Callable[[Run, float], float]) -> Callable[[Run], float]
 
 def start_Pa(run: Run) -> float:
     """Net pressure at which the fracture starts, Pa; it must then have gone on to 10 m."""
-    starts = [event for event in run.summary.events if event.kind == "start"]
-    if not starts or run.summary.tips[0].y_m < 10.0:
+    if run.summary.tips[0].y_m < 10.0:
         raise LoadError(f"{run.folder}: growth under a constant pressure stopped")
-    return net_Pa(run, starts[0].inlet_Pa)
+    return net_Pa(run, start_of(run).inlet_Pa)
 
 
 def nothing(name: str, unit: str, measured: Callable[[Run], float], scale: str) -> Quantity:
@@ -168,9 +158,6 @@ START = (Quantity.of("critical net pressure", "Pa", start_Pa, exact("critical_ne
 CLOSED = (nothing("J", "N/m", tip("J_N_m"), "J_N_m"), nothing("mouth opening", "m", MOUTH, "mouth_opening_m"))
 
 
-# --- cases
-
-
 def levels(cells_m: tuple[float, ...], variant: str = "", *of: Keys) -> tuple[Level, ...]:
     """Levels of cells (m) of a variant, with what further keys ask for at each."""
     return cell_levels(*cells_m, variant=variant, of=of)
@@ -189,11 +176,6 @@ def mid_cell(block_m: float) -> Keys:
         return f"domain.width_m={2.0 * x!r}", f"fracture.path_m=[[{x!r}, 0.0], [{x!r}, 5.0]]"
 
     return keys
-
-
-def within_cell(share: float) -> Keys:
-    """The tip a share of a cell beyond 5 m."""
-    return lambda h: (f"fracture.path_m=[[40.0, 0.0], [40.0, {5.0 + share * h!r}]]",)
 
 
 def turned(degrees: float, block_m: float) -> Keys:
@@ -225,7 +207,8 @@ CASES = (
     at_rest("wide", "crack in a block 400 m wide, graded: opening of order 1, since the tip's error is felt in all of it",
             levels(FINEST, "wide", lambda h: graded(h, 20.0))),
     at_rest("endless", "crack in a small block whose rock goes on for 1600 m", levels(FINEST, "endless", graded), ENDLESS),
-    *(at_rest(f"tip_{share:g}", f"tip {share:g} of a cell past a grid line", levels(FINE, "", within_cell(share), graded), AT_TIP)
+    *(at_rest(f"tip_{share:g}", f"tip {share:g} of a cell past a grid line",
+              levels(FINE, "", lambda h, share=share: (f"fracture.path_m=[[40.0, 0.0], [40.0, {5.0 + share * h!r}]]",), graded), AT_TIP)
       for share in (0.25, 0.5, 0.75)),
     at_rest("sloped", "net pressure that falls off towards the tip, as the run has it", levels(FINEST, "sloped", graded), SLOPED),
     at_rest("by_energy", "crack that grows from 4 m to 6 m at a constant pressure: K by what that releases",

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from verification.harness.given import crack_ends, energy, first_failed_Pa, given, last, net_Pa, rock, tip
+from verification.harness.given import crack_ends, energy, first_failed_Pa, given, last, net_Pa, rock, start_of, tip
 from verification.harness.load import LoadError, Run, frames
 from verification.harness.paths import ANALYTIC
 from verification.harness.reference import value
@@ -32,8 +32,6 @@ ONE_CELL = "at 1 m the failure length is one cell, which the run marks"
 COLUMNS = "sliding ends at a column of cells, and columns move along the interface as they shrink"
 BALANCE = "round-off: what the interface carries is in balance with the load on the top"
 
-
-# --- what a run has, and references for it
 
 def fresh_m(run: Run) -> float:
     """Length of the scene's fracture beyond the interface, m."""
@@ -70,9 +68,7 @@ def started_Pa(*by: str) -> Callable[[Run], float]:
     """Net pressure at which the fracture started, decided by one of these, Pa."""
 
     def measured(run: Run) -> float:
-        event = next((event for event in run.summary.events if event.kind == "start"), None)
-        if event is None:
-            raise LoadError(f"{run.folder}: the fracture did not start")
+        event = start_of(run)
         if event.by not in by:
             raise LoadError(f"{run.folder}: {event.by} decided about the start, not {' or '.join(by)}")
         return net_Pa(run, event.inlet_Pa)
@@ -81,10 +77,8 @@ def started_Pa(*by: str) -> Callable[[Run], float]:
 
 
 def ahead_Pa(run: Run, slipped_m: float = 0.0) -> float:
-    """Net pressure (Pa) at which the mean shear over the failure length beyond what has slipped (m) is the strength.
-
-    Compression keeps tension out of the criterion.
-    """
+    """Net pressure (Pa) at which the mean shear over the failure length beyond what has slipped (m) is the strength. Compression keeps tension out of
+    the criterion."""
     weak = {"ahead_m": law(run, "failure_length_m"), "shear_strength_Pa": law(run, "shear_strength_Pa")}
     return value("interface_ahead", "net_pressure_Pa", slipped_m=float(slipped_m), **weak, **block(run))
 
@@ -101,13 +95,6 @@ def failed_m(run: Run) -> float:
     off = np.abs(fields["0/x_m"].astype(float) - crack_ends(run)[0][0])
     return float(np.max(off[fields["0/failed_s"] >= 0.0], initial=0.0)) + 0.25 * given(run, "numerics.cell_m")
 
-
-def carried_Pa(run: Run) -> float:
-    """Mean normal traction of the interface when the run begins, Pa: that on the block's top."""
-    return float(np.mean(frames(run, "interfaces")[0][1]["0/reaction_n_Pa"].astype(float)))
-
-
-# --- quantities
 
 def slid(name: str, unit: str, quantity: str, measured: Callable[[Run], float], why: str = "", own_error: float = 1e-4) -> Quantity:
     """A number of a run with friction beside sliding_blocks, which says itself how far it is off."""
@@ -163,10 +150,10 @@ SLIDES = (
     slid("K_I", "Pa sqrt(m)", "K_I", K, RINGS),
     slid("stored energy", "J/m", "stored_J_m", energy("stored_J")),
 )
-CARRIES = (Quantity.of("mean normal traction", "Pa", carried_Pa, lambda run: given(run, "in_situ.vertical_Pa"), BALANCE),)
+CARRIES = (Quantity.of("mean normal traction", "Pa",  # when the run begins: that on the block's top
+                       lambda run: np.mean(frames(run, "interfaces")[0][1]["0/reaction_n_Pa"].astype(float)),
+                       lambda run: given(run, "in_situ.vertical_Pa"), BALANCE),)  # fmt: skip
 
-
-# --- cases
 
 def fracture_setting(top_m: float) -> str:
     """The fracture from the bottom up to a height, as a scene key."""
@@ -212,12 +199,6 @@ def crossing(increment_m: float, cells_m: tuple[float, ...], E_GPa: float = 10.0
     return case(name, says, own, crosses_by(increment_m, cells_m))
 
 
-def loaded(ratio: float) -> Case:
-    """Rocks of a ratio of moduli under the loaded state."""
-    own = levels("loaded", (1.0, 0.5), rock_above(10.0 * ratio), far=1.0)
-    return case(f"loaded_{ratio:g}", f"springs between rocks whose moduli are 1 to {ratio:g}, loaded: what they carry", own, CARRIES, smoke=2)
-
-
 CASES = (
     case("on", "tip on the soft interface: 38302 J/m, 7.6626 mm at 1 MPa", levels("rest", FINE), at_rest(), smoke=2),
     case("on_mid_cell", "the same, the interface at mid-cell", levels("rest", FINE, of=mid_cell), at_rest(), smoke=2),
@@ -235,7 +216,8 @@ CASES = (
          levels("slides", FINE, far=1.0), SLIDES, smoke=2),
     case("slides_more", "the same with friction 0.05, which holds far less",
          levels("slides", FINE, "interface.rough.coefficient=0.05", far=1.0), SLIDES),
-    *(loaded(ratio) for ratio in (2.0, 5.0, 10.0)),
+    *(case(f"loaded_{ratio:g}", f"springs between rocks whose moduli are 1 to {ratio:g}, loaded: what they carry",
+           levels("loaded", (1.0, 0.5), rock_above(10.0 * ratio), far=1.0), CARRIES, smoke=2) for ratio in (2.0, 5.0, 10.0)),
     case("crosses_1_explicit", "tip on the soft interface, with inertia: when it crosses by 1 m at once",
          levels("grows", MOVING), crosses_by(1.0, MOVING), mechanics="explicit"),
     case("start_2_explicit", "tip 2 m beyond the soft interface, with inertia: when it starts",

@@ -1,11 +1,11 @@
 """A suddenly pressurised crack: K_I(t) before any wave comes back, against a semi-infinite crack (Freund 1990, chapter 2)."""
 
-from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid
 
-from verification.harness.given import given, net_Pa
+from verification.harness.given import E_prime, given, net_Pa
 from verification.harness.load import LoadError, Run
 from verification.harness.paths import ANALYTIC
 from verification.harness.reference import value, values
@@ -26,46 +26,30 @@ def speed(name: str) -> float:
     return value("wave_speeds", f"{name}_m_s", **ROCK)
 
 
-def by_interaction(run: Run) -> Array:
-    """K_I from the interaction integral at each row of the history, Pa sqrt(m)."""
-    return run.history["K_I_Pa_sqrt_m"]
-
-
 def by_J(run: Run) -> Array:
     """K_I that J stands for at each row of the history, Pa sqrt(m)."""
-    E_prime = ROCK["youngs_modulus_Pa"] / (1.0 - ROCK["poisson_ratio"] ** 2)
-    return np.sqrt(np.maximum(run.history["J_N_m"], 0.0) * E_prime)
+    return np.sqrt(np.maximum(run.history["J_N_m"], 0.0) * E_prime(run))
 
 
-def window(run: Run, K_of: Callable[[Run], Array], from_m: float) -> tuple[Array, Array, Array]:
+def window(run: Run, K: Array, from_m: float) -> tuple[Array, Array, Array]:
     """Times (s) with c_P t from `from_m` to the first wave's return, and K_I measured and exact at them (Pa sqrt(m))."""
     way = speed("c_P") * run.history["time_s"]
     inside = (way >= from_m) & (way <= RETURN_M)
     if np.count_nonzero(inside) < 20:
         raise LoadError(f"{run.folder}: fewer than 20 rows of history before a wave comes back")
     times, pressure = run.history["time_s"][inside], net_Pa(run, given(run, "fluid.inlet.start_Pa"))
-    return times, K_of(run)[inside], values("freund_step_pressure", "K_I", pressure_Pa=pressure, time_s=times.tolist(), **ROCK)
+    return times, K[inside], values("freund_step_pressure", "K_I", pressure_Pa=pressure, time_s=times.tolist(), **ROCK)
 
 
 def settled(run: Run) -> tuple[Array, Array, Array]:
     """The same of the interaction integral, from 10 of the run's cells on."""
-    return window(run, by_interaction, SETTLED_CELLS * given(run, "numerics.cell_m"))
-
-
-def course(K_of: Callable[[Run], Array]) -> Callable[[Run], Sample]:
-    """K_I(t) as a whole, over the same time at all sizes."""
-    return lambda run: Sample(*window(run, K_of, SETTLED_M)[1:])
+    return window(run, run.history["K_I_Pa_sqrt_m"], SETTLED_CELLS * given(run, "numerics.cell_m"))
 
 
 def farthest(K: Array, exact: Array) -> Sample:
     """The one of many values that is farthest off its own exact one."""
     worst = int(np.argmax(np.abs(K / exact - 1.0)))
     return Sample.of(float(K[worst]), float(exact[worst]))
-
-
-def farthest_off(run: Run) -> Sample:
-    """K_I where it is farthest off, from 10 cells to the first return."""
-    return farthest(*settled(run)[1:])
 
 
 def mean_farthest_off(run: Run) -> Sample:
@@ -75,7 +59,7 @@ def mean_farthest_off(run: Run) -> Sample:
     starts = times[times <= times[-1] - length]
 
     def means(series: Array) -> Array:
-        area = np.concatenate([[0.0], np.cumsum(0.5 * (series[1:] + series[:-1]) * np.diff(times))])
+        area = cumulative_trapezoid(series, times, initial=0.0)
         return (np.interp(starts + length, times, area) - np.interp(starts, times, area)) / length
 
     return farthest(means(K), means(exact))
@@ -83,9 +67,9 @@ def mean_farthest_off(run: Run) -> Sample:
 
 NO_ORDER = "the grid answers a step with an overshoot at c_P t = 10 to 15 cells, the same at all sizes, only sooner"
 QUANTITIES = (
-    Quantity("K_I(t), c_P t = 20 to 60 m", "Pa sqrt(m)", course(by_interaction)),
-    Quantity("K_I(t) by J, c_P t = 20 to 60 m", "Pa sqrt(m)", course(by_J)),
-    Quantity("K_I(t) farthest off, c_P t = 10 cells to 60 m", "Pa sqrt(m)", farthest_off, NO_ORDER),
+    Quantity("K_I(t), c_P t = 20 to 60 m", "Pa sqrt(m)", lambda run: Sample(*window(run, run.history["K_I_Pa_sqrt_m"], SETTLED_M)[1:])),
+    Quantity("K_I(t) by J, c_P t = 20 to 60 m", "Pa sqrt(m)", lambda run: Sample(*window(run, by_J(run), SETTLED_M)[1:])),
+    Quantity("K_I(t) farthest off, c_P t = 10 cells to 60 m", "Pa sqrt(m)", lambda run: farthest(*settled(run)[1:]), NO_ORDER),
     Quantity("mean over h/c_R farthest off, same time", "Pa sqrt(m)", mean_farthest_off, NO_ORDER),
 )
 

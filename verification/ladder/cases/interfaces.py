@@ -26,7 +26,6 @@ LETS_GO = 0.3  # of what makes it slip: where the solver splits an interface wit
 SLIP = "the mean over a column (second order, slips later) stands against a crack that is 0.2 % too soft; columns move along the peak"
 SMALL = "it is the block's edges that cost a per cent"
 
-# --- references: a name with its settings for a run
 
 Reference = Callable[[Run], tuple[str, dict[str, Any]]]
 
@@ -61,17 +60,10 @@ def first_slip_Pa(run: Run) -> float:
     return value("coulomb_first_slip", "net_pressure_Pa", **law, **place)
 
 
-# --- quantities
-
-
 def quantity(name: str, unit: str, measured: Callable[[Run], float], reference: Reference, exact: str, why: str = RINGS) -> Quantity:
     """A number of a run beside a value of its reference."""
 
-    def wanted(run: Run) -> float:
-        source, settings = reference(run)
-        return value(source, exact, **settings)
-
-    return Quantity.of(name, unit, measured, wanted, why)
+    return Quantity.of(name, unit, measured, lambda run: value(reference(run)[0], exact, **reference(run)[1]), why)
 
 
 def both_tips(reference: Reference, why: str = RINGS) -> tuple[Quantity, ...]:
@@ -92,9 +84,6 @@ MIXED = tuple(
     )
 )  # fmt: skip
 SLIPS = (Quantity.of("net pressure at 0.3 of first slip", "Pa", first_failed_Pa, first_slip_Pa, SLIP),)
-
-
-# --- levels
 
 
 def path_setting(distance_m: float, parallel: bool, middle_m: float = MIDDLE_M) -> str:
@@ -129,9 +118,6 @@ def stiffness_settings(stiffness: float) -> tuple[str, ...]:
     return tuple(f"interface.springs.{name}_stiffness_Pa_m={D!r}" for name in ("normal", "shear"))
 
 
-# --- cases
-
-
 near_bonded, near_springs, near_friction = (case_of(scene, smoke_levels=1) for scene in (BONDED, SPRINGS, FRICTION))
 
 
@@ -143,12 +129,6 @@ def in_both(lies: str, distance_m: float, *cells: int, smoke: int = 1) -> tuple[
                     levels(f"{lies}_in_{held_by}", distance_m, *cells), both_tips(bonded) if lies == "normal" else MIXED, smoke)
         for held_by in ("stiff", "soft")
     )  # fmt: skip
-
-
-def sprung(stiffness: float) -> Case:
-    """A crack normal to a soft interface of D a/E' = stiffness, 1 m from it."""
-    own = levels("springs", 1.0, 4, 8, settings=stiffness_settings(stiffness))
-    return near_springs(f"springs_{stiffness:g}", f"crack 1 m from springs of D a/E' = {stiffness:g}, normal to them", own, both_tips(springs))
 
 
 def slipping(coefficient: float, longer_s: float) -> Case:
@@ -168,7 +148,8 @@ CASES = (
     *in_both("parallel", 2.5, 2, 4, 8, 16, smoke=2),
     *in_both("parallel", 1.25, 2, 4, 8),
     *in_both("parallel", 5.0, 4, 8, 16),
-    *(sprung(stiffness) for stiffness in (0.01, 0.1, 1.0, 10.0, 100.0)),
+    *(near_springs(f"springs_{stiffness:g}", f"crack 1 m from springs of D a/E' = {stiffness:g}, normal to them",
+                   levels("springs", 1.0, 4, 8, settings=stiffness_settings(stiffness)), both_tips(springs)) for stiffness in (0.01, 0.1, 1.0, 10.0, 100.0)),
     near_springs("free", "crack 1 m from springs so soft that they are a free surface",  # K is 4e-6 below that near one
                  levels("springs", 1.0, 4, 8, settings=stiffness_settings(1e-6)), both_tips(without_springs("free"))),
     near_springs("frictionless", "crack 1 m from a closed interface without friction",

@@ -42,23 +42,13 @@ def output_rows(run: Run) -> Array:
     return np.array(rows)
 
 
-def course(solution: str, name: str) -> Callable[[Run], Sample]:
-    """A quantity at the output times from 10 s on, each weighted so that its relative error counts."""
+def course(solution: str, name: str, rows: slice = slice(None)) -> Callable[[Run], Sample]:
+    """A quantity at (some of) the output times from 10 s on, each weighted so that its relative error counts."""
 
     def sample(run: Run) -> Sample:
-        rows = output_rows(run)
-        expected = np.array([exact(run, solution, name, float(run.history["time_s"][row])) for row in rows])
-        return Sample(found(run, name)[rows], expected, 1.0 / expected**2)
-
-    return sample
-
-
-def at_end(solution: str, name: str) -> Callable[[Run], Sample]:
-    """A quantity at the end of the run."""
-
-    def sample(run: Run) -> Sample:
-        row = output_rows(run)[-1]
-        return Sample.of(float(found(run, name)[row]), exact(run, solution, name, float(run.history["time_s"][row])))
+        asked = output_rows(run)[rows]
+        expected = np.array([exact(run, solution, name, float(run.history["time_s"][row])) for row in asked])
+        return Sample(found(run, name)[asked], expected, 1.0 / expected**2)
 
     return sample
 
@@ -82,7 +72,8 @@ def quantities(solution: str) -> tuple[Quantity, ...]:
     """What is held against a solution: over time and at the end; and the fluid's volume."""
     late = {words: OVERTAKEN if words == "half length" and solution != TOUGHNESS else {} for words in NAMES}
     over_time = (Quantity(f"{words}, 10 to 100 s", unit, course(solution, name), no_order_at=late[words]) for words, (name, unit) in NAMES.items())
-    return (*over_time, *(Quantity(f"{words} at 100 s", unit, at_end(solution, name), STEPS) for words, (name, unit) in NAMES.items()), *FLUID)
+    at_end = (Quantity(f"{words} at 100 s", unit, course(solution, name, slice(-1, None)), STEPS) for words, (name, unit) in NAMES.items())
+    return (*over_time, *at_end, *FLUID)
 
 
 START = "fracture.path_m=[[120.0, 0.0], [120.0, 1.0]]"  # by 10 s the fracture has forgotten it

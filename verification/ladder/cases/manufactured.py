@@ -59,14 +59,9 @@ def case(name: str, says: str, exact: Exact, settings: tuple[str, ...], reasons:
     return Case(name, says, SCENE, "explicit" if variant else "quasistatic", levels, quantities, min(2, len(cells) - 2))
 
 
-def set_to(shape: str, transfer: str = "flip", kinematics: str = "total") -> tuple[str, ...]:
+def set_to(shape: str, transfer: str, kinematics: str) -> tuple[str, ...]:
     """The keys of a way to solve it."""
     return f"numerics.shape={shape}", f"numerics.transfer={transfer}", f"numerics.kinematics={kinematics}"
-
-
-def at_rest(shape: str) -> Case:
-    """The wave's shape at rest."""
-    return case(f"static_{shape}", f"the wave's shape at rest, with {shape}", AT_REST, (f"numerics.shape={shape}",), {})
 
 
 def standing(shape: str, transfer: str, kinematics: str) -> Case:
@@ -90,8 +85,7 @@ def stretching(shape: str, transfer: str, reasons: dict[str, str]) -> Case:
 
 
 CASES = (
-    at_rest("bspline2"),
-    at_rest("linear"),
+    *(case(f"static_{shape}", f"the wave's shape at rest, with {shape}", AT_REST, (f"numerics.shape={shape}",), {}) for shape in ("bspline2", "linear")),
     *(standing(shape, transfer, "total") for shape in ("bspline2", "linear") for transfer in ("flip", "xpic2", "pic")),
     *(standing(shape, transfer, "updated") for shape in ("bspline2", "gimp", "linear") for transfer in ("flip", "xpic2")),
     standing("gimp", "pic", "updated"),

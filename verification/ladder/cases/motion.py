@@ -1,6 +1,7 @@
 """Rigid motion, uniform stress, springs, own weight, layers that share a load: what a discretisation has to have right."""
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -29,14 +30,14 @@ def size_m(run: Run) -> tuple[float, float]:
     return given(run, "domain.width_m"), given(run, "domain.height_m")
 
 
-def E_of(run: Run) -> float:
-    """Young's modulus of the stiff rock, Pa."""
-    return rock(run)["youngs_modulus_Pa"]
+def of_rock(run: Run, key: str, name: str = "stiff") -> float:
+    """A number of a rock."""
+    return given(run, f"rock.{name}.{key}")
 
 
-def rho_of(run: Run, name: str = "stiff") -> float:
-    """Density of a rock, kg/m^3."""
-    return given(run, f"rock.{name}.density_kg_m3")
+def rho_of(run: Run) -> float:
+    """Density of the stiff rock, kg/m^3."""
+    return of_rock(run, "density_kg_m3")
 
 
 def field(name: str, unit: str, exact: Callable[[Run, Fields], Array | float], why: str = SINGLE) -> Quantity:
@@ -60,9 +61,7 @@ def none_of(name: str, unit: str, fields: tuple[str, ...], scale: Callable[[Run]
     return Quantity(name, unit, sample, why)
 
 
-def no_stress(scale: Callable[[Run], float], why: str) -> Quantity:
-    """All components of the particles' stress, which should be none, against a stress (Pa)."""
-    return none_of("stress", "Pa", ("s_xx_Pa", "s_yy_Pa", "s_xy_Pa"), scale, why)
+no_stress = partial(none_of, "stress", "Pa", ("s_xx_Pa", "s_yy_Pa", "s_xy_Pa"))
 
 
 def closure(run: Run) -> float:
@@ -77,8 +76,7 @@ def closure(run: Run) -> float:
 ENERGY = Quantity.of("energy unexplained", "1", closure, lambda _: 0.0, ROUND_OFF, scale=1.0)
 
 
-# --- A free block -------------------------------------------------------------------------------------------------------
-
+# --- a free block
 MOVES = ANALYTIC / "rigid_motion.toml"
 
 
@@ -88,29 +86,15 @@ def mass(run: Run) -> float:
     return rho_of(run) * width * height
 
 
-def momentum(name: str) -> Callable[[Run], float]:
-    """sum m v of a component at the last output, kg/s."""
+def summed(of: Callable[[Fields], Array]) -> Callable[[Run], float]:
+    """sum m f of the particles at the last output, with arms from the block's middle now (x, y) and at the start (X, Y)."""
 
     def measured(run: Run) -> float:
-        fields = last_fields(run)
-        return rho_of(run) * float(np.sum(fields["volume_m2"] * fields[name]))
+        at, (width, height) = last_fields(run), size_m(run)
+        arms = {"x": at["x_m"] - 0.5 * width, "y": at["y_m"] - 0.5 * height, "X": at["X"] - 0.5 * width, "Y": at["Y"] - 0.5 * height}
+        return rho_of(run) * float(np.sum(at["volume_m2"] * of(at | arms)))
 
     return measured
-
-
-def spin(run: Run) -> float:
-    """Angular momentum about the middle at the last output, kg m/s."""
-    fields, (width, height) = last_fields(run), size_m(run)
-    arm_x, arm_y = fields["x_m"] - 0.5 * width, fields["y_m"] - 0.5 * height
-    moment = arm_x * fields["v_y_m_s"] - arm_y * fields["v_x_m_s"]
-    return rho_of(run) * float(np.sum(fields["volume_m2"] * moment))
-
-
-def spin_of_particles(run: Run) -> float:
-    """The same of particles that turn rigidly: sum m (X^2 + Y^2) from the middle, times the rate."""
-    fields, (width, height) = last_fields(run), size_m(run)
-    arms = (fields["X"] - 0.5 * width) ** 2 + (fields["Y"] - 0.5 * height) ** 2
-    return SPIN * rho_of(run) * float(np.sum(fields["volume_m2"] * arms))
 
 
 def kinetic_kept(why: str = "") -> Quantity:
@@ -143,9 +127,9 @@ FREE = (
         "flight", "A block that flies by a tenth of a metre keeps its momentum and energy and is not strained.", "flies",
         field("u_x_m", "m", lambda run, _: SPEED[0] * run.summary.time_s),
         field("u_y_m", "m", lambda run, _: SPEED[1] * run.summary.time_s),
-        no_stress(lambda run: E_of(run) * abs(SPEED[0]) * run.summary.time_s / size_m(run)[0], ROUND_OFF),
-        Quantity.of("momentum along x", "kg/s", momentum("v_x_m_s"), lambda run: SPEED[0] * mass(run), SINGLE),
-        Quantity.of("momentum along y", "kg/s", momentum("v_y_m_s"), lambda run: SPEED[1] * mass(run), SINGLE),
+        no_stress(lambda run: of_rock(run, "youngs_modulus_Pa") * abs(SPEED[0]) * run.summary.time_s / size_m(run)[0], ROUND_OFF),
+        Quantity.of("momentum along x", "kg/s", summed(lambda at: at["v_x_m_s"]), lambda run: SPEED[0] * mass(run), SINGLE),
+        Quantity.of("momentum along y", "kg/s", summed(lambda at: at["v_y_m_s"]), lambda run: SPEED[1] * mass(run), SINGLE),
         kinetic_kept(ROUND_OFF), ENERGY,
     ),
     *free(
@@ -153,8 +137,9 @@ FREE = (
         "edges, whose lumped masses have their middle inside.", "turns",  # a node there moves as the middle of mass of its points does
         field("u_x_m", "m", lambda run, at: -SPIN * run.summary.time_s * (at["Y"] - 4.0), ""),
         field("u_y_m", "m", lambda run, at: SPIN * run.summary.time_s * (at["X"] - 4.0), ""),
-        no_stress(lambda run: E_of(run) * SPIN * run.summary.time_s, ""),
-        Quantity.of("angular momentum", "kg m/s", spin, spin_of_particles),
+        no_stress(lambda run: of_rock(run, "youngs_modulus_Pa") * SPIN * run.summary.time_s, ""),
+        Quantity.of("angular momentum", "kg m/s", summed(lambda at: at["x"] * at["v_y_m_s"] - at["y"] * at["v_x_m_s"]),
+                    summed(lambda at: SPIN * (at["X"] ** 2 + at["Y"] ** 2))),
         kinetic_kept(),
     ),
     *free(
@@ -168,8 +153,7 @@ FREE = (
 )  # fmt: skip
 
 
-# --- Uniform stress -----------------------------------------------------------------------------------------------------
-
+# --- uniform stress
 PATCH = ANALYTIC / "patch.toml"
 
 
@@ -185,7 +169,8 @@ STRESSES = (
     field("s_yy_Pa", "Pa", lambda run, _: -given(run, "in_situ.vertical_Pa")),
     Quantity("s_xy_Pa", "Pa", no_shear, ROUND_OFF),
     # Since the loaded state, against the displacement of a block loaded anew.
-    none_of("displacement", "m", ("u_x_m", "u_y_m"), lambda run: given(run, "in_situ.vertical_Pa") * size_m(run)[1] / E_of(run), ROUND_OFF),
+    none_of("displacement", "m", ("u_x_m", "u_y_m"),
+            lambda run: given(run, "in_situ.vertical_Pa") * size_m(run)[1] / of_rock(run, "youngs_modulus_Pa"), ROUND_OFF),
 )
 
 
@@ -210,8 +195,7 @@ PATCHES = tuple(
 )  # fmt: skip
 
 
-# --- Layers that share a load -------------------------------------------------------------------------------------------
-
+# --- layers that share a load
 LAYERS = ANALYTIC / "loaded_layers.toml"
 MIDDLE = 8.0  # m to each side of the middle, 9 heights from the ends
 
@@ -235,12 +219,8 @@ def middle(run: Run) -> tuple[Fields, Array]:
 
 def layer_mean(layer: int) -> Quantity:
     """Mean stress along x of a layer about the middle."""
-
-    def mean(run: Run) -> float:
-        fields, of = middle(run)
-        return float(np.mean(fields["s_xx_Pa"][of == layer]))
-
-    return Quantity.of(f"mean s_xx_Pa of layer {layer}", "Pa", mean, lambda run: laminate(run)[layer])
+    return Quantity.of(f"mean s_xx_Pa of layer {layer}", "Pa",
+                       lambda run: np.mean(middle(run)[0]["s_xx_Pa"][middle(run)[1] == layer]), lambda run: laminate(run)[layer])  # fmt: skip
 
 
 def of_points(name: str, exact: Callable[[Run, Array], Array]) -> Quantity:
@@ -261,8 +241,7 @@ SHARING = Case(
 )  # fmt: skip
 
 
-# --- Own weight and springs ---------------------------------------------------------------------------------------------
-
+# --- own weight and springs
 WEIGHT = ANALYTIC / "own_weight.toml"
 G = 1.0  # m/s^2, of the scene
 SETTLED = ("stop.time_s=0.2",)  # what is left of the slowest motion is then 1e-13 of it
@@ -289,16 +268,13 @@ def spring_jump(run: Run) -> Sample:
     """Opening of the spring (negative: it is pressed) at all its points, m."""
     fields = last(run, "interfaces")[1]
     opening = np.concatenate([fields[name] for name in sorted(fields) if name.endswith("/opening_m")])
-    load = rho_of(run, "soft") * G * (size_m(run)[1] - run.interfaces_m[0])
+    load = of_rock(run, "density_kg_m3", "soft") * G * (size_m(run)[1] - run.interfaces_m[0])
     return Sample(opening.astype(float), np.full(opening.shape, -load / given(run, "interface.spring.normal_stiffness_Pa_m")))
 
 
 def spring(mechanics: str, D: float, *more: str, name: str = "", why: str = ROUND_OFF, mid: bool = True) -> Case:
-    """A spring of D Pa/m that carries the upper half of a bar.
-
-    With inertia a jump adds up what the springs' sweeps leave of each step, which shows in stiff ones: at mid-cell from
-    1e12 Pa/m (1.5e-5 of the jump), on a grid line from 1e15.
-    """
+    """A spring of D Pa/m that carries the upper half of a bar. With inertia a jump adds up what the springs' sweeps leave of each step, which shows
+    in stiff ones: at mid-cell from 1e12 Pa/m (1.5e-5 of the jump), on a grid line from 1e15."""
     settings = (f"interface.spring.normal_stiffness_Pa_m={D!r}", *more, *(SETTLED if mechanics == "explicit" else ()))
     place = 'strata.layers=[{rock = "stiff", thickness_m = 3}, {rock = "soft"}]'
     mid_cell = Level("2 m, mid-cell", 2.0, ("numerics.cell_m=2.0", place, *settings), "spring")

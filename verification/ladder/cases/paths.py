@@ -5,6 +5,7 @@ increments have three cells because the solver takes the whole turn of maximum h
 """
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -29,9 +30,9 @@ def same_6(run: Run) -> Array:
     return exact_path(6, run.increment_m, "forward", GROWTH_M)
 
 
-def drift(path: Array, top: float) -> float:
-    """x of a path at a height, m."""
-    return float(np.interp(top, path[:, 1], path[:, 0]))
+def drift(path: Array, top: Any) -> Any:
+    """x of a path at a height, or at heights, m."""
+    return np.interp(top, path[:, 1], path[:, 0])
 
 
 def along_5(run: Run) -> Sample:
@@ -41,16 +42,14 @@ def along_5(run: Run) -> Sample:
     if path[-1, 1] < top:
         raise LoadError(f"{run.folder}: the fracture grew less than {GROWTH_M:g} m")
     path = path[path[:, 1] <= top][1:]
-    return Sample(path[:, 0], np.interp(path[:, 1], exact[:, 1], exact[:, 0]), None, abs(drift(exact, top)), reference_error=0.002)
+    return Sample(path[:, 0], drift(exact, path[:, 1]), None, abs(drift(exact, top)), reference_error=0.002)
 
 
 def cells_off(exact: Callable[[Run], Array], why: str = "") -> Quantity:
     """Largest distance from a path over its first 20 m, relative to a cell."""
 
-    def sample(run: Run) -> Sample:
-        return Sample.of(farthest(grown(run), exact(run)), 0.0, scale=given(run, "numerics.cell_m"))
-
-    return Quantity("distance from the path, in cells", "m", sample, why)
+    return Quantity("distance from the path, in cells", "m",
+                    lambda run: Sample.of(farthest(grown(run), exact(run)), 0.0, scale=given(run, "numerics.cell_m")), why)  # fmt: skip
 
 
 def kink_deg(run: Run) -> float:
@@ -69,11 +68,6 @@ def first_turn(experiment: int) -> Quantity:
 def levels(increment_cells: float) -> tuple[Level, ...]:
     """Levels of cells with increments of so many cells."""
     return cell_levels(1.0, 0.5, 0.25, of=(lambda h: (f"fracture.increment_m={increment_cells * h!r}",),))
-
-
-def block_level(variant: str) -> tuple[Level, ...]:
-    """The one level of a variant in the study's block."""
-    return (Level("1 m", 1.0, ("fracture.increment_m=2.0",), variant),)
 
 
 _FLOOR = {"0.25 m": "4 mm are left, of either sign: the edges 200 m away alone shift the path by 2 mm"}
@@ -97,9 +91,9 @@ CASES = (
     case(5, "", "A crack in soft rock 5 m beside stiff rock drifts away from it: a stable path, increments of two cells.", "quasistatic", levels(2.0),
          first_turn(5), Quantity(_ALONG, "m", along_5, no_order_at=_FLOOR), DRIFT_5, cells_off(converged_5, _CELLS)),
     case(5, "_block", "The same in the study's block of 80 m with its sides held, which the infinite plane knows nothing of.", "quasistatic",
-         block_level("block"), Quantity(_ALONG, "m", along_5)),
+         (Level("1 m", 1.0, ("fracture.increment_m=2.0",), "block"),), Quantity(_ALONG, "m", along_5)),
     case(5, "_explicit", "The same with inertia: the tip runs at a good part of the Rayleigh speed, which equilibria know nothing of.", "explicit",
-         block_level("block_explicit"), cells_off(converged_5)),
+         (Level("1 m", 1.0, ("fracture.increment_m=2.0",), "block_explicit"),), cells_off(converged_5)),
     case(6, "", "A crack in stiff rock 5 m beside soft rock turns to it under a larger stress across: unstable, increments of three cells.",
          "quasistatic", levels(3.0), first_turn(6), RISE_6, cells_off(same_6, _CELLS)),
 )  # fmt: skip

@@ -1,7 +1,7 @@
 """A weak interface fails at once and its load swings onto another one: what fails with inertia and would not without."""
 
 from collections.abc import Callable, Mapping
-from functools import lru_cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -22,7 +22,7 @@ DAMPED_RATIO = 1.2
 SECTION = "Sudden failure of a weak interface"
 
 
-@lru_cache
+@cache
 def chain(variant: str) -> Chain:
     """The blocks and springs between the two bonds."""
     share = UPPER[variant]
@@ -48,13 +48,9 @@ def damping(run: Run) -> float:
 
 
 def largest_carried(run: Run) -> float:
-    """Largest tension of the particles beside the foot's bond at any output time, over the last bond's strength."""
-    def beside(fields: Mapping[str, np.ndarray]) -> float:
-        """The mean over the cells above and below the bond."""
-        near = np.abs(fields["y_m"] - fields["u_y_m"] - 3.0) < 1.0
-        return float(fields["s_yy_Pa"][near].mean())
-
-    return max(beside(fields) for _, fields in frames(run, "particles")) / LAST_PA
+    """Largest mean tension of the particles in the cells above and below the foot's bond at any output time, over the last bond's strength."""
+    every = [fields for _, fields in frames(run, "particles")]
+    return max(float(one["s_yy_Pa"][np.abs(one["y_m"] - one["u_y_m"] - 3.0) < 1.0].mean()) for one in every) / LAST_PA
 
 
 def swung(run: Run) -> Checked:
@@ -86,25 +82,17 @@ def weaker_fails(run: Run) -> Checked:
     let_go, foot, ratio = failed_s(run, LAST), failed_s(run, FOOT), strength(run)
     if (let_go is None) == (foot is None):
         raise LoadError(f"{run.folder}: {'neither bond' if foot is None else 'both bonds'} failed")
-    time = let_go if let_go is not None else foot
-    pull = BLOCK_KG_M2 * PULL_M_S2 * 0.5 * (1.0 - np.cos(0.5 * np.pi * min(2.0, float(time or 0.0))))
+    pull = BLOCK_KG_M2 * PULL_M_S2 * 0.5 * (1.0 - np.cos(0.5 * np.pi * min(2.0, let_go or foot or 0.0)))
     words = "the foot fails" if foot is not None else "the foot holds"
     return close((FROM_PA + SHARE * float(pull)) / LAST_PA, min(1.0, ratio), 0.01, words)
 
 
-def turns(value: Callable[[Run], float]) -> Callable[[Mapping[str, Run]], float]:
+def turns(value: Callable[[Run], float], runs: Mapping[str, Run]) -> float:
     """The value between the last run whose foot failed and the first one whose foot held; raises LoadError where they are mixed."""
-
-    def read(runs: Mapping[str, Run]) -> float:
-        fail, hold = ([value(run) for run in runs.values() if (failed_s(run, FOOT) is not None) == failed] for failed in (True, False))
-        if not fail or not hold or max(fail) >= min(hold):
-            raise LoadError("feet that fail and feet that hold are not on two sides of one value")
-        return 0.5 * (max(fail) + min(hold))
-
-    return read
-
-
-by_strength, by_damping = turns(strength), turns(damping)
+    fail, hold = ([value(run) for run in runs.values() if (failed_s(run, FOOT) is not None) == failed] for failed in (True, False))
+    if not fail or not hold or max(fail) >= min(hold):
+        raise LoadError("feet that fail and feet that hold are not on two sides of one value")
+    return 0.5 * (max(fail) + min(hold))
 
 
 def foot_setting(ratio: float) -> str:
@@ -122,11 +110,6 @@ def slow(over_s: float) -> tuple[str, ...]:
     return foot_setting(9.0), pull_setting(0.12, over_s), f"stop.time_s={0.65 * over_s + SWING_S!r}"
 
 
-def damped(c: float) -> tuple[str, ...]:
-    """A damped run."""
-    return foot_setting(DAMPED_RATIO), f"numerics.damping_1_s={c!r}"
-
-
 STRENGTH = Parameter("strength of the foot over that of the bond above")
 TWO_MODES = "(w_2^2 + w_1^2)/(w_2^2 - w_1^2) of two blocks on springs, reached after one period of the slow mode as w_2/w_1 is"
 STILL = ("numerics.mechanics=quasistatic", f"in_situ.vertical_Pa={-FROM_PA!r}", pull_setting(PULL_M_S2, 2.0), "stop.time_s=2")
@@ -137,9 +120,9 @@ def family(name: str, title: str, says: str, *rest: Any, check_name: str = "tens
     return Family(f"cascade{name}", f"A bond fails: {title}", says, *rest, section=SECTION, check_name=check_name, **more)
 
 
-def edge(source: str, predicted: Callable[[], float], read: Callable[[Mapping[str, Run]], float] = by_strength) -> Edge:
+def edge(source: str, predicted: Callable[[], float], value: Callable[[Run], float] = strength) -> Edge:
     """Where the foot ceases to fail."""
-    return Edge(source, predicted, read=read, unsound_above=False)
+    return Edge(source, predicted, read=partial(turns, value), unsound_above=False)
 
 
 FAMILIES = (
@@ -156,9 +139,10 @@ FAMILIES = (
     family("_damped", "damping, with inertia",
            f"Damping brings the answer with inertia to the other one: a foot that is {DAMPED_RATIO:g} times as strong holds beyond the edge.",
            Parameter("damping", "1/s"),
-           walked(at_values(SCENE, damped, "{:g}"), (0.0, 0.1, 0.15, 0.19, 0.197, 0.202, 0.21, 0.3, 0.5, 1.0), smoke=(0.1, 0.3)), swung,
+           walked(at_values(SCENE, lambda c: (foot_setting(DAMPED_RATIO), f"numerics.damping_1_s={c!r}"), "{:g}"),
+                  (0.0, 0.1, 0.15, 0.19, 0.197, 0.202, 0.21, 0.3, 0.5, 1.0), smoke=(0.1, 0.3)), swung,
            edge=edge(f"With damping: modes decay as e^(-c t/2); the c at which what the foot carries just reaches {DAMPED_RATIO:g}.",
-                     lambda: damping_for(chain(""), DAMPED_RATIO, SWING_S), by_damping)),
+                     lambda: damping_for(chain(""), DAMPED_RATIO, SWING_S), damping)),
     family("_slow", "how slowly it was loaded", "Slower loading does not make the failure slower: the foot's swing is the same.",
            Parameter("time of the pull", "s"), walked(at_values(SCENE, slow, "{:g} s"), (1.5, 2.0, 4.0, 8.0), smoke=(2.0,)), swung, (STABLE,)),
 )  # fmt: skip

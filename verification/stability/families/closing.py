@@ -32,16 +32,13 @@ def over_floor(rule: str) -> Family:
                   Parameter("least opening", "m"), tuple(points), check, beyond=(STABLE,), section=SECTION, check_name=EXCURSION)  # fmt: skip
 
 
-def falling(rate: float) -> tuple[str, ...]:
-    """The inlet's pressure falls by so much, MPa/s."""
-    return f"fluid.inlet.rate_Pa_s=-{rate}e6", f"stop.time_s={2.4 / rate:g}", f"output.fields_every_s={0.12 / rate:g}"
-
-
 FAMILIES = (
     over_floor("trapezoid"), over_floor("backward-euler"),
     Family(
         "closing_rate", "k to 0 at closure: rate of closing, no floor", "However fast the faces meet, pressures stay finite.",
-        Parameter("fall of the inlet's pressure", "MPa/s", log=True), walked(at_values(SCENE, falling, "{:g}"), (5.0, 20.0, 80.0, 320.0), smoke=(80.0,)),
+        Parameter("fall of the inlet's pressure", "MPa/s", log=True), walked(at_values(
+            SCENE, lambda rate: (f"fluid.inlet.rate_Pa_s=-{rate}e6", f"stop.time_s={2.4 / rate:g}", f"output.fields_every_s={0.12 / rate:g}"), "{:g}",
+        ), (5.0, 20.0, 80.0, 320.0), smoke=(80.0,)),
         check, beyond=(STABLE, MARKED), section=SECTION, check_name=EXCURSION,
     ),
 )  # fmt: skip

@@ -1,5 +1,7 @@
 """Flow and rock solved one after the other, or together; J with the in-situ stress in it: what becomes of both, by models of their own."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from verification.harness.given import E_prime, given, path_key
@@ -7,9 +9,9 @@ from verification.harness.load import Run
 from verification.stability.cracks import AT_REST, CRACK, MIDDLE_M, SETTLING, upright
 from verification.stability.family import Checked, Family, Parameter, Point, at_most, close
 from verification.stability.theory.background import J_integral, solve
-from verification.stability.theory.staggered import BULK_PA, compliance, conductances, growth
+from verification.stability.theory.flow import BULK_PA, compliance, conductances, growth
 
-# --- staggered
+
 NET_PA = 0.3e6
 
 
@@ -33,27 +35,21 @@ def marched(dt: float, cells: int = 20, steps: int = 4) -> float:
     return errors[-1] / errors[-2]
 
 
-def lagged(point: Point) -> Checked:
-    """Marched in time against the eigenvalue of the step's map."""
-    return close(marched(point.value), growth(point.value), 0.03, "growth of an error in a step, lagged")
-
-
-def together(point: Point) -> Checked:
-    """The same step solved together: no error grows."""
-    return at_most(growth(point.value, lagged=False), 1.0 + 1e-9, "growth of an error in a step, together")
-
-
+# Marched in time against the eigenvalue of the step's map; the same step solved together, by which no error grows.
+WAYS: dict[str, Callable[[Point], Checked]] = {
+    "lagged": lambda point: close(marched(point.value), growth(point.value), 0.03, "growth of an error in a step, lagged"),
+    "together": lambda point: at_most(growth(point.value, lagged=False), 1.0 + 1e-9, "growth of an error in a step, together"),
+}
 STAGGERED = Family(
     "staggered", "Flow and rock one after the other: a model of its own",
     "A lagged step lets an error grow by the eigenvalue of its map, thousands of times at 0.1 ms; solved together no error grows.",
     Parameter("time step", "s", log=True),
-    tuple(Point(f"{way} {dt:g} s", dt, CRACK, program=way, smoke=dt == 1e-4) for way in ("lagged", "together") for dt in (1e-4, 1e-3, 1e-2, 0.1, 1.0)),
-    lambda run: close(1.0, 1.0, 0.1), check_name="relative difference", ways={"lagged": lagged, "together": together},
+    tuple(Point(f"{way} {dt:g} s", dt, CRACK, program=way, smoke=dt == 1e-4) for way in WAYS for dt in (1e-4, 1e-3, 1e-2, 0.1, 1.0)),
+    lambda run: close(1.0, 1.0, 0.1), check_name="relative difference", ways=WAYS,
     section="Flow that conserves mass, with the rock",
 )  # fmt: skip
 
 
-# --- the in-situ stress in J
 def J_nothing(run: Run) -> Checked:
     """J of both tips where the fluid carries just the in-situ stress, over J_c."""
     J_c = given(run, "rock.stiff.toughness_Pa_sqrt_m") ** 2 / E_prime(run)
@@ -69,11 +65,6 @@ def ring_of(point: Point, prestress: bool) -> float:
     u = solve(P, True)
     wanted = float(np.mean([J_integral(u, P, radius, True) for radius in (2.0, 3.0, 4.0)]))
     return (J_integral(solve(P, prestress), P, point.value, prestress) / wanted) ** 0.5
-
-
-def with_prestress(point: Point) -> Checked:
-    """A ring's K is that of the others."""
-    return close(ring_of(point, True), 1.0, 0.05, "K by J of the ring over the mean of the rings, changes of stress alone")
 
 
 def with_total(point: Point) -> Checked:
@@ -95,7 +86,8 @@ BACKGROUND = Family(
         Point("mid-cell, inertia", 4.0, CRACK, (*SETTLING, *CLOSED, MID_CELL)),
         *(Point(f"model, {stress}, {radius:g}", radius, CRACK, program=stress) for stress in ("changes", "total") for radius in (2.0, 3.0, 4.0)),
     ),
-    J_nothing, check_name="J over 1e-12 J_c; of the models the error of K", ways={"changes": with_prestress, "total": with_total},
+    J_nothing, check_name="J over 1e-12 J_c; of the models the error of K", ways={"total": with_total, "changes": lambda point: close(
+        ring_of(point, True), 1.0, 0.05, "K by J of the ring over the mean of the rings, changes of stress alone")},
     section="J with background stress",
 )  # fmt: skip
 

@@ -14,7 +14,7 @@ SECTION = "Fractures that cross interfaces, corners, edges"
 CROSSING_M = 13.0  # half length of these cracks: at 20 degrees their tips are 4.4 cells from the interface
 ANGLES = (90.0, 75.0, 60.0, 45.0, 30.0, 20.0)
 
-# --- an interface that does nothing
+
 STIFF_SPRINGS = (*parted("stiff", "stiff", "springs"), *(f"interface.springs.{name}_stiffness_Pa_m=1e14" for name in ("normal", "shear")))
 STUCK = (*parted("stiff", "stiff", "slick"), "interface.slick.coefficient=5")
 
@@ -34,11 +34,6 @@ def no_effect(run: Run) -> Checked:
     return close(farthest_off([tip.K_I_Pa_sqrt_m for tip in run.summary.tips], K), K, 0.025, "K_I")
 
 
-def tips_are_near(run: Run) -> str:
-    """The mark of a run all of whose tips are too near to something."""
-    return "both tips are near something" if all(tip["near"] for tip in run.summary.raw["tips"]) else ""
-
-
 def crossing(name: str, title: str, keys: tuple[str, ...]) -> Family:
     """A crack through an interface that must have no effect: K_I as in one rock."""
     return Family(
@@ -46,11 +41,11 @@ def crossing(name: str, title: str, keys: tuple[str, ...]) -> Family:
         Parameter("angle between fracture and interface", "degrees"),
         walked(at_values(CRACK, lambda angle: (*AT_REST, *keys, through(angle)), "{:g} degrees"),
                (*ANGLES, *(180.0 - angle for angle in ANGLES[1:])), smoke=(90.0, 30.0)),
-        no_effect, beyond=(STABLE, MARKED), section=SECTION, flag=tips_are_near,
+        no_effect, beyond=(STABLE, MARKED), section=SECTION,
+        flag=lambda run: "both tips are near something" if all(tip["near"] for tip in run.summary.raw["tips"]) else "",
     )  # fmt: skip
 
 
-# --- two interfaces closer than a cell
 SPRINGS = (1e9, 3e9)  # Pa/m
 TABLES = tuple(
     f'interface.{name}={{law="soft",normal_stiffness_Pa_m={D!r},shear_stiffness_Pa_m={D!r},compression="spring"}}'
@@ -71,21 +66,17 @@ def hanging(run: Run) -> Checked:
     return at_most(off, 2e-3, "rms of u_y off the closed form, over its own")
 
 
-def gap(cells: float) -> tuple[str, ...]:
-    """Two springs at 4 m and so many cells of 1 m above."""
-    return *layers_setting(("stiff", 4.0), ("stiff", cells), ("stiff", None), interfaces=("lower", "upper")), *TABLES
-
-
 CLOSE = Family(
     "interfaces_close", "Two interfaces closer than a cell",
     "Springs in series, D1 D2/(D1 + D2), however near; where the upper one is neither on a grid line nor at mid-cell the scene is refused.",
     Parameter("distance of the interfaces", "cells"),
-    walked(at_values(ANALYTIC / "own_weight.toml", gap, "{:g} cells"), (0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0), smoke=(0.25, 0.5),
-           beyond=lambda cells: cells in (0.25, 0.75)),
+    walked(at_values(ANALYTIC / "own_weight.toml",
+                     lambda cells: (*layers_setting(("stiff", 4.0), ("stiff", cells), ("stiff", None), interfaces=("lower", "upper")), *TABLES), "{:g} cells"),
+           (0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0), smoke=(0.25, 0.5), beyond=lambda cells: cells in (0.25, 0.75)),
     hanging, beyond=(REFUSED,), section=SECTION,
 )  # fmt: skip
 
-# --- corners and edges
+
 BLOCK_M = 32.0
 
 

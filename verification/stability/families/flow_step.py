@@ -8,7 +8,7 @@ import numpy as np
 from verification.harness.given import given
 from verification.harness.load import LoadError, Run, frames
 from verification.stability.family import FAILED, SCENES, STABLE, At, Checked, Edge, Family, Parameter, at_values, close, walked
-from verification.stability.theory.channel import amplification, fastest
+from verification.stability.theory.flow import amplification, fastest
 
 SEGMENTS = 10  # of half a cell each, along 5 m
 PER_NUMBER = 0.001  # viscosity (Pa s) times dt kappa/dx^2: kappa = 1.2e9 Pa (1e-4 m)^2/12/mu, dt = 0.25 ms, dx = 0.5 m

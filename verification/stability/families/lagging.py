@@ -8,10 +8,9 @@ from verification.harness.given import given
 from verification.harness.load import LoadError, Run, frames
 from verification.stability.cracks import CRACK
 from verification.stability.family import STABLE, Checked, Family, Parameter, Point, at_values, close, walked
-from verification.stability.theory.ramped import doubling, paper, reynolds
-from verification.stability.theory.staggered import compliance, growth
+from verification.stability.theory.flow import compliance, doubling, growth, paper, reynolds
 
-# --- permeability that is foreseen
+
 START_PA, RATE_PA_S, TIME_S = 0.05e6, 0.35e6, 2.0  # net pressure at the start, its rise at the inlet (the study's), and for how long
 INTERVALS_S = (0.02, 0.1, 0.5, 2.0)
 VISCOSITIES_PA_S = (0.1, 0.3, 1.0)
@@ -57,7 +56,7 @@ LAG = Family(
     tip_pressure, check_name="net pressure at the tip, relative difference", ways={"model": held_by_nothing}, section="Permeability while the fracture opens",
 )  # fmt: skip
 
-# --- flow and rock together
+
 NET_PA, RISE_PA, MANY = 0.3e6, 0.1e6, 10  # net pressure at the start, its rise at the inlet over the run, longest steps in it
 
 

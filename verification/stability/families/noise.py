@@ -45,22 +45,6 @@ def check_noise(run: Run) -> Checked:
     return close(left, share, 0.05 if few else 0.005, f"{left:.4f} of the energy is left, the null space has {share:.4f}")
 
 
-def loss_a_step(run: Run, unseen_J: float) -> float:
-    """Share of the energy lost in a step, from its fall along the history; unseen_J: what no grid sees of it and FLIP keeps."""
-    energy = run.history["kinetic_J"] + run.history["strain_J"] - unseen_J
-    if len(energy) < 10 or not np.all(energy > 0.0):
-        raise LoadError(f"{run.folder}: no energies to follow")
-    slope = np.polyfit(run.history["time_s"], np.log(energy), 1)[0]
-    return float(-slope) * run.summary.time_s / run.summary.steps
-
-
-def drift(run: Run) -> float:
-    """Change of the energy from the first to the second half of a run, as a share of it; the mean of many rows is free of its swing."""
-    energy = run.history["kinetic_J"] + run.history["strain_J"]
-    half = len(energy) // 2
-    return float(np.mean(energy[-half:]) / np.mean(energy[:half]) - 1.0)
-
-
 def loss_of(way: str, mode: int) -> float:
     """Share of the energy of a mode that a step takes, by theory."""
     stiffness, smoothing = plane_mode(HELD, POISSON, mode)
@@ -70,12 +54,17 @@ def loss_of(way: str, mode: int) -> float:
 def check_wave(run: Run) -> Checked:
     """The loss of energy a step against theory; where there is none, over the whole run."""
     way, mode = way_of(run), round(float(str(run.scene["initial"]["velocity_m_s"][0]).split("sin(")[1].split("*")[0]))
-    if way == "total":
-        found = drift(run)
+    energy = run.history["kinetic_J"] + run.history["strain_J"]
+    if way == "total":  # from the first to the second half: the mean of many rows is free of the swing
+        half = len(energy) // 2
+        found = float(np.mean(energy[-half:]) / np.mean(energy[:half]) - 1.0)
         return at_most(abs(found), MOST_DRIFT, f"energy drifts by {found:.1e} of itself in {run.summary.steps} steps")
     expected = loss_of(way, mode)
-    share = null_share(HELD, lambda x, y: (np.sin(mode * math.pi * x / CELLS), 0.0 * y)) if way == "flip" else 0.0
-    found = loss_a_step(run, share * run.summary.energy["initial_kinetic_J"])
+    if way == "flip":  # it keeps what no grid sees
+        energy = energy - null_share(HELD, lambda x, y: (np.sin(mode * math.pi * x / CELLS), 0.0 * y)) * run.summary.energy["initial_kinetic_J"]
+    if len(energy) < 10 or not np.all(energy > 0.0):
+        raise LoadError(f"{run.folder}: no energies to follow")
+    found = -float(np.polyfit(run.history["time_s"], np.log(energy), 1)[0]) * run.summary.time_s / run.summary.steps
     return close(found, expected, 0.03, f"{found:.4g} of the energy lost a step, theory says {expected:.4g}")
 
 

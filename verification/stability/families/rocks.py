@@ -16,7 +16,7 @@ from verification.stability.family import MARKED, Check, Checked, Family, Parame
 
 SECTION = "Rock: Poisson's ratio to 0.4999, stiffness contrast to 1e4"
 
-# --- Poisson's ratio
+
 POISSON = (0.2, 0.4, 0.45, 0.49, 0.495, 0.499, 0.4999)
 
 
@@ -38,9 +38,6 @@ def poisson(name: str, keys: tuple[str, ...], how: str, ratios: tuple[float, ...
         "K_I and the opening are those of the closed form, or the run says that its functions lock.",
         Parameter("0.5 less Poisson's ratio", log=True), tuple(map(point, ratios)), K_and_opening, beyond=(MARKED,), section=SECTION,
     )  # fmt: skip
-
-
-# --- contrast
 
 
 def both_K(run: Run) -> Checked:

@@ -20,14 +20,9 @@ def slip_m(coefficient: float, time_s: float = END_S) -> float:
     return 2.0 * PUSH_M_S3 * max(since, 0.0) ** 3 / 6.0
 
 
-def coefficient_of(run: Run) -> float:
-    """The coefficient of friction of a run."""
-    return given(run, "interface.rough.coefficient")
-
-
 def check(run: Run) -> Checked:
     """The work of friction against that of rigid blocks, over what a slide without friction would have made of mu N."""
-    mu = coefficient_of(run)
+    mu = given(run, "interface.rough.coefficient")
     strength = mu * NORMAL_PA * HEIGHT_M
     found, expected = run.summary.energy["friction_J"], strength * slip_m(mu)
     return close(found, expected, 0.02, f"work of friction {found:.4g} J/m, of rigid blocks {expected:.4g} J/m", scale=strength * slip_m(0.0))
@@ -44,20 +39,18 @@ def onset(runs: Mapping[str, Run]) -> float:
     late = root > 0.2 * root.max()
     slope, constant = np.polyfit(middle[late], root[late], 1)
     push = DENSITY * WIDTH_M * PUSH_M_S3 * (-constant / slope - PUSH_FROM_S)
-    return float(push / (coefficient_of(run) * NORMAL_PA))
+    return float(push / (given(run, "interface.rough.coefficient") * NORMAL_PA))
 
 
 def family(kinematics: str) -> Family:
     """The walk over the push's largest value by mu N."""
-
-    def keys(ratio: float) -> tuple[str, ...]:
-        return f"numerics.kinematics={kinematics}", f"interface.rough.coefficient={MOST_PUSH_PA / NORMAL_PA / ratio:.6g}"
-
+    at = at_values(SCENES / "sliding.toml", lambda ratio: (
+        f"numerics.kinematics={kinematics}", f"interface.rough.coefficient={MOST_PUSH_PA / NORMAL_PA / ratio:.6g}"), "{:g}")  # fmt: skip
     return Family(
         f"sliding_{kinematics}", f"Stick and slip: {KINEMATICS[kinematics]}",
         "Blocks stick until the push is mu N, then slide as rigid ones do, and the work of friction is mu N times the slip.",
         Parameter("largest push over mu N"),
-        walked(at_values(SCENES / "sliding.toml", keys, "{:g}"), (0.5, 0.9, 1.2, 2.0, 3.0, 5.0), smoke=(0.5, 2.0) if kinematics == "total" else (2.0,)),
+        walked(at, (0.5, 0.9, 1.2, 2.0, 3.0, 5.0), smoke=(0.5, 2.0) if kinematics == "total" else (2.0,)),
         check, beyond=(STABLE,), section="Contact: stick, slip and chatter", check_name="work of friction less that of rigid blocks",
         edge=Edge("Coulomb: the slide begins at a push of mu N.", lambda: 1.0, read=onset),
     )  # fmt: skip

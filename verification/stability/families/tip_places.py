@@ -7,11 +7,11 @@ from verification.harness.load import Run
 from verification.harness.reference import value
 from verification.ladder.cases.interfaces import Reference, bonded, springs
 from verification.stability.cracks import AT_REST, CRACK, MIDDLE_M, NET_PA, SETTLING, griffith_K, parted, upright
-from verification.stability.family import MARKED, At, Check, Checked, Edge, Family, Parameter, at_values, close, tip_is_near, walked
+from verification.stability.family import MARKED, At, Check, Edge, Family, Parameter, at_values, close, tip_is_near, walked
 
 SECTION = "Tips: within a cell, near an interface, near an edge"
 
-# --- within a cell
+
 SHARES = (0.0, 0.001, 0.01, 0.03, 0.1, 0.25, 0.5, 0.75, 0.9, 0.97, 0.99, 0.999, 1.0)
 
 
@@ -27,7 +27,6 @@ def in_cell(
     )  # fmt: skip
 
 
-# --- near an interface, near an edge
 LAYERS = {"stiff_soft": parted("stiff", "soft"), "soft_stiff": parted("soft", "stiff"), "springs": parted("stiff", "stiff", "springs")}
 BLOCK_M = 1600.0  # so large that its other edges are not felt
 
@@ -46,12 +45,8 @@ def edge_setting(cells: float) -> tuple[str, ...]:
 
 def near_K(reference: Reference, tolerance: float = 0.01) -> Check:
     """K_I at the near tip against its integral equation (of Cook and Erdogan where the interface is bonded)."""
-
-    def check(run: Run) -> Checked:
-        name, settings = reference(run)
-        return close(upper(run).K_I_Pa_sqrt_m, value(name, "K_I_near", **settings), tolerance, "K_I of the near tip")
-
-    return check
+    return lambda run: close(
+        upper(run).K_I_Pa_sqrt_m, value(reference(run)[0], "K_I_near", **reference(run)[1]), tolerance, "K_I of the near tip")  # fmt: skip
 
 
 def below_edge(run: Run) -> tuple[str, dict[str, Any]]:

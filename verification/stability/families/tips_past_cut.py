@@ -37,19 +37,15 @@ def energy(run: Run) -> Checked:
     return at_most(abs(off) / (G * CELL_M), CELLS_OFF, f"energy off by {off / (G * CELL_M):+.3f} cells of fracture")
 
 
-def leaving_Pa(run: Run) -> float:
-    """Net pressure at which the tip first goes on beyond the interface, Pa."""
+def leaves(run: Run) -> Checked:
+    """The net pressure at which the tip leaves interface or place, against that of K, or of the increment where it comes from below."""
     gone = run.history["tip_y_m"] > max(LINE_M, LINE_M + fresh_m(run)) + 0.01 * CELL_M
     if not np.any(gone):
         raise LoadError(f"{run.folder}: the tip did not go on beyond the interface")
-    return net_Pa(run, float(run.history["inlet_Pa"][gone][0]))
-
-
-def leaves(run: Run) -> Checked:
-    """The pressure at which the tip leaves interface or place, against that of K, or of the increment where it comes from below."""
+    found = net_Pa(run, float(run.history["inlet_Pa"][gone][0]))
     given = run.scene["fracture"].get("crossing_increment_m")
     exact = critical_Pa(run) if fresh_m(run) > 0.0 else critical_Pa(run, float(given or run.increment_m))
-    return close(leaving_Pa(run), exact, SHARE_OFF_FEW if given is None else SHARE_OFF, "net pressure")
+    return close(found, exact, SHARE_OFF_FEW if given is None else SHARE_OFF, "net pressure")
 
 
 def at(variant: str, *further: str) -> At:
@@ -62,11 +58,6 @@ def at(variant: str, *further: str) -> At:
     return at_values(SCENE, keys, "{:.5g} cells", variant)
 
 
-def unsound(cells: float, variant: str) -> bool | None:
-    """Whether a place on the interface or below is beyond the edge: growth is nearer than half an increment; above the edge says it."""
-    return None if cells > 0.0 else variant == "grows" and -1.0 < cells < 0.0
-
-
 def edge(source: str, point: At) -> Edge:
     """Where the check ceases to hold, between half a cell and a quarter."""
     return Edge(f"No theory: {source} is measured.", at=point, bracket=(0.5, 0.25), unsound_above=False, by_check=True)
@@ -75,9 +66,14 @@ def edge(source: str, point: At) -> Edge:
 def place(name: str, title: str, says: str, variant: str, check: Callable[[Run], Checked], check_name: str, *keys: str) -> Family:
     """A family over the tip's place."""
     point = at(variant, *keys)
+
+    def unsound(cells: float) -> bool | None:
+        """On the interface or below: growth is nearer than half an increment; above the edge says it."""
+        return None if cells > 0.0 else variant == "grows" and -1.0 < cells < 0.0
+
     return Family(
         name, title, says, Parameter("tip beyond the interface", "cells"),
-        walked(point, PLACES, smoke=(0.0, 0.25, 3.0), beyond=lambda cells: unsound(cells, variant)), check, beyond=(MARKED,), before=(STABLE, MARKED),
+        walked(point, PLACES, smoke=(0.0, 0.25, 3.0), beyond=unsound), check, beyond=(MARKED,), before=(STABLE, MARKED),
         flag=tip_is_near, section=SECTION, check_name=check_name,
         edge=edge("how near the interface a tip is told apart from one on it", point),
     )  # fmt: skip

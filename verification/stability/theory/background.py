@@ -5,7 +5,7 @@ it. From total stress, total strain and the whole pressure J is a small differen
 only; from changes of stress and the net pressure these terms are not there.
 """
 
-from functools import lru_cache
+from functools import cache
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -61,10 +61,13 @@ class Model:
         rows, columns = np.repeat(self.unknowns, 8, axis=1).ravel(), np.tile(self.unknowns, (1, 8)).ravel()
         return coo_matrix((K.ravel(), (rows, columns)), shape=(2 * self.records,) * 2).tocsr()
 
-    def of_stress(self, stress: Array) -> Array:
-        """-sum V B^T s of a uniform stress, tension positive."""
-        f = np.zeros(2 * self.records)
-        np.add.at(f, self.unknowns, -POINT_M2 * np.einsum("pai,a->pi", self.B, stress))
+    def in_situ(self) -> Array:
+        """The forces of the in-situ stress: -sum V B^T s of the points, and of its tractions on the block's edges (whose nodes are never split)."""
+        f, k, rows = np.zeros(2 * self.records), np.arange(CELLS + 1), CELLS + 1
+        np.add.at(f, self.unknowns, -POINT_M2 * np.einsum("pai,a->pi", self.B, IN_SITU))
+        along = np.where((k == 0) | (k == CELLS), 0.5, 1.0)
+        for nodes, axis, sign in ((k * rows, 0, -1.0), (k * rows + CELLS, 0, 1.0), (k, 1, -1.0), (k + CELLS * rows, 1, 1.0)):
+            f[2 * nodes + axis] += sign * IN_SITU[axis] * along
         return f
 
     def faces(self) -> tuple[Array, Array, Array]:
@@ -81,29 +84,15 @@ class Model:
             np.add.at(f, 2 * nodes[split], side * (0.5 * P * N)[split])
         return f
 
-    def of_edges(self, stress: Array) -> Array:
-        """The forces of the in-situ tractions on the block's edges (its nodes there are never split)."""
-        f, k = np.zeros(2 * self.records), np.arange(CELLS + 1)
-        along = np.where((k == 0) | (k == CELLS), 0.5, 1.0)
-        rows = CELLS + 1
-        for nodes, axis, sign in ((k * rows, 0, -1.0), (k * rows + CELLS, 0, 1.0), (k, 1, -1.0), (k + CELLS * rows, 1, 1.0)):
-            f[2 * nodes + axis] += sign * stress[axis] * along
-        return f
 
-
-@lru_cache(maxsize=None)
-def model() -> Model:
-    """The model, which nothing changes."""
-    return Model()
+MODEL = cache(Model)  # nothing changes it
 
 
 def solve(P: float, prestress: bool) -> Array:
-    """Displacements (m) under a pressure P (Pa) on the faces.
-
-    prestress: the in-situ state carries itself, what acts is P - s_h. Without it, total stresses balance total loads.
-    """
-    m = model()
-    f = m.of_pressure(P - S_H_PA) if prestress else m.of_stress(IN_SITU) + m.of_edges(IN_SITU) + m.of_pressure(P)
+    """Displacements (m) under a pressure P (Pa) on the faces. prestress: the in-situ state carries itself, what acts is P - s_h. Without it, total
+    stresses balance total loads."""
+    m = MODEL()
+    f = m.of_pressure(P - S_H_PA) if prestress else m.in_situ() + m.of_pressure(P)
     held = np.array([0, 1, 2 * CELLS + 1])  # rigid motion: one corner, and the other one along y
     u, free = np.zeros(2 * m.records), np.setdiff1d(np.arange(2 * m.records), held)
     u[free] = spsolve(m.stiffness()[free][:, free].tocsc(), f[free])
@@ -111,11 +100,9 @@ def solve(P: float, prestress: bool) -> Array:
 
 
 def J_integral(u: Array, P: float, radius: float, prestress: bool) -> float:
-    """J of the upper tip (N/m) by the domain integral over a plateau of radius/2 that falls to nothing at `radius` (m), with the face term.
-
-    Without prestress from total stress, total strain and the whole pressure.
-    """
-    m, own = model(), u[model().unknowns]
+    """J of the upper tip (N/m) by the domain integral over a plateau of radius/2 that falls to nothing at `radius` (m), with the face term. Without
+    prestress from total stress, total strain and the whole pressure."""
+    m, own = MODEL(), u[MODEL().unknowns]
     grad = np.einsum("pna,pnb->pba", m.dN, own.reshape(-1, 4, 2))  # [p][i][j] = du_i/dx_j
     strain, net = np.einsum("pai,pi->pa", m.B, own), P - S_H_PA
     if not prestress:

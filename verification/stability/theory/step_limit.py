@@ -16,6 +16,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from verification.stability.family import bisected
 
@@ -42,19 +43,9 @@ def line_weights(shape: str, distance: Array, half: float) -> tuple[Array, Array
     if shape == "linear":
         inside = x < 1.0
         return np.where(inside, 1.0 - x, 0.0), np.where(inside, -side, 0.0)
-    low, high = distance - half, distance + half
-    return (hat_integral(high) - hat_integral(low)) / (2.0 * half), (hat(high) - hat(low)) / (2.0 * half)
-
-
-def hat(x: Array) -> Array:
-    """The hat function."""
-    return np.maximum(0.0, 1.0 - np.abs(x))
-
-
-def hat_integral(x: Array) -> Array:
-    """The integral of the hat function from -1."""
-    y = np.clip(x, -1.0, 1.0)
-    return np.where(y < 0.0, 0.5 * (1.0 + y) ** 2, 1.0 - 0.5 * (1.0 - y) ** 2)
+    low, high = np.clip(distance - half, -1.0, 1.0), np.clip(distance + half, -1.0, 1.0)
+    integral = [np.where(y < 0.0, 0.5 * (1.0 + y) ** 2, 1.0 - 0.5 * (1.0 - y) ** 2) for y in (low, high)]  # of the hat from -1
+    return (integral[1] - integral[0]) / (2.0 * half), (np.abs(low) - np.abs(high)) / (2.0 * half)
 
 
 def weights_of(block: Block) -> tuple[Array, Array, Array, Array, Array]:
@@ -68,30 +59,20 @@ def weights_of(block: Block) -> tuple[Array, Array, Array, Array, Array]:
     return np.kron(N_y, N_x), np.kron(N_y, D_x), np.kron(D_y, N_x), x, y
 
 
-@dataclass(frozen=True)
-class Matrices:
-    """M^-1 K (in units of (c_P/h)^2) and S of a block, of the motions that its edges leave free."""
-
-    stiffness: Array
-    smoothing: Array
-
-
-def matrices(block: Block, poisson: float) -> Matrices:
-    """Both of a block of a rock with a Poisson's ratio, of density 1 and P wave speed 1."""
+def matrices(block: Block, poisson: float) -> tuple[Array, Array]:
+    """M^-1 K (in units of (c_P/h)^2) and S of a block of a rock with a Poisson's ratio, of the motions that its edges leave free."""
     N, G_x, G_y, _, _ = weights_of(block)
     shear = (1.0 - 2.0 * poisson) / (2.0 * (1.0 - poisson))  # mu/(lambda + 2 mu), which is (c_S/c_P)^2
-    direct, coupling = 1.0, 1.0 - 2.0 * shear
-    V = 1.0 / block.across**2
-    zero = np.zeros_like(N)
-    B = np.vstack([np.hstack([G_x, zero]), np.hstack([zero, G_y]), np.hstack([G_y, G_x])])
-    C = np.kron(np.array([[direct, coupling, 0.0], [coupling, direct, 0.0], [0.0, 0.0, shear]]), np.eye(N.shape[0]))
-    NN = np.vstack([np.hstack([N, zero]), np.hstack([zero, N])])
+    V, coupling, zero = 1.0 / block.across**2, 1.0 - 2.0 * shear, np.zeros_like(N)  # density 1 and P wave speed 1
+    B = np.block([[G_x, zero], [zero, G_y], [G_y, G_x]])
+    C = np.kron(np.array([[1.0, coupling, 0.0], [coupling, 1.0, 0.0], [0.0, 0.0, shear]]), np.eye(N.shape[0]))
+    NN = np.kron(np.eye(2), N)
     keep = free_motions(block.cells, block.held)
     m = V * np.abs(keep).T @ NN.sum(axis=0)  # a mirror adds its mass to the node that it mirrors, in both directions
     B, NN = B @ keep, NN @ keep
     used = m > 1e-14
     B, NN, m = B[:, used], NN[:, used], m[used]
-    return Matrices((V * B.T @ C @ B) / m[:, None], (V * NN.T @ NN) / m[:, None])
+    return (V * B.T @ C @ B) / m[:, None], (V * NN.T @ NN) / m[:, None]
 
 
 def free_motions(cells: int, held: bool) -> Array:
@@ -104,35 +85,22 @@ def free_motions(cells: int, held: bool) -> Array:
         even[ghost], odd[ghost] = even[inside], -odd[inside]
         odd[edge] = 0.0
     even, odd = even[:, 1:-1], odd[:, 2:-2]
-    x, y = np.kron(even, odd), np.kron(odd, even)
-    return np.block([[x, np.zeros((x.shape[0], y.shape[1]))], [np.zeros((y.shape[0], x.shape[1])), y]])
-
-
-def omega_max(found: Matrices) -> float:
-    """The largest eigenfrequency, in units of c_P/h."""
-    return math.sqrt(float(np.max(np.linalg.eigvals(found.stiffness).real)))
-
-
-def step_map(found: Matrices, transfer: str, dt: float) -> Array:
-    """The map of (d, V) by a step."""
-    A, S = found.stiffness, found.smoothing
-    one = np.eye(len(A))
-    keep = {"flip": one, "pic": S, "xpic2": 2.0 * S - S @ S}[transfer]
-    return np.block([[one - dt**2 * A, dt * one], [-dt * S @ A, keep]])
-
-
-def growth(found: Matrices, transfer: str, dt: float) -> float:
-    """The largest size of an eigenvalue of a step."""
-    return float(np.max(np.abs(np.linalg.eigvals(step_map(found, transfer, dt)))))
+    return block_diag(np.kron(even, odd), np.kron(odd, even))
 
 
 def courant_limit(block: Block, transfer: str, poisson: float) -> float:
     """The largest stable c_P dt/h; transfer: flip, pic, xpic2, or total for nodes that keep their velocities."""
-    found = matrices(block, poisson)
-    leapfrog = 2.0 / omega_max(found)
+    A, S = matrices(block, poisson)
+    leapfrog, one = 2.0 / math.sqrt(float(np.max(np.linalg.eigvals(A).real))), np.eye(len(A))
     if transfer == "total":
         return leapfrog
-    return bisected(lambda dt: growth(found, transfer, dt) < 1.0 + 1e-7, 0.2 * leapfrog, 2.0 * leapfrog, 2e-4)[0]
+    keep = {"flip": one, "pic": S, "xpic2": 2.0 * S - S @ S}[transfer]
+
+    def growth(dt: float) -> float:
+        """The largest size of an eigenvalue of a step, which maps (d, V)."""
+        return float(np.max(np.abs(np.linalg.eigvals(np.block([[one - dt**2 * A, dt * one], [-dt * S @ A, keep]])))))
+
+    return bisected(lambda dt: growth(dt) < 1.0 + 1e-7, 0.2 * leapfrog, 2.0 * leapfrog, 2e-4)[0]
 
 
 def damped_limit(undamped: float, damping: float) -> float:
@@ -143,11 +111,10 @@ def damped_limit(undamped: float, damping: float) -> float:
 
 def plane_mode(block: Block, poisson: float, mode: int) -> tuple[float, float]:
     """(omega h/c_P)^2 and S of the motion sin(mode pi x/L) along x in a held block, which it is a mode of."""
-    found, n = matrices(block, poisson), block.cells
+    (stiffness, smoothing), n = matrices(block, poisson), block.cells
     along = np.sin(mode * math.pi * np.arange(1, n) / n)
     motion = np.concatenate([np.tile(along, n + 1), np.zeros((n + 1) * (n - 1))])
-    size = float(motion @ motion)
-    return float(motion @ found.stiffness @ motion) / size, float(motion @ found.smoothing @ motion) / size
+    return float(motion @ stiffness @ motion / (motion @ motion)), float(motion @ smoothing @ motion / (motion @ motion))
 
 
 def amplitude_factor(transfer: str, z: float, S: float) -> float:
@@ -159,8 +126,7 @@ def amplitude_factor(transfer: str, z: float, S: float) -> float:
 def null_share(block: Block, start: Callable[[Array, Array], tuple[Array, Array]]) -> float:
     """Share of the points' kinetic energy, of velocities start(x, y), that no velocity of the nodes makes: v less its projection on N."""
     N, _, _, x, y = weights_of(block)
-    zero = np.zeros_like(N)
-    NN = np.vstack([np.hstack([N, zero]), np.hstack([zero, N])]) @ free_motions(block.cells, block.held)
+    NN = np.kron(np.eye(2), N) @ free_motions(block.cells, block.held)
     v = np.concatenate(start(x, y))
     rest = v - NN @ np.linalg.lstsq(NN, v, rcond=None)[0]
     return float(rest @ rest) / float(v @ v)
