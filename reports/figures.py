@@ -1,8 +1,6 @@
 """What pages are made of, whichever page it is: figures as declarations, tables and parts as plain data; and what writes them."""
 
-import argparse
 import re
-import sys
 import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -76,21 +74,16 @@ def suspect_words(runs: Sequence[Run]) -> str:
 
 def make(figure: Figure, out: Path) -> Shown:
     """Write a figure's files below a page's folder; whatever is missing or wrong is told on the page and stops nothing."""
-    made = Shown(name=figure.name, label=figure.label, experiment=figure.experiment, part=figure.part, title="", caption="", reason="", defect="")
+    made = Shown(name=figure.name, label=figure.label, experiment=figure.experiment, part=figure.part, title="", caption="", lack="", defect="")
     try:
         data = figure.data() if callable(figure.data) else figure.data
         save(figure.draw(data), out / "figures", figure.name)
         made.title, made.caption = data.title, words_of(figure.caption, data=data) + suspect_words(figure.runs)
-    except NotAvailable as lack:
-        made.reason = str(lack)
+    except NotAvailable as missing:
+        made.lack = str(missing)
     except Exception as error:  # a defect in one figure must not cost the reader all the others
-        made.reason, made.defect = f"could not be drawn: {type(error).__name__}: {error}", traceback.format_exc()
+        made.lack, made.defect = f"could not be drawn: {type(error).__name__}: {error}", traceback.format_exc()
     return made
-
-
-def defects_of(pictures: Sequence[Shown]) -> list[str]:
-    """The traces of figures that met a defect."""
-    return [made.defect for made in pictures if made.defect]
 
 
 def write_page(out: Path, name: str, content: dict[str, Any]) -> Path:
@@ -102,23 +95,9 @@ def write_page(out: Path, name: str, content: dict[str, Any]) -> Path:
     return out / name
 
 
-def front_of(write: Callable[[], Shown], sorry: str) -> Shown:
-    """What the front page says of a page beside it; `lack` and `defect` in its place where it could not be written."""
+def told_of(name: str, write: Callable[[], Shown], sorry: str) -> Shown:
+    """What is told of a page: its name, its `words`, and `lack` or `defect` where it, or a part of it, could not be written."""
     try:
-        return write()
+        return Shown(**{"name": name, "words": "", "lack": "", "defect": "", **vars(write())})
     except Exception as error:  # a torn file must not cost the reader the other pages
-        return Shown(lack=f"{sorry}: {type(error).__name__}: {error}", defect=traceback.format_exc())
-
-
-def write_alone(about: str, option: str, kept: Path, write: Callable[[Path, Path], Shown], arguments: list[str] | None = None) -> int:
-    """A page made by a script of its own from a folder (by default `kept`, told by `option`); 1 where that holds nothing or is torn."""
-    parser = argparse.ArgumentParser(description=about)
-    parser.add_argument(option, dest="data", type=Path, default=kept, help="folder of what it is made of")
-    parser.add_argument("--out", type=Path, default=OUT, help="folder for the page")
-    options = parser.parse_args(arguments)
-    made = write(options.out, options.data)
-    if made.lack or made.defect:
-        print(made.defect or made.lack, file=sys.stderr)
-        return 1
-    print(f"{options.out / made.link}: {made.words}")
-    return 0
+        return Shown(name=name, words="", lack=f"{sorry}: {type(error).__name__}: {error}", defect=traceback.format_exc())

@@ -24,9 +24,9 @@ from verification.harness.scenes import MECHANICS
 COPIED: tuple[str, ...] = ("scene.toml", "summary.json", "history.csv")
 
 
-def write_index(out: Path, runs: list[Run], claims: list[ClaimResult], figures: list[Shown], points: Sequence[Point] = (), **beside: Any) -> Path:
-    """Write index.html and copies of each run's small files. Beside: `verified`, what verification.html beside it says, if it is there; `precision`,
-    the chart of error against time, which comes first; `stability`, what stability.html says."""
+def write_index(out: Path, runs: list[Run], claims: list[ClaimResult], figures: list[Shown], points: Sequence[Point] = (), **beside: Shown) -> Path:
+    """Write index.html and copies of each run's small files. Beside: what is told of the pages `verification`, `precision` (whose chart comes first)
+    and `stability`, of those that there are."""
     for run in runs:
         _copy_sources(run, out)
     return write_page(out, "index.html", {**context(runs, claims, figures, points), **beside})
@@ -55,7 +55,7 @@ def context(runs: list[Run], claims: list[ClaimResult], figures: list[Shown], po
         "sensitivity": sensitivity([claim for claim in claims if claim.mechanics in MECHANICS], points), "figures": figures,
         "sections": [section([run for run in runs if run.experiment == stem], verdicts, figures) for _, stem in experiments],
         "homeless": [made for made in figures if made.experiment not in numbers],
-        "findings": [made for made in figures if not made.reason and made.experiment > 0 and made.name.startswith("fig")],
+        "findings": [made for made in figures if not made.lack and made.experiment > 0 and made.name.startswith("fig")],
         "failures": [{"run": f"{run.experiment} / {plain(run.variant)}, {mechanics_name(run.mechanics)}", "status": run.status, "reason": run.reason}
                      for run in runs if run.status not in ("completed", "missing")],
     }

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from reports.charts.precision import draw_front, draw_full
-from reports.figures import Figure, defects_of, front_of, make, words_of, write_page
+from reports.figures import Figure, make, told_of, words_of, write_page
 from reports.shown import Shown
 from reports.words import NONE, listed, minus, number, share, thousands, wall_time
 from verification.precision import store
@@ -233,14 +233,14 @@ def _shipped(panels: Sequence[Panel]) -> str:
 
 def write_precision(out: Path, folder: Path = store.DATA) -> Shown:
     """Write the chart and the page of all settings below a page's folder; whatever is wrong with the data is told, not raised."""
-    return front_of(lambda: _write(out, folder), "The work-precision chart could not be made")
+    return told_of(NAME, lambda: _write(out, folder), "The work-precision chart could not be made")
 
 
 def _write(out: Path, folder: Path) -> Shown:
     """The page with every method and every point, and the chart with what the front page says of it."""
     found = measurements(folder)
     if found is None:
-        return Shown(lack="The work-precision chart has not been measured: ci/chart measures it, one run at a time on an idle machine.", defect="")
+        return Shown(lack="The work-precision chart has not been measured: ci/chart measures it, one run at a time on an idle machine.")
     front = make(Figure("precision", front_figure(found.panels), draw_front, "precision"), out)
     parts = []
     for panel in found.panels:
@@ -251,5 +251,5 @@ def _write(out: Path, folder: Path) -> Shown:
                            points=point_rows(panel), lacks=lack_rows(panel)))
     write_page(out, NAME, {"parts": parts, "recipe": found.recipe, "notes": found.notes})
     return Shown(figure=front, rows=table_of(found.panels), tolerances=[share(error) for error in TOLERANCES],
-                 recommendations=recommendations(found.panels), recipe=found.recipe, notes=found.notes, link=NAME, words=front.title, lack="",
-                 defect="\n".join(defects_of([front, *(part.figure for part in parts)])))
+                 recommendations=recommendations(found.panels), recipe=found.recipe, notes=found.notes, words=front.title,
+                 defect="\n".join(filter(None, [front.defect, *(part.figure.defect for part in parts)])))

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from reports.charts.stability import draw_edges, draw_part
-from reports.figures import Figure, defects_of, front_of, make, write_page
+from reports.figures import Figure, make, told_of, write_page
 from reports.shown import Shown
 from reports.words import NONE, general, minus, span
 from verification.stability import store
@@ -202,7 +202,7 @@ def content_of(part: Part, pictures: list[Shown]) -> dict[str, Any]:
 
 def write_stability(out: Path, folder: Path = store.RECORDS) -> Shown:
     """Write the page below a page's folder; whatever is wrong with the records is told, not raised."""
-    return front_of(lambda: _write(out, folder), "The stability atlas could not be shown")
+    return told_of(NAME, lambda: _write(out, folder), "The stability atlas could not be shown")
 
 
 def _write(out: Path, folder: Path) -> Shown:
@@ -210,9 +210,9 @@ def _write(out: Path, folder: Path) -> Shown:
     every = parts(folder)
     records = [walk.record for part in every for walk in part.walks if walk.record is not None]
     if not records:
-        return Shown(lack="The stability atlas has not been walked: ci/atlas --accept.", defect="")
+        return Shown(lack="The stability atlas has not been walked: ci/atlas --accept.")
     pictures = [[make(figure, out) for figure in figures_of(part)] for part in every]
     versions = dict.fromkeys(record.version for record in records if record.version)
     write_page(out, NAME, {"headline": headline(every), "first": [first_row(part) for part in every], "versions": ", ".join(versions),
                            "parts": [content_of(part, own) for part, own in zip(every, pictures)]})
-    return Shown(words=headline(every), link=NAME, lack="", defect="\n".join(defects_of([made for own in pictures for made in own])))
+    return Shown(words=headline(every), defect="\n".join(made.defect for own in pictures for made in own if made.defect))

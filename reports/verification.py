@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from reports.charts.ladder import draw_convergence, draw_cost
-from reports.figures import Figure, Section, defects_of, make, words_of, write_page
+from reports.figures import Figure, Section, make, told_of, words_of, write_page
 from reports.ladder import Ladder, Row, case_words, convergence_figure, convergence_words, cost_figure, curves_of, load_ladder
 from reports.shown import Shown
 from reports.words import NONE, counted, number, order_words, plain, relative, sentence, thousands
@@ -23,28 +23,31 @@ NAME = "verification.html"
 LADDER = Path("ladder") / "ladder.json"
 
 
-def write_verification(runs: Path, out: Path, ladder_file: Path | None = None, with_index: bool = False) -> Shown | None:
-    """Write verification.html from ladder.json and whatever the parts find below `runs`; None where there is nothing at all.
+def write_verification(runs: Path, out: Path, ladder_file: Path | None = None, with_index: bool = False) -> Shown:
+    """Write verification.html from ladder.json and whatever the parts find below `runs`; with_index: index.html is about to be written beside it."""
+    return told_of(NAME, lambda: _write(runs, out, ladder_file or runs / LADDER, with_index), "The page of verification could not be made")
 
-    with_index: index.html is about to be written beside it. Returns its path and headline, and the defects met on the way.
-    """
+
+def _write(runs: Path, out: Path, ladder_file: Path, with_index: bool) -> Shown:
+    """The page; a part that meets a defect is told on it and left out."""
     sections, defects = _parts(runs)
     shown: dict[str, Any] = {"families": [], "ladder": None, "headline": headline(None)}
+    pictures: list[Shown] = []
     try:
-        ladder = load_ladder(ladder_file or runs / LADDER)
+        ladder = load_ladder(ladder_file)
         if ladder is not None:
             shown |= {**ladder_context(ladder, out), "headline": headline(ladder)}
-            defects += defects_of([made for made in (shown["cost"], *(family.figure for family in shown["families"])) if made])
+            pictures += filter(None, [shown["cost"], *(family.figure for family in shown["families"])])
     except Exception:  # a torn file must not cost the reader the other parts
         defects.append(traceback.format_exc())
         shown["headline"] = "The accuracy ladder's judgement could not be read."
     if shown["ladder"] is None and not sections and not defects:
-        return None
+        return Shown(lack=f"nothing to show below {runs}")
     parts = [{**section, "figures": [make(figure, out) for figure in section["figures"]]} for section in sections]
-    defects += [defect for part in parts for defect in defects_of(part["figures"])]
+    defects += [made.defect for made in (*pictures, *(made for part in parts for made in part["figures"])) if made.defect]
     words = [defect.strip().splitlines()[-1] for defect in defects]
-    path = write_page(out, NAME, {**shown, "parts": parts, "defects": words, "index": with_index or (out / "index.html").is_file()})
-    return Shown(path=path, defects=defects, headline=shown["headline"])
+    write_page(out, NAME, {**shown, "parts": parts, "defects": words, "index": with_index or (out / "index.html").is_file()})
+    return Shown(words=shown["headline"], defect="\n".join(defects))
 
 
 def _parts(runs: Path) -> tuple[list[Section], list[str]]:

@@ -15,7 +15,6 @@ from reports.charts.style import new_figure
 from reports.figures import Figure
 from reports.ladder import Ladder, convergence_figure, cost_figure, load_ladder
 from reports.make_page import main as make_page
-from reports.make_verification import main
 from reports.shown import Shown
 from reports.tests.test_page import links_of
 from reports.words import relative
@@ -73,9 +72,14 @@ def ladder_of(root: Path, rows: list[dict[str, Any]]) -> Ladder:
     return ladder
 
 
-def page_of(runs: Path, out: Path, *options: str) -> str:
+def main(runs: Path, out: Path) -> int:
+    """Make the page from runs; its exit status."""
+    return make_page(["--page", "verification", "--runs", str(runs), "--out", str(out), "--strict"])
+
+
+def page_of(runs: Path, out: Path) -> str:
     """The page made from runs."""
-    assert main(["--runs", str(runs), "--out", str(out), "--strict", *options]) == 0
+    assert main(runs, out) == 0
     return (out / "verification.html").read_text(encoding="utf-8")
 
 
@@ -197,7 +201,7 @@ def test_every_link_leads_somewhere(tmp_path: Path) -> None:
 
 def test_nothing_run_is_no_page(tmp_path: Path) -> None:
     """Without a ladder and parts there is neither a page nor a link to it."""
-    assert main(["--runs", str(tmp_path), "--out", str(tmp_path / "out")]) == 1
+    assert main(tmp_path, tmp_path / "out") == 1
     assert not (tmp_path / "out" / "verification.html").exists()
     assert make_page(["--runs", str(tmp_path), "--out", str(tmp_path / "out"), *none_of("experiments", "precision", "stability")]) == 0
     assert "verification.html" not in (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
@@ -208,7 +212,7 @@ def test_a_torn_judgement_is_a_defect(tmp_path: Path, content: str) -> None:
     """It is told on the page and by the exit status."""
     runs = write_ladder(tmp_path, [])
     (runs / "ladder" / "ladder.json").write_text(content, encoding="utf-8")
-    assert main(["--runs", str(runs), "--out", str(tmp_path / "out"), "--strict"]) == 1
+    assert main(runs, tmp_path / "out") == 1
     page = (tmp_path / "out" / "verification.html").read_text(encoding="utf-8")
     assert "could not be made" in page and "could not be read" in page
 
@@ -237,7 +241,7 @@ def test_parts_of_other_modules_are_shown(tmp_path: Path, monkeypatch: pytest.Mo
     for name, section in (("one", found), ("two", lambda runs: None), ("three", breaks)):
         a_part(name, monkeypatch, section)
     monkeypatch.setattr(verification, "PARTS", ("one", "two", "three", "not_there"))
-    assert main(["--runs", str(tmp_path), "--out", str(tmp_path / "out"), "--strict"]) == 1
+    assert main(tmp_path, tmp_path / "out") == 1
     page = (tmp_path / "out" / "verification.html").read_text(encoding="utf-8")
     for words in ("They agree within a cell.", 'src="figures/paths.svg"', "path &lt;5&gt;", "In cells."):
         assert words in page, words
