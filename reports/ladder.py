@@ -3,18 +3,16 @@
 import json
 import math
 import re
-import statistics
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from reports.shown import Shown
-from reports.words import listed, mechanics_name, number, order_words, plain, share
+from reports.words import mechanics_name, order_words, plain, share
 
 ROUND_OFF = "round-off"  # as in verification/ladder/gates.py: how the reason of what holds to rounding begins
 SAME_AS_ROUNDING = 1e-13  # errors below it are not drawn
-ONE_PERCENT = 0.01
 UNIT = re.compile(r"\d (m|s)\b")  # of a level's size, in its label
 
 
@@ -80,7 +78,7 @@ def _row(item: dict[str, Any]) -> Row:
 def curves_of(rows: Sequence[Row]) -> list[Shown]:
     """A curve for each quantity with an error that is neither round-off nor missing, in the rows' order.
 
-    Errors (without sign) and gates at each size and wall time (s), coarse to fine; `order` of the finest pair; `judged`: whether it is asked for.
+    Errors (without sign) and gates at each size, coarse to fine; `order` of the finest pair; `judged`: whether it is asked for.
     """
     groups: dict[tuple[str, str, str], list[Row]] = {}
     for row in rows:
@@ -94,7 +92,7 @@ def _curve(group: list[Row]) -> Shown:
     last = group[-1]
     return Shown(
         family=last.family, case=last.case, mechanics=last.mechanics, quantity=last.quantity, sizes=tuple(row.size for row in group),
-        errors=tuple(abs(row.error) for row in group), gates=tuple(row.gate for row in group), walls_s=tuple(row.wall_s for row in group),
+        errors=tuple(abs(row.error) for row in group), gates=tuple(row.gate for row in group),
         passed=tuple(row.passed for row in group), order=last.order if len(group) > 1 else None, judged=not last.no_order,
     )
 
@@ -135,45 +133,3 @@ def convergence_words(curves: Sequence[Shown]) -> str:
     spread = " to ".join(dict.fromkeys((order_words(min(orders)), order_words(max(orders)))))
     which = f"{len(orders)} of {len(curves)} are judged by their order, " if len(orders) < len(curves) else "orders "
     return f"{told}; {which}{spread} between the finest two levels"
-
-
-def cost_figure(ladder: Ladder) -> Shown | None:
-    """Largest error of every case against wall time, a panel a family, `mechanics` in the order of their colours; None where there is nothing."""
-    curves = [case for case in worst_of(curves_of(ladder.rows)) if all(wall > 0.0 for wall in case.walls_s)]
-    if not curves:
-        return None
-    mechanics = tuple(name for name in ("quasistatic", "explicit") if any(curve.mechanics == name for curve in curves))
-    families = dict.fromkeys(curve.family for curve in curves)
-    panels = [Shown(heading=plain(name), curves=tuple(curve for curve in curves if curve.family == name)) for name in families]
-    return Shown(title=cost_words(curves, mechanics), panels=panels, mechanics=mechanics)
-
-
-def worst_of(curves: Sequence[Shown]) -> list[Shown]:
-    """A curve a case: the largest error among its quantities at each size; it passes where all of them do."""
-    groups: dict[tuple[str, str], dict[float, list[tuple[Shown, int]]]] = {}
-    for curve in curves:
-        for index, size in enumerate(curve.sizes):
-            groups.setdefault((curve.family, curve.case), {}).setdefault(size, []).append((curve, index))
-    found = []
-    for sizes in groups.values():
-        first = next(iter(sizes.values()))[0][0]
-        levels = [sizes[size] for size in sorted(sizes, reverse=True)]
-        found.append(Shown(
-            family=first.family, case=first.case, mechanics=first.mechanics, sizes=tuple(sorted(sizes, reverse=True)),
-            errors=tuple(max(curve.errors[k] for curve, k in level) for level in levels),
-            walls_s=tuple(max(curve.walls_s[k] for curve, k in level) for level in levels),
-            passed=tuple(all(curve.passed[k] for curve, k in level) for level in levels),
-        ))
-    return found
-
-
-def cost_words(curves: Sequence[Shown], mechanics: Sequence[str]) -> str:
-    """How long it takes each mechanics to come within a percent in all that a case measures, in a sentence."""
-    told = []
-    for name in mechanics:
-        own = [curve for curve in curves if curve.mechanics == name]
-        within = [[wall for wall, off in zip(curve.walls_s, curve.errors) if off <= ONE_PERCENT] for curve in own]
-        first = [min(walls) for walls in within if walls]
-        time = f" in {number(statistics.median(first), 2)}\u00a0s (median)" if first else ""
-        told.append(f"{len(first)} of {len(own)} {mechanics_name(name)} cases{time}")
-    return f"Within 1\u00a0% in all that they measure: {listed(told)}"

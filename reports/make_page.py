@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes the page of the experiments with those beside it, or one of these alone: reports/make_page.py --runs runs --out reports/out [--page NAME]."""
+"""Writes the page of the experiments with those beside it, or one of these alone: make_page.py --runs runs --out reports/out [--page NAME]."""
 
 import argparse
 import sys

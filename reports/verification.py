@@ -11,9 +11,9 @@ import traceback
 from pathlib import Path
 from typing import Any
 
-from reports.charts.ladder import draw_convergence, draw_cost
+from reports.charts.ladder import draw_convergence
 from reports.figures import Figure, Section, make, told_of, words_of, write_page
-from reports.ladder import Ladder, Row, case_words, convergence_figure, convergence_words, cost_figure, curves_of, load_ladder
+from reports.ladder import Ladder, Row, case_words, convergence_figure, convergence_words, curves_of, load_ladder
 from reports.shown import Shown
 from reports.words import NONE, counted, number, order_words, plain, relative, sentence, thousands
 
@@ -37,7 +37,7 @@ def _write(runs: Path, out: Path, ladder_file: Path, with_index: bool) -> Shown:
         ladder = load_ladder(ladder_file)
         if ladder is not None:
             shown |= {**ladder_context(ladder, out), "headline": headline(ladder)}
-            pictures += filter(None, [shown["cost"], *(family.figure for family in shown["families"])])
+            pictures += (family.figure for family in shown["families"] if family.figure)
     except Exception:  # a torn file must not cost the reader the other parts
         defects.append(traceback.format_exc())
         shown["headline"] = "The accuracy ladder's judgement could not be read."
@@ -80,10 +80,8 @@ def headline(ladder: Ladder | None) -> str:
 
 def ladder_context(ladder: Ladder, out: Path) -> dict[str, Any]:
     """What the template shows of the ladder; its figures are written below `out`."""
-    cost = cost_figure(ladder)
     return {
         "ladder": ladder, "mutation": words_of("mutation", tally=ladder.tally), "families": [_family(ladder, name, out) for name in ladder.families],
-        "cost": None if cost is None else make(Figure("ladder_cost", cost, draw_cost, "cost"), out),
         "wrong": [{"name": f"{row.family} / {row.case}: {row.quantity} at {row.level}", "why": row.why, "verdict": row.verdict}
                   for row in ladder.rows if not row.passed],
     }

@@ -39,8 +39,8 @@ def write_record(root: Path, date: str, cpu: str = "Some CPU", factor: float = 1
     """A record below a project's folder; returns its folder of runs."""
     marks = (mark("particle-steps of `updated`, 1 thread", 60.0, 71.4 / factor, "million/s", True),
              mark("all experiments, explicit/cell1m", 120.0, float("nan"), "s"))
-    made = Record(Machine(cpu, 2, "L2 1024K"), Build("0.3.0", "abc", "GNU 12.2", "-O3"), Load(0.0, 0.0), date, tuple(some_figures(factor)), False, marks)
-    append(made, root / RECORDS)
+    figures, build = tuple(some_figures(factor)), Build("0.3.0", "abc", "GNU 12.2", "-O3")
+    append(Record(Machine(cpu, 2, "L2 1024K"), build, Load(0.0, 0.0), date, figures, False, marks), root / RECORDS)
     return root / "runs"
 
 

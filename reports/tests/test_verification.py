@@ -13,7 +13,7 @@ from reports import verification
 from reports.charts.ladder import spread_apart
 from reports.charts.style import new_figure
 from reports.figures import Figure
-from reports.ladder import Ladder, convergence_figure, cost_figure, load_ladder
+from reports.ladder import Ladder, convergence_figure, load_ladder
 from reports.make_page import main as make_page
 from reports.shown import Shown
 from reports.tests.test_page import links_of
@@ -137,26 +137,13 @@ def test_figures_say_what_the_numbers_say(tmp_path: Path) -> None:
     titles = []
     for factor in (1.0, 2.0):
         rows = [row | {"error": row["error"] * factor} for row in some_rows()[:3]]
-        ladder = ladder_of(tmp_path, rows)
-        titles.append((convergence_figure(ladder, "cracks").title, cost_figure(ladder).title))
-    assert titles[0][0] == "Errors of 1\u00a0% (K_I, at rest) at the finest level; orders 1.0 between the finest two levels"
-    assert titles[1][0].startswith("Errors of 2\u00a0%")
+        titles.append(convergence_figure(ladder_of(tmp_path, rows), "cracks").title)
+    assert titles[0] == "Errors of 1\u00a0% (K_I, at rest) at the finest level; orders 1.0 between the finest two levels"
+    assert titles[1].startswith("Errors of 2\u00a0%")
     two = some_rows()[:3] + [row | {"quantity": "J", "no_order": "rings"} for row in some_rows()[:3]]
     assert convergence_figure(ladder_of(tmp_path, two), "cracks").title == (
         "Errors from 1\u00a0% to 1\u00a0% (K_I, at rest) at the finest level; 1 of 2 are judged by their order, 1.0 between the finest two levels"
     )
-    assert titles[0][1] == "Within 1\u00a0% in all that they measure: 1 of 1 quasi-static cases in 32\u00a0s (median)"
-    assert titles[1][1] == "Within 1\u00a0% in all that they measure: 0 of 1 quasi-static cases"
-
-
-def test_the_worst_of_a_case_is_what_it_costs(tmp_path: Path) -> None:
-    """The largest error at each size counts, with a cross where any quantity falls short."""
-    found = {"K": (0.04, 0.001), "w": (0.02, 0.01)}
-    rows = [a_row("at_rest", name, k, error) for name, errors in found.items() for k, error in enumerate(errors)]
-    rows[0] |= {"verdict": "FAIL", "problems": ["error above"]}
-    ladder = ladder_of(tmp_path, rows)
-    (curve,) = cost_figure(ladder).panels[0].curves
-    assert (curve.sizes, curve.errors, curve.passed, curve.walls_s) == ((2.0, 1.0), (0.04, 0.01), (False, True), (0.5, 4.0))
 
 
 def test_round_off_is_not_drawn_but_counted(tmp_path: Path) -> None:
@@ -167,7 +154,7 @@ def test_round_off_is_not_drawn_but_counted(tmp_path: Path) -> None:
     assert [curve.quantity for panel in figure.panels for curve in panel.curves] == ["K_I", "mouth"] and figure.left_out == 1
     assert "1 quantity that holds to round-off" in page_of(tmp_path / "runs", tmp_path / "out")
     exact = ladder_of(tmp_path, some_rows()[3:6])
-    assert convergence_figure(exact, "cracks") is None and cost_figure(exact) is None
+    assert convergence_figure(exact, "cracks") is None
     assert "Everything holds to round-off" in page_of(tmp_path / "runs", tmp_path / "out2")
 
 
@@ -231,7 +218,7 @@ def test_parts_of_other_modules_are_shown(tmp_path: Path, monkeypatch: pytest.Mo
         """A part with a figure and a table."""
         rows = [["path <5>", "0.3"], ["path 6", "2.1"]]
         table = {"title": "Largest", "header": ["what", "m"], "rows": rows, "marked": [1], "note": "In cells."}
-        picture = Figure("paths", Shown(title="Paths agree"), lambda data: new_figure(3.0, 2.0), "cost")
+        picture = Figure("paths", Shown(title="Paths agree"), lambda data: new_figure(3.0, 2.0), "stability")
         return {"title": "Paths", "intro": "They agree within a cell.", "figures": [picture], "tables": [table]}
 
     def breaks(runs: Path) -> None:
