@@ -101,7 +101,7 @@ def test_the_chart_has_every_quantity_every_failure_and_the_table(data: Path, tm
     """Nothing that was measured is missing from the page of all settings."""
     front = precision.write_precision(tmp_path / "out", data)
     assert not front.lack and front.figure is not None
-    assert [row["title"] for row in front.rows if row["first"]] == [one.title for problem in PROBLEMS for one in problem.wanted]
+    assert [row.title for row in front.rows if row.first] == [one.title for problem in PROBLEMS for one in problem.wanted]
     text = (tmp_path / "out" / "precision.html").read_text(encoding="utf-8")
     for problem in PROBLEMS:
         for one in problem.wanted:
@@ -149,8 +149,7 @@ def test_the_table_says_where_none_reaches(tmp_path: Path) -> None:
     found = precision.measurements(tmp_path)
     assert found is not None
     row = precision.table_of(found.panels)[0]
-    assert not any(cell["ok"] for cell in row["cells"])  # type: ignore[index, attr-defined]
-    assert "none reaches it; best" in row["cells"][0]["words"]  # type: ignore[index]
+    assert not any(cell.ok for cell in row.cells) and "none reaches it; best" in row.cells[0].words
     assert precision.finding(found.panels).startswith("No quantity")
 
 
