@@ -13,7 +13,7 @@ from reports import verification
 from reports.charts.ladder import spread_apart
 from reports.charts.style import new_figure
 from reports.figures import Figure
-from reports.ladder import Ladder, convergence_figure, load_ladder
+from reports.ladder import convergence_figure, load_ladder
 from reports.make_page import main as make_page
 from reports.shown import Shown
 from reports.tests.test_page import links_of
@@ -65,11 +65,11 @@ def some_rows() -> list[dict[str, Any]]:
     return rows
 
 
-def ladder_of(root: Path, rows: list[dict[str, Any]]) -> Ladder:
-    """The rows as a ladder that was read."""
+def rows_of(root: Path, rows: list[dict[str, Any]]) -> list[Shown]:
+    """The rows as they are read."""
     ladder = load_ladder(write_ladder(root, rows) / "ladder" / "ladder.json")
     assert ladder is not None
-    return ladder
+    return ladder.rows
 
 
 def main(runs: Path, out: Path) -> int:
@@ -137,24 +137,22 @@ def test_figures_say_what_the_numbers_say(tmp_path: Path) -> None:
     titles = []
     for factor in (1.0, 2.0):
         rows = [row | {"error": row["error"] * factor} for row in some_rows()[:3]]
-        titles.append(convergence_figure(ladder_of(tmp_path, rows), "cracks").title)
+        titles.append(convergence_figure(rows_of(tmp_path, rows)).title)
     assert titles[0] == "Errors of 1\u00a0% (K_I, at rest) at the finest level; orders 1.0 between the finest two levels"
     assert titles[1].startswith("Errors of 2\u00a0%")
     two = some_rows()[:3] + [row | {"quantity": "J", "no_order": "rings"} for row in some_rows()[:3]]
-    assert convergence_figure(ladder_of(tmp_path, two), "cracks").title == (
+    assert convergence_figure(rows_of(tmp_path, two)).title == (
         "Errors from 1\u00a0% to 1\u00a0% (K_I, at rest) at the finest level; 1 of 2 are judged by their order, 1.0 between the finest two levels"
     )
 
 
 def test_round_off_is_not_drawn_but_counted(tmp_path: Path) -> None:
     """A curve at 1e-15 would leave no room for the others."""
-    ladder = ladder_of(tmp_path, some_rows())
-    figure = convergence_figure(ladder, "cracks")
+    figure = convergence_figure(rows_of(tmp_path, some_rows()))
     assert [(panel.heading, panel.unit) for panel in figure.panels] == [("at rest, quasi-static", "m"), ("moving, explicit", "m")]
     assert [curve.quantity for panel in figure.panels for curve in panel.curves] == ["K_I", "mouth"] and figure.left_out == 1
     assert "1 quantity that holds to round-off" in page_of(tmp_path / "runs", tmp_path / "out")
-    exact = ladder_of(tmp_path, some_rows()[3:6])
-    assert convergence_figure(exact, "cracks") is None
+    assert convergence_figure(rows_of(tmp_path, some_rows()[3:6])) is None
     assert "Everything holds to round-off" in page_of(tmp_path / "runs", tmp_path / "out2")
 
 
