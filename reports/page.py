@@ -17,6 +17,7 @@ from reports.outcome import held, interface_states, outcome_of
 from reports.runs import Run, mechanics_in
 from reports.shown import Shown
 from reports.words import NONE, listed, mechanics_name, metres, metres_signed, mpa, number, plain, setting, share, signed_mpa, thousands
+from verification.benchmarks.machine import this_machine
 from verification.harness.choices import Point
 from verification.harness.claim_data import ClaimResult
 from verification.harness.scenes import MECHANICS
@@ -149,17 +150,5 @@ def made_of(runs: list[Run]) -> list[tuple[str, str]]:
         *((f"run time, {mechanics_name(name)}, summed", f"{number(sum(times))} s in {len(times)} runs") for name, times in walls.items()),
         ("longest run", _told(max(known("wall_s"), default=None), lambda seconds: f"{number(seconds)} s")),
         ("largest memory of a run", _told(max(known("peak_memory_MB"), default=None), lambda size: f"{number(size)} MB")),
-        ("machine that made this page", machine()), ("page made with", f"Python {platform.python_version()}, jinja2 {jinja2.__version__}"),
+        ("machine that made this page", this_machine().words), ("page made with", f"Python {platform.python_version()}, jinja2 {jinja2.__version__}"),
     ]
-
-
-def machine() -> str:
-    """The processor's name and the number of its threads, and the system."""
-    names: list[str] = []
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-        names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
-    except OSError:
-        pass
-    processor = f"{names[0]}, {len(names)} threads" if names else platform.processor() or platform.machine()
-    return f"{processor}; {platform.system()} {platform.release()}"

@@ -10,7 +10,7 @@ from reports.catalogue import catalogue
 from reports.choices import choice_figure
 from reports.claims import claim_rows, sensitivity
 from reports.comparison import comparisons, inertia_words
-from reports.crack import raster, side_of
+from reports.crack import sampled, side_of
 from reports.curves import height_figure, largest_turn, path_figure, profile_figure
 from reports.figures import make, suspect_words
 from reports.layout import layout_of
@@ -112,21 +112,11 @@ def test_paths_say_towards_which_rock_they_go(tmp_path: Path) -> None:
     assert panel.magnified > 5.0 and panel.aside == "interface 5\u00a0m to the right of the start"
 
 
-def test_a_raster_averages_particles(tmp_path: Path) -> None:
-    """One value a square of a particle's spacing; empty squares are NaN."""
-    layout = layout_of(load_run(write_run(tmp_path, 1, Plan("perfect"))))
-    points = {"x_m": np.array([10.0, 11.0]), "y_m": np.array([10.0, 11.0]), "volume_m2": np.array([400.0, 400.0])}
-    _, _, field = raster(points, np.array([1.0, 3.0]), layout)
-    assert field.shape == (4, 4) and field[0, 0] == 2.0 and np.isnan(field[1:, :]).all()
-
-
-def test_a_raster_has_no_gaps_between_particles_of_long_cells(tmp_path: Path) -> None:
-    """Squares of 20 m: a particle 80 m long and 20 m high fills its four; nothing fills a row where there is none."""
-    layout = layout_of(load_run(write_run(tmp_path, 1, Plan("perfect"))))
-    places = [(40.0, 10.0), *((10.0 + 20.0 * k, 30.0) for k in range(4))]
-    points = {"x_m": np.array([x for x, _ in places]), "y_m": np.array([y for _, y in places]), "volume_m2": np.array([1600.0] + [400.0] * 4)}
-    _, _, field = raster(points, np.array([7.0, 1.0, 2.0, 3.0, 4.0]), layout)
-    assert (field[0] == 7.0).all() and list(field[1]) == [1.0, 2.0, 3.0, 4.0] and np.isnan(field[3]).all()
+def test_stress_is_that_of_the_nearest_particle() -> None:
+    """Rows are heights."""
+    points = {"x_m": np.array([1.0, 3.0, 2.0]), "y_m": np.array([1.0, 1.0, 3.0])}
+    edges = np.array([0.0, 2.0, 4.0])
+    assert sampled(points, np.array([1.0, 2.0, 3.0]), edges, edges).tolist() == [[1.0, 2.0], [3.0, 3.0]]
 
 
 def test_a_variant_is_told_by_what_differs(tmp_path: Path) -> None:
