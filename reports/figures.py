@@ -15,6 +15,7 @@ from reports.runs import NotAvailable, Run
 from reports.shown import Shown
 from reports.words import listed, mechanics_name, metres, mpa, plain, share
 
+FILTERS = {"listed": listed, "mechanics": mechanics_name, "metres": metres, "mpa": mpa, "plain": plain, "share": share}
 OUT, TEMPLATES = (Path(__file__).resolve().parent / name for name in ("out", "templates"))
 
 
@@ -56,7 +57,7 @@ class Section(TypedDict):
 def _texts() -> dict[str, jinja2.Template]:
     """The parts of templates/words.md by their names."""
     environment = jinja2.Environment(undefined=jinja2.StrictUndefined)
-    environment.filters |= {"listed": listed, "mechanics": mechanics_name, "metres": metres, "mpa": mpa, "plain": plain, "share": share}
+    environment.filters |= FILTERS
     _, *parts = re.split(r"^## (\w+)\n", (TEMPLATES / "words.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
     return {name: environment.from_string(text) for name, text in zip(parts[::2], parts[1::2])}
 
@@ -90,6 +91,7 @@ def write_page(out: Path, name: str, content: dict[str, Any]) -> Path:
     """Write a page from the template of its name (index.html: page.html)."""
     loader = jinja2.FileSystemLoader(TEMPLATES)
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
+    environment.filters |= FILTERS
     out.mkdir(parents=True, exist_ok=True)
     (out / name).write_text(environment.get_template("page.html" if name == "index.html" else name).render(content), encoding="utf-8")
     return out / name
