@@ -73,7 +73,8 @@ def table_of(one: Kept, why: Reasons) -> Table:
     told = [f"For {share(WANTED)} it needs {listed(wanted)}."] if wanted else []
     told += [f"It does not need {listed(spared)}."] if spared else []
     return Table(title=f"{experiment_name(one.experiment)}, {plain(one.variant)}", header=header, rows=rows,
-                 note=" ".join([*told, f"Version {one.version}."]), marked=[k for k, line in enumerate(one.lines, 1) if line.applies and line.verdict == NOTHING])
+                 note=" ".join([*told, f"Version {one.version}."]),
+                 marked=[k for k, line in enumerate(one.lines, 1) if line.applies and line.verdict == NOTHING])
 
 
 def verdict_words(line: Tried, one: Kept, why: Reasons) -> str:

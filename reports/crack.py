@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
-from reports.layout import Layout, layout_of
+from reports.layout import layout_of
 from reports.runs import Arrays, NotAvailable, Run, fields_at, interfaces_at, output_times
 from reports.shown import Shown
 from reports.words import metres, mpa, number, plain

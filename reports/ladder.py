@@ -22,7 +22,8 @@ def load_ladder(path: Path) -> Shown | None:
         return None
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
-        return Shown(**{key: content[key] for key in ("tally", "stale", "part", "machine", "families")}, rows=[_row(item) for item in content["rows"]])
+        kept = ("tally", "stale", "part", "machine", "families")
+        return Shown(**{key: content[key] for key in kept}, rows=[_row(item) for item in content["rows"]])
     except (KeyError, TypeError) as error:
         raise ValueError(f"{path}: {error}") from error
 
@@ -66,7 +67,7 @@ def curves_of(rows: Sequence[Shown]) -> list[Shown]:
 
 
 def convergence_figure(rows: Sequence[Shown]) -> Shown | None:
-    """Error against size for each case of a family's rows, `quantities` in the order of their colours; None where every error is round-off or missing.
+    """Error against size, a panel a case of a family's rows, `quantities` in the order of their colours; None where all is round-off or missing.
 
     A panel's unit is that of its sizes: "m" or "s", or nothing where the labels of its levels do not say.
     """

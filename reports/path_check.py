@@ -63,8 +63,8 @@ def path_check(runs: Path) -> Shown | None:
             except LoadError as error:
                 missing.append(f"{folder.relative_to(runs)}: {error}")
         if found:
-            panels.append(Shown(heading=TITLES[experiment], converged=exact_path(experiment, increment, turning, GROWTH_M), shows_same=experiment == 6,
-                                runs=found, interface_m=INTERFACE_M,
+            converged = exact_path(experiment, increment, turning, GROWTH_M)
+            panels.append(Shown(heading=TITLES[experiment], converged=converged, shows_same=experiment == 6, runs=found, interface_m=INTERFACE_M,
                                 converged_words=f"boundary elements, {turning}, increments {increment:g} m"))
     every = [path for panel in panels for path in panel.runs]
     if not panels:

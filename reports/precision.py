@@ -146,7 +146,8 @@ def table_of(panels: Sequence[Panel]) -> list[Shown]:
         if dot := cheapest(own, error):
             return Shown(words=choice_words(dot), error=share(dot.judged), ok=True)
         best = nearest(own)
-        return Shown(words=f"none reaches it; best {share(best.judged)}: {choice_words(best)}" if best else "nothing was measured", error="", ok=False)
+        lack = f"none reaches it; best {share(best.judged)}: {choice_words(best)}" if best else "nothing was measured"
+        return Shown(words=lack, error="", ok=False)
 
     return [Shown(title=panel.wanted.title, group=group, first=group == GROUPS[0], cells=[cell(own, error) for error in TOLERANCES])
             for panel in panels for group in GROUPS if (own := panel.of(group)) or group == GROUPS[0]]

@@ -36,7 +36,8 @@ def parts(folder: Path = store.RECORDS) -> list[Shown]:
         sections.setdefault(family.section or family.title, []).append(walk_of(family, store.read(name, folder)))
     return [Shown(title=title, walks=walks, anchor=walks[0].family.name, points=[point for walk in walks for point in walk.points],
                   wrong=[f"{walk.title}: {words}" for walk in walks for words in walk.wrong],
-                  edges={key: [value for walk in walks if (value := getattr(walk.edge, key)) is not None] for key in ("predicted", "measured", "difference")})
+                  edges={key: [value for walk in walks if (value := getattr(walk.edge, key)) is not None]
+                         for key in ("predicted", "measured", "difference")})
             for title, walks in sections.items()]
 
 
@@ -52,7 +53,7 @@ def outcomes_of(points: Iterable[PointFound]) -> str:
 
 
 def row_of(what: str, walks: Sequence[Shown], numbers: tuple[str, str, str], wrong: Sequence[str]) -> list[str]:
-    """A section's or a family's row: what, what is walked, edges predicted and measured and their difference, what strata does beyond, outcomes, verdict."""
+    """A section's or a family's row: what is walked, edges predicted and measured, their difference, what strata does beyond, outcomes, verdict."""
     names = {name for walk in walks for name in walk.family.beyond}
     beyond = "stable by construction" if names == {STABLE} else " or ".join(OUTCOME_WORDS[name] for name in OUTCOMES if name in names)
     return [what, "; ".join(dict.fromkeys(walk.parameter for walk in walks)), *numbers, beyond,
@@ -61,9 +62,8 @@ def row_of(what: str, walks: Sequence[Shown], numbers: tuple[str, str, str], wro
 
 def part_row(part: Shown) -> list[str]:
     """A section's row of the first table."""
-    edges = part.edges
-    return row_of(part.title, part.walks, (span(edges["predicted"]), span(edges["measured"]), percent(max(edges["difference"], key=abs, default=None))),
-                  part.wrong)
+    edges, off = part.edges, max(part.edges["difference"], key=abs, default=None)
+    return row_of(part.title, part.walks, (span(edges["predicted"]), span(edges["measured"]), percent(off)), part.wrong)
 
 
 def walk_row(walk: Shown) -> list[str]:

@@ -15,7 +15,9 @@ from reports.shown import Shown
 STRAIGHT = np.array([[0.0, 5.0], [0.0, 30.0]])
 
 
-def a_path(monkeypatch: pytest.MonkeyPatch, experiment: int, off_m: float, off_same_m: float, cell_m: float = 0.5, block: str = "400 m, graded") -> Shown:
+def a_path(
+    monkeypatch: pytest.MonkeyPatch, experiment: int, off_m: float, off_same_m: float, cell_m: float = 0.5, block: str = "400 m, graded",
+) -> Shown:
     """A path of a run, straight and so far from the converged one and from that in its own increments."""
     monkeypatch.setattr(path_check, "grown", lambda run: STRAIGHT)
     monkeypatch.setattr(path_check, "exact_path", lambda *given: STRAIGHT + [off_same_m, 0.0])

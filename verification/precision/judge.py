@@ -79,8 +79,10 @@ class Panel:
 def judged(errors: Sequence[float], uncertainties: Sequence[float], sizes: Sequence[float], by_order: bool = True) -> list[float]:
     """The errors of a curve (coarse to fine) as they are judged; see the top of the file."""
     least = [max(abs(error), uncertainty) for error, uncertainty in zip(errors, uncertainties)]
-    own = [max(error, least[k - 1] * (sizes[k] / sizes[k - 1]) ** CLEAN_ORDERS[1]) if by_order and k > 0 and errors[k - 1] * errors[k] < 0.0 else error
-           for k, error in enumerate(least)]  # fmt: skip
+    own = least[:1]
+    for k in range(1, len(least)):
+        turned = by_order and errors[k - 1] * errors[k] < 0.0
+        own.append(max(least[k], least[k - 1] * (sizes[k] / sizes[k - 1]) ** CLEAN_ORDERS[1]) if turned else least[k])
     return [max(own[k:]) for k in range(len(own))]
 
 
