@@ -6,6 +6,7 @@ import os
 import re
 import statistics
 import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterable
@@ -41,14 +42,20 @@ class NoBenchmark(Exception):
 
 
 def _bench(*options: str, shown: bool = False) -> str:
-    """What strata_bench ($STRATA_BENCH, or that of the release build) says; `shown`: on the terminal as it comes."""
+    """What strata_bench ($STRATA_BENCH, or that of the release build) says; `shown`: tell each benchmark as it is done."""
     program = os.environ.get("STRATA_BENCH", str(ROOT / "build" / "release" / "strata_bench"))
-    environment = {**os.environ, "OMP_PROC_BIND": "true", "OMP_PLACES": "cores"}
+    environment, said = {**os.environ, "OMP_PROC_BIND": "true", "OMP_PLACES": "cores"}, []
     try:
-        return subprocess.run([program, *options], stdout=2 if shown else subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
-                              check=True, env=environment).stdout or ""  # fmt: skip
-    except (OSError, subprocess.CalledProcessError) as error:
+        with subprocess.Popen([program, *options], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=environment) as process:
+            for line in process.stdout or ():
+                said.append(line)
+                if shown and "_median " in line:
+                    print(_plain(line.split("_median ")[0]), file=sys.stderr, flush=True)
+    except OSError as error:
         raise NoBenchmark(f"{program}: {error}") from error
+    if process.returncode != 0:
+        raise NoBenchmark(f"{program}: exit status {process.returncode}")
+    return "".join(said)
 
 
 def _plain(name: str) -> str:
