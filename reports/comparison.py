@@ -1,6 +1,6 @@
 """What inertia changes: the same variant in both mechanics, number by number."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -9,6 +9,7 @@ from reports.figures import words_of
 from reports.outcome import Arrest, Outcome, outcome_of
 from reports.runs import Run
 from reports.shown import Shown
+from reports.words import metres, metres_signed, mpa, number, share, signed_mpa, written
 from verification.harness.observables import distances_to, path_length, resample
 from verification.harness.scenes import MECHANICS
 
@@ -26,6 +27,10 @@ class Pair(NamedTuple):
         """With less without inertia."""
         return None if self.quasistatic is None or self.explicit is None else self.explicit - self.quasistatic
 
+    def words(self, told: Callable[[float], str], signed: Callable[[float], str] | None = None) -> list[str]:
+        """Both, and where asked for their difference."""
+        return [*(written(value, told) for value in self), *([signed(self.difference) if self.difference is not None else ""] if signed else [])]
+
 
 def comparisons(runs: Sequence[Run]) -> list[Shown]:
     """Every variant that can be drawn in both mechanics, in the order of the runs."""
@@ -36,17 +41,19 @@ def comparisons(runs: Sequence[Run]) -> list[Shown]:
 
 
 def _comparison(static: Run, moving: Run, runs: Sequence[Run]) -> Shown:
-    """One variant without (static) and with inertia: pairs of Pa, m, and the energies' ratio."""
+    """One variant without (static) and with inertia: pairs of Pa, m, and the energies' ratio; and the cells of its row."""
     own = [run for run in runs if run.experiment == static.experiment]
     without, with_ = outcome_of(static, own), outcome_of(moving, own)
     stays = [arrest if (arrest := one.longest) is not None and arrest.tells else None for one in (without, with_)]
     from_Pa, height_m, until_Pa = (Pair(*(getattr(arrest, key, None) for arrest in stays)) for key in ("from_Pa", "height_m", "until_Pa"))
+    start, kinetic = Pair(without.start_Pa, with_.start_Pa), Pair(kinetic_ratio(static), kinetic_ratio(moving))
+    apart, ratio = path_distance(static, moving), G_over_J(static)
     return Shown(
-        experiment=static.experiment, number=static.number, variant=static.variant, is_main=static.is_main,
-        start_Pa=Pair(without.start_Pa, with_.start_Pa), arrest_Pa=from_Pa, arrest_m=height_m, restart_Pa=until_Pa,
-        end_m=Pair(without.final_height_m, with_.final_height_m), path_m=path_distance(static, moving),
-        kinetic_ratio=Pair(kinetic_ratio(static), kinetic_ratio(moving)), G_over_J=G_over_J(static),
-        unlike=_unlike(*stays, without, with_, static.cell_m),
+        number=static.number, variant=static.variant, is_main=static.is_main, start_Pa=start, arrest_m=height_m, path_m=apart, kinetic_ratio=kinetic,
+        G_over_J=ratio, unlike=_unlike(*stays, without, with_, static.cell_m),
+        triples=[start.words(mpa, signed_mpa), from_Pa.words(mpa, signed_mpa), height_m.words(metres, metres_signed),
+                 until_Pa.words(mpa, signed_mpa), Pair(without.final_height_m, with_.final_height_m).words(metres, metres_signed)],
+        cells=[[written(apart, lambda length: f"{length:.2f}\u00a0m")], kinetic.words(share), [written(ratio, number)]],
     )
 
 

@@ -3,12 +3,12 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
-from reports.layout import Layout, layout_of
+from reports.layout import layout_of
 from reports.runs import Arrays, NotAvailable, Run, fields_at, interfaces_at, output_times
 from reports.shown import Shown
 from reports.words import metres, mpa, number, plain
 
-REACH_OF_LONG = 1.5  # half the diagonal of a particle eight times as long as wide, over the root of its area
+SQUARES = 100  # of Fig 2 along either side
 WINDOW_CELLS = 9  # width of Fig 1's panels: few enough for single nodes and particles to be told apart
 REACH: dict[str, float] = {"bspline2": 1.5, "linear": 1.0, "gimp": 1.25}  # half support of a node, cells
 
@@ -119,10 +119,9 @@ def _faces(fracture: Arrays, magnified: float) -> tuple[tuple[np.ndarray, np.nda
 
 
 def pressure_figure(run: Run, index: int) -> Shown:
-    """Fig 2 from one run at one output time: stress in MPa on cells in m, and along the fracture opening in mm and permeability in m2."""
+    """Fig 2 from one run at one output time: stress in MPa on squares in m, and along the fracture opening in mm and permeability in m2."""
     layout, fracture, points = layout_of(run), fields_at(run, "fracture", index), fields_at(run, "particles", index)
     x_m, y_m, pressure_Pa, opening_mm = fracture["x_m"], fracture["y_m"], fracture["pressure_Pa"], 1e3 * fracture["opening_m"]
-    edges_x, edges_y, field = raster(points, points["s_xx_Pa"] / 1e6, layout)
     inlet = float(fracture.get("inlet_Pa", np.nanmax(pressure_Pa)))
     arc = fracture.get("arc_m", np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x_m), np.diff(y_m)))]))
     filled = float(np.max(arc[pressure_Pa >= 0.5 * inlet], initial=0.0))
@@ -132,43 +131,22 @@ def pressure_figure(run: Run, index: int) -> Shown:
     )
     size = min(3.0 * float(np.max(y_m)), layout.height_m, layout.width_m)  # of a square view about the fracture, within the block
     left = min(max(0.0, float(x_m[0]) - 0.5 * size), layout.width_m - size)
+    edges_x, edges_y = np.linspace(left, left + size, SQUARES + 1), np.linspace(0.0, size, SQUARES + 1)
+    field = sampled(points, points["s_xx_Pa"] / 1e6, edges_x, edges_y)
     change = np.abs(field + layout.horizontal_Pa / 1e6)
     return Shown(
         title=title, edges_x_m=edges_x, edges_y_m=edges_y, s_xx_MPa=field, centre_MPa=-layout.horizontal_Pa / 1e6,
-        range_MPa=max(float(np.nanpercentile(change, 99.0)), abs(inlet - layout.horizontal_Pa) / 1e6), view_m=(left, left + size, 0.0, size),
+        range_MPa=max(float(np.percentile(change, 99.0)), abs(inlet - layout.horizontal_Pa) / 1e6), view_m=(left, left + size, 0.0, size),
         crack_x_m=x_m, crack_y_m=y_m, interfaces_m=layout.heights_m, arc_m=arc, pressure=pressure_Pa / inlet, opening_mm=opening_mm,
         permeability_m2=fracture["permeability_m2"], inlet_MPa=inlet / 1e6, time_s=float(output_times(run)[index]),
         source=f"Experiment {run.number}, {plain(run.variant)}",
     )
 
 
-def raster(points: Arrays, values: np.ndarray, layout: Layout) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Particle values averaged over squares of one particle's spacing; NaN where there is none.
-
-    Particles of long cells, on a graded grid, count for the squares around them as well.
-    """
-    spacing = float(np.sqrt(np.median(points["volume_m2"]))) if "volume_m2" in points else layout.cell_m / 2.0
-    count_x, count_y = max(1, round(layout.width_m / spacing)), max(1, round(layout.height_m / spacing))
-    edges_x, edges_y = np.linspace(0, layout.width_m, count_x + 1), np.linspace(0, layout.height_m, count_y + 1)
-    where = (points["x_m"], points["y_m"])
-    total, _, _ = np.histogram2d(*where, bins=(edges_x, edges_y), weights=values)
-    hits, _, _ = np.histogram2d(*where, bins=(edges_x, edges_y))
-    mean = np.divide(total, hits, out=np.full_like(total, np.nan), where=hits > 0)
-    if "volume_m2" in points:
-        _spread(mean, (edges_x, edges_y), points, values)
-    return edges_x, edges_y, mean.T
-
-
-def _spread(mean: np.ndarray, edges: tuple[np.ndarray, np.ndarray], points: Arrays, values: np.ndarray) -> None:
-    """Give empty squares the value of the nearest particle that is larger than most, and no farther than its own cell may reach."""
-    large = points["volume_m2"] > 1.01 * np.median(points["volume_m2"])
-    empty = np.argwhere(np.isnan(mean))
-    if not large.any() or not len(empty):
-        return
-    centres = np.column_stack([0.5 * (edge[:-1] + edge[1:])[empty[:, axis]] for axis, edge in enumerate(edges)])
-    away_m, nearest = cKDTree(np.column_stack([points["x_m"][large], points["y_m"][large]])).query(centres)
-    within = away_m <= REACH_OF_LONG * np.sqrt(points["volume_m2"][large][nearest])
-    mean[tuple(empty[within].T)] = values[large][nearest[within]]
+def sampled(points: Arrays, values: np.ndarray, edges_x_m: np.ndarray, edges_y_m: np.ndarray) -> np.ndarray:
+    """The value of the particle nearest to the middle of each square, a row a height."""
+    x_m, y_m = np.meshgrid(*(0.5 * (edges[:-1] + edges[1:]) for edges in (edges_x_m, edges_y_m)))
+    return values[cKDTree(np.column_stack([points["x_m"], points["y_m"]])).query(np.stack([x_m, y_m], axis=-1))[1]]
 
 
 def index_when_tip_passes(run: Run, height_m: float) -> int:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from reports.layout import Layout, layout_of
+from reports.layout import layout_of
 from reports.outcome import Arrest, finding, held, outcome_of, outcomes_of
 from reports.runs import NotAvailable, Run, fields_at, lead_of, mechanics_in, output_times
 from reports.shown import Shown
@@ -179,7 +179,7 @@ def _window(paths: Sequence[Shown]) -> tuple[float, float, float, float]:
     return (middle - 0.5 * width, middle + 0.5 * width, low, low + height)
 
 
-def _aside(layout: Layout, window: tuple[float, float, float, float]) -> str:
+def _aside(layout: Shown, window: tuple[float, float, float, float]) -> str:
     """Where the interfaces lie that the window does not show."""
     if layout.along != "x" or not layout.fracture_x_m:
         return ""

@@ -1,8 +1,6 @@
 """What pages are made of, whichever page it is: figures as declarations, tables and parts as plain data; and what writes them."""
 
-import argparse
 import re
-import sys
 import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -17,6 +15,7 @@ from reports.runs import NotAvailable, Run
 from reports.shown import Shown
 from reports.words import listed, mechanics_name, metres, mpa, plain, share
 
+FILTERS = {"listed": listed, "mechanics": mechanics_name, "metres": metres, "mpa": mpa, "plain": plain, "share": share}
 OUT, TEMPLATES = (Path(__file__).resolve().parent / name for name in ("out", "templates"))
 
 
@@ -58,7 +57,7 @@ class Section(TypedDict):
 def _texts() -> dict[str, jinja2.Template]:
     """The parts of templates/words.md by their names."""
     environment = jinja2.Environment(undefined=jinja2.StrictUndefined)
-    environment.filters |= {"listed": listed, "mechanics": mechanics_name, "metres": metres, "mpa": mpa, "plain": plain, "share": share}
+    environment.filters |= FILTERS
     _, *parts = re.split(r"^## (\w+)\n", (TEMPLATES / "words.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
     return {name: environment.from_string(text) for name, text in zip(parts[::2], parts[1::2])}
 
@@ -76,49 +75,31 @@ def suspect_words(runs: Sequence[Run]) -> str:
 
 def make(figure: Figure, out: Path) -> Shown:
     """Write a figure's files below a page's folder; whatever is missing or wrong is told on the page and stops nothing."""
-    made = Shown(name=figure.name, label=figure.label, experiment=figure.experiment, part=figure.part, title="", caption="", reason="", defect="")
+    made = Shown(name=figure.name, label=figure.label, experiment=figure.experiment, part=figure.part, title="", caption="", lack="", defect="")
     try:
         data = figure.data() if callable(figure.data) else figure.data
         save(figure.draw(data), out / "figures", figure.name)
         made.title, made.caption = data.title, words_of(figure.caption, data=data) + suspect_words(figure.runs)
-    except NotAvailable as lack:
-        made.reason = str(lack)
+    except NotAvailable as missing:
+        made.lack = str(missing)
     except Exception as error:  # a defect in one figure must not cost the reader all the others
-        made.reason, made.defect = f"could not be drawn: {type(error).__name__}: {error}", traceback.format_exc()
+        made.lack, made.defect = f"could not be drawn: {type(error).__name__}: {error}", traceback.format_exc()
     return made
-
-
-def defects_of(pictures: Sequence[Shown]) -> list[str]:
-    """The traces of figures that met a defect."""
-    return [made.defect for made in pictures if made.defect]
 
 
 def write_page(out: Path, name: str, content: dict[str, Any]) -> Path:
     """Write a page from the template of its name (index.html: page.html)."""
     loader = jinja2.FileSystemLoader(TEMPLATES)
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
+    environment.filters |= FILTERS
     out.mkdir(parents=True, exist_ok=True)
     (out / name).write_text(environment.get_template("page.html" if name == "index.html" else name).render(content), encoding="utf-8")
     return out / name
 
 
-def front_of(write: Callable[[], Shown], sorry: str) -> Shown:
-    """What the front page says of a page beside it; `lack` and `defect` in its place where it could not be written."""
+def told_of(name: str, write: Callable[[], Shown], sorry: str) -> Shown:
+    """What is told of a page: its name, its `words`, and `lack` or `defect` where it, or a part of it, could not be written."""
     try:
-        return write()
+        return Shown(**{"name": name, "words": "", "lack": "", "defect": "", **vars(write())})
     except Exception as error:  # a torn file must not cost the reader the other pages
-        return Shown(lack=f"{sorry}: {type(error).__name__}: {error}", defect=traceback.format_exc())
-
-
-def write_alone(about: str, option: str, kept: Path, write: Callable[[Path, Path], Shown], arguments: list[str] | None = None) -> int:
-    """A page made by a script of its own from a folder (by default `kept`, told by `option`); 1 where that holds nothing or is torn."""
-    parser = argparse.ArgumentParser(description=about)
-    parser.add_argument(option, dest="data", type=Path, default=kept, help="folder of what it is made of")
-    parser.add_argument("--out", type=Path, default=OUT, help="folder for the page")
-    options = parser.parse_args(arguments)
-    made = write(options.out, options.data)
-    if made.lack or made.defect:
-        print(made.defect or made.lack, file=sys.stderr)
-        return 1
-    print(f"{options.out / made.link}: {made.words}")
-    return 0
+        return Shown(name=name, words="", lack=f"{sorry}: {type(error).__name__}: {error}", defect=traceback.format_exc())

@@ -1,121 +1,85 @@
-"""The accuracy ladder's ladder.json as plain data, and what its charts draw."""
+"""The accuracy ladder's ladder.json as plain data: what its charts draw, and the words of its tables."""
 
 import json
 import math
 import re
-import statistics
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
 from reports.shown import Shown
-from reports.words import listed, mechanics_name, number, order_words, plain, share
+from reports.words import NONE, mechanics_name, number, order_words, plain, relative, sentence, share, thousands
 
 ROUND_OFF = "round-off"  # as in verification/ladder/gates.py: how the reason of what holds to rounding begins
 SAME_AS_ROUNDING = 1e-13  # errors below it are not drawn
-ONE_PERCENT = 0.01
 UNIT = re.compile(r"\d (m|s)\b")  # of a level's size, in its label
 
 
-class Row(Shown):
-    """A comparison: a quantity of a case at a level, as ladder.json has it; errors are relative, NaN where nothing was measured."""
-
-    @property
-    def passed(self) -> bool:
-        """Whether it is as its gate asks."""
-        return self.verdict == "pass"
-
-    @property
-    def round_off(self) -> bool:
-        """Whether the quantity holds to rounding at any size."""
-        return self.no_order.startswith(ROUND_OFF)
-
-
-@dataclass(frozen=True)
-class Ladder:
-    """All of ladder.json: rows, what each family and case says, and the tally of gates and mutants."""
-
-    rows: list[Row]
-    families: dict[str, str]
-    cases: dict[tuple[str, str], str]
-    tally: dict[str, Any]
-    stale: tuple[str, ...]
-    part: bool
-    machine: str
-
-
-def load_ladder(path: Path) -> Ladder | None:
-    """Read ladder.json; None where there is none, ValueError where it is not as the ladder leaves it."""
+def load_ladder(path: Path) -> Shown | None:
+    """Read ladder.json: rows, families with what they and their cases say, the tally of gates and mutants; None where there is none, ValueError
+    where it is not as the ladder leaves it."""
     if not path.is_file():
         return None
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
-        return Ladder(
-            rows=[_row(item) for item in content["rows"]], families={item["name"]: item["says"] for item in content["families"]},
-            cases={(item["name"], case["name"]): case["says"] for item in content["families"] for case in item["cases"]},
-            tally=content["tally"], stale=tuple(content["stale"]), part=bool(content["part"]), machine=content["machine"],
-        )
+        kept = ("tally", "stale", "part", "machine", "families")
+        return Shown(**{key: content[key] for key in kept}, rows=[_row(item) for item in content["rows"]])
     except (KeyError, TypeError) as error:
         raise ValueError(f"{path}: {error}") from error
 
 
-def _row(item: dict[str, Any]) -> Row:
-    """A row from its JSON object."""
+def _row(item: dict[str, Any]) -> Shown:
+    """A comparison: a quantity of a case at a level; errors are relative, NaN where nothing was measured."""
 
     def float_of(value: Any) -> float:
         """A JSON number, NaN for null."""
         return math.nan if value is None else float(value)
 
-    cost, gate = item["cost"] or {}, item["gate"] or {}
+    cost, gate, no_order = item["cost"] or {}, item["gate"] or {}, item["no_order"]
     kept = ("family", "case", "mechanics", "quantity", "unit", "level", "no_order", "verdict", "size", "values", "scale", "order")
-    return Row(
+    return Shown(
         **{name: item[name] for name in kept}, **{name: float_of(item[name]) for name in ("value", "reference", "error", "reference_error")},
         wall_s=float_of(cost.get("wall_s")), particles=int(cost.get("particles", 0)), steps=int(cost.get("steps", 0)),
         memory_MB=float_of(cost.get("peak_memory_MB")), gate=float_of(gate.get("error")), order_gate=gate.get("order"),
-        why="; ".join(filter(None, (item["failure"], *item["problems"]))), note=item.get("note", ""),
+        why="; ".join(filter(None, (item["failure"], *item["problems"]))), note=item.get("note", ""), passed=item["verdict"] == "pass",
+        round_off=no_order.startswith(ROUND_OFF),
     )
 
 
-def curves_of(rows: Sequence[Row]) -> list[Shown]:
+def grouped(rows: Iterable[Shown], key: Callable[[Shown], Any]) -> dict[Any, list[Shown]]:
+    """Rows that have the same key, in the order in which keys come."""
+    groups: dict[Any, list[Shown]] = {}
+    for row in rows:
+        groups.setdefault(key(row), []).append(row)
+    return groups
+
+
+def curves_of(rows: Sequence[Shown]) -> list[Shown]:
     """A curve for each quantity with an error that is neither round-off nor missing, in the rows' order.
 
-    Errors (without sign) and gates at each size and wall time (s), coarse to fine; `order` of the finest pair; `judged`: whether it is asked for.
+    Errors (without sign) and gates at each size, coarse to fine; `order` of the finest pair; `judged`: whether it is asked for.
     """
-    groups: dict[tuple[str, str, str], list[Row]] = {}
-    for row in rows:
-        if not row.round_off and math.isfinite(row.error) and abs(row.error) > SAME_AS_ROUNDING:
-            groups.setdefault((row.family, row.case, row.quantity), []).append(row)
-    return [_curve(group) for group in groups.values()]
+    drawn = [row for row in rows if not row.round_off and math.isfinite(row.error) and abs(row.error) > SAME_AS_ROUNDING]
+    return [Shown(case=case, mechanics=group[-1].mechanics, quantity=quantity, sizes=tuple(row.size for row in group),
+                  errors=tuple(abs(row.error) for row in group), gates=tuple(row.gate for row in group), passed=tuple(row.passed for row in group),
+                  order=group[-1].order if len(group) > 1 else None, judged=not group[-1].no_order)
+            for (_, case, quantity), group in grouped(drawn, lambda row: (row.family, row.case, row.quantity)).items()]
 
 
-def _curve(group: list[Row]) -> Shown:
-    """The curve of one quantity's rows."""
-    last = group[-1]
-    return Shown(
-        family=last.family, case=last.case, mechanics=last.mechanics, quantity=last.quantity, sizes=tuple(row.size for row in group),
-        errors=tuple(abs(row.error) for row in group), gates=tuple(row.gate for row in group), walls_s=tuple(row.wall_s for row in group),
-        passed=tuple(row.passed for row in group), order=last.order if len(group) > 1 else None, judged=not last.no_order,
-    )
-
-
-def convergence_figure(ladder: Ladder, family: str) -> Shown | None:
-    """Error against size for each case of a family, `quantities` in the order of their colours; None where every error is round-off or missing.
+def convergence_figure(rows: Sequence[Shown]) -> Shown | None:
+    """Error against size, a panel a case of a family's rows, `quantities` in the order of their colours; None where all is round-off or missing.
 
     A panel's unit is that of its sizes: "m" or "s", or nothing where the labels of its levels do not say.
     """
-    rows = [row for row in ladder.rows if row.family == family]
     curves = curves_of(rows)
     if not curves:
         return None
     panels = []
-    for case, mechanics in dict.fromkeys((curve.case, curve.mechanics) for curve in curves):
+    for (case, mechanics), own in grouped(curves, lambda curve: (curve.case, curve.mechanics)).items():
         units = {found[1] for row in rows if row.case == case and (found := UNIT.search(row.level))}
-        own = tuple(one for one in curves if one.case == case)
         panels.append(Shown(heading=case_words(case, mechanics), curves=own, unit=units.pop() if len(units) == 1 else ""))
-    quantities = tuple(dict.fromkeys(curve.quantity for curve in curves))
-    left_out = len({(row.case, row.quantity) for row in rows}) - len(curves)
-    return Shown(title=convergence_words(curves), panels=panels, quantities=quantities, left_out=left_out)
+    return Shown(title=convergence_words(curves), panels=panels, quantities=tuple(dict.fromkeys(curve.quantity for curve in curves)),
+                 left_out=len({(row.case, row.quantity) for row in rows}) - len(curves))
 
 
 def case_words(case: str, mechanics: str) -> str:
@@ -137,43 +101,52 @@ def convergence_words(curves: Sequence[Shown]) -> str:
     return f"{told}; {which}{spread} between the finest two levels"
 
 
-def cost_figure(ladder: Ladder) -> Shown | None:
-    """Largest error of every case against wall time, a panel a family, `mechanics` in the order of their colours; None where there is nothing."""
-    curves = [case for case in worst_of(curves_of(ladder.rows)) if all(wall > 0.0 for wall in case.walls_s)]
-    if not curves:
-        return None
-    mechanics = tuple(name for name in ("quasistatic", "explicit") if any(curve.mechanics == name for curve in curves))
-    families = dict.fromkeys(curve.family for curve in curves)
-    panels = [Shown(heading=plain(name), curves=tuple(curve for curve in curves if curve.family == name)) for name in families]
-    return Shown(title=cost_words(curves, mechanics), panels=panels, mechanics=mechanics)
+# --- tables
 
 
-def worst_of(curves: Sequence[Shown]) -> list[Shown]:
-    """A curve a case: the largest error among its quantities at each size; it passes where all of them do."""
-    groups: dict[tuple[str, str], dict[float, list[tuple[Shown, int]]]] = {}
-    for curve in curves:
-        for index, size in enumerate(curve.sizes):
-            groups.setdefault((curve.family, curve.case), {}).setdefault(size, []).append((curve, index))
-    found = []
-    for sizes in groups.values():
-        first = next(iter(sizes.values()))[0][0]
-        levels = [sizes[size] for size in sorted(sizes, reverse=True)]
-        found.append(Shown(
-            family=first.family, case=first.case, mechanics=first.mechanics, sizes=tuple(sorted(sizes, reverse=True)),
-            errors=tuple(max(curve.errors[k] for curve, k in level) for level in levels),
-            walls_s=tuple(max(curve.walls_s[k] for curve, k in level) for level in levels),
-            passed=tuple(all(curve.passed[k] for curve, k in level) for level in levels),
-        ))
-    return found
+def family_shown(ladder: Shown, family: dict[str, Any]) -> Shown:
+    """A family: what it says, its chart's data (None where all is round-off), and its cases, each with its quantities, each with its levels.
+
+    exact: the cases of which everything holds to round-off as it should, which the page folds away; reasons: why no order is to be expected,
+    which the tables refer to by their numbers.
+    """
+    name, says = family["name"], {case["name"]: case["says"] for case in family["cases"]}
+    rows = [row for row in ladder.rows if row.family == name]
+    curves, reasons = curves_of(rows), list(dict.fromkeys(row.no_order for row in rows if row.no_order))
+    cases = [Shown(name=case_words(case, own[0].mechanics), says=sentence(says[case]), comparisons=len(own),
+                   exact=all(row.round_off and row.passed for row in own),
+                   quantities=[_quantity(levels, reasons) for levels in grouped(own, lambda row: row.quantity).values()])
+             for case, own in grouped(rows, lambda row: row.case).items()]
+    return Shown(
+        name=name, title=plain(name)[:1].upper() + plain(name)[1:], says=sentence(family["says"]), data=convergence_figure(rows),
+        finding=convergence_words(curves) if curves else "Everything holds to round-off" if rows else "Nothing was run",
+        blocks=[case for case in cases if not case.exact], exact=[case for case in cases if case.exact], reasons=reasons, comparisons=len(rows),
+        wrong=sum(not row.passed for row in rows),
+    )
 
 
-def cost_words(curves: Sequence[Shown], mechanics: Sequence[str]) -> str:
-    """How long it takes each mechanics to come within a percent in all that a case measures, in a sentence."""
-    told = []
-    for name in mechanics:
-        own = [curve for curve in curves if curve.mechanics == name]
-        within = [[wall for wall, off in zip(curve.walls_s, curve.errors) if off <= ONE_PERCENT] for curve in own]
-        first = [min(walls) for walls in within if walls]
-        time = f" in {number(statistics.median(first), 2)}\u00a0s (median)" if first else ""
-        told.append(f"{len(first)} of {len(own)} {mechanics_name(name)} cases{time}")
-    return f"Within 1\u00a0% in all that they measure: {listed(told)}"
+def _quantity(own: list[Shown], reasons: list[str]) -> Shown:
+    """A quantity's cells: how many values there are at each level where there is more than one; what errors are relative to where it is not the
+    reference itself; the numbers of the reasons why no order is expected, with the levels where that is not so of all; and the levels."""
+    counts = list(dict.fromkeys(row.values for row in own if row.values > 0))
+    scales = list(dict.fromkeys(number(row.scale, 3) for row in own if row.scale is not None))
+    without = [(index, [row.level for row in own if row.no_order == reason]) for index, reason in enumerate(reasons, 1)]
+    return Shown(
+        name=own[0].quantity, unit=own[0].unit, count=f"rms of {' / '.join(map(str, counts))} values" if max(counts, default=1) > 1 else "",
+        reasons=[(index, "" if len(levels) == len(own) else f" at {', '.join(levels)}") for index, levels in without if levels],
+        scale=f"errors relative to {' / '.join(scales)} {own[0].unit}".rstrip() if scales else "",
+        levels=[(row, cells_of(row)) for row in own], height=len(own) + sum(bool(row.why or row.note) for row in own),
+    )
+
+
+def cells_of(row: Shown) -> list[str]:
+    """A level in words: level, value, reference, its own error, error, order, gates of error and order, time, points, steps, memory."""
+    order = NONE if row.order is None else order_words(row.order, 2)
+    return [
+        row.level, *(NONE if math.isnan(one) else number(one, 6) for one in (row.value, row.reference)),
+        relative(row.reference_error) if row.reference_error > 0.0 else "", relative(row.error, signed=row.values == 1),
+        f"({order})" if row.no_order and row.order is not None else order, "none" if math.isnan(row.gate) else relative(row.gate),
+        "" if row.order_gate is None else f"≥ {row.order_gate:g}",
+        NONE if math.isnan(row.wall_s) else f"{row.wall_s:.1f}" if row.wall_s >= 0.1 else f"{row.wall_s:.2g}", thousands(row.particles),
+        thousands(row.steps), NONE if math.isnan(row.memory_MB) else f"{row.memory_MB:.0f}",
+    ]

@@ -1,6 +1,5 @@
 """The geometry of an experiment from its resolved scene: layers, interfaces, fracture, edges, in-situ stress."""
 
-from dataclasses import dataclass
 from typing import Any
 
 from reports.runs import NotAvailable, Run
@@ -8,59 +7,36 @@ from reports.shown import Shown
 from reports.words import number
 
 
-@dataclass(frozen=True)
-class Layout:
-    """What a scene looks like before anything happens; m and Pa, compression positive.
+def layout_of(run: Run) -> Shown:
+    """What a run's resolved scene looks like before anything happens; m and Pa, compression positive.
 
     A layer has its rock's name, its label (and that on one line), its places on the stacking axis and Young's modulus over the stiffest rock's; an
-    interface its place, name and law.
+    interface its place, name and law; heights_m are those of interfaces across the fracture.
     """
-
-    width_m: float
-    height_m: float
-    along: str
-    layers: tuple[Shown, ...]
-    interfaces: tuple[Shown, ...]
-    fracture_x_m: tuple[float, ...]
-    fracture_y_m: tuple[float, ...]
-    vertical_Pa: float
-    horizontal_Pa: float
-    edges: dict[str, str]
-    cell_m: float
-
-    @property
-    def heights_m(self) -> tuple[float, ...]:
-        """Heights of the interfaces that lie across the fracture, m."""
-        return tuple(place.at_m for place in self.interfaces) if self.along == "y" else ()
-
-
-def layout_of(run: Run) -> Layout:
-    """The layout that a run's resolved scene describes."""
     try:
         return _layout(run.scene, run.cell_m)
     except (KeyError, TypeError, IndexError) as error:
         raise NotAvailable(f"{run.experiment}/{run.variant}: scene.toml lacks {error}") from error
 
 
-def _layout(scene: dict[str, Any], cell_m: float) -> Layout:
+def _layout(scene: dict[str, Any], cell_m: float) -> Shown:
     """The layout of a scene's table."""
     domain, strata, in_situ = scene["domain"], scene["strata"], scene.get("in_situ", {})
     along = str(strata.get("along", "y"))
-    span = float(domain["height_m"] if along == "y" else domain["width_m"])
-    layers = _layers(scene, span)
-    names = [str(name) for name in strata.get("interfaces", [])]
-    laws = [str(scene.get("interface", {}).get(name, {}).get("law", name)) for name in names]
+    layers = _layers(scene, float(domain["height_m" if along == "y" else "width_m"]))
+    interfaces = [Shown(at_m=below.to_m, name=str(name), law=str(scene.get("interface", {}).get(name, {}).get("law", name)))
+                  for below, name in zip(layers[:-1], strata.get("interfaces", []))]
     path = scene.get("fracture", {}).get("path_m", [])
-    return Layout(
-        width_m=float(domain["width_m"]), height_m=float(domain["height_m"]), along=along, layers=layers,
-        interfaces=tuple(Shown(at_m=below.to_m, name=name, law=law) for below, name, law in zip(layers[:-1], names, laws)),
-        fracture_x_m=tuple(float(point[0]) for point in path), fracture_y_m=tuple(float(point[1]) for point in path),
+    return Shown(
+        width_m=float(domain["width_m"]), height_m=float(domain["height_m"]), along=along, layers=layers, interfaces=interfaces,
+        heights_m=tuple(place.at_m for place in interfaces) if along == "y" else (), cell_m=cell_m,
+        fracture_x_m=[float(point[0]) for point in path], fracture_y_m=[float(point[1]) for point in path],
         vertical_Pa=float(in_situ.get("vertical_Pa", 0.0)), horizontal_Pa=float(in_situ.get("horizontal_Pa", 0.0)),
-        edges={name: str(domain.get(name, "")) for name in ("bottom", "sides", "top")}, cell_m=cell_m,
+        edges={name: str(domain.get(name, "")) for name in ("bottom", "sides", "top")},
     )
 
 
-def _layers(scene: dict[str, Any], span_m: float) -> tuple[Shown, ...]:
+def _layers(scene: dict[str, Any], span_m: float) -> list[Shown]:
     """The layers with their places; the last one fills what is left of the span."""
     rocks = scene["rock"]
     stiffest = max(float(rock["youngs_modulus_Pa"]) for rock in rocks.values())
@@ -74,7 +50,7 @@ def _layers(scene: dict[str, Any], span_m: float) -> tuple[Shown, ...]:
         line = f"{entry['rock']}: {number(modulus / 1e9, 2)} GPa, {number(toughness / 1e6)} MPa√m"
         layers.append(Shown(rock=str(entry["rock"]), from_m=at, to_m=to, label=label, line=line, stiffness=modulus / stiffest))
         at = to
-    return tuple(layers)
+    return layers
 
 
 INTERFACE = "interface "  # begins the keys of what acts at a place, such as "interface 1 coefficient"

@@ -1,16 +1,17 @@
 #!/usr/bin/python3
-"""Writes the page of results: reports/make_page.py --runs runs --out reports/out."""
+"""Writes the page of the experiments with those beside it, or one of these alone: make_page.py --runs runs --out reports/out [--page NAME]."""
 
 import argparse
 import sys
 from concurrent.futures import ProcessPoolExecutor
+from functools import partial
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
 from reports.catalogue import catalogue  # noqa: E402  (after the path to the project is known)
-from reports.figures import OUT, defects_of, make  # noqa: E402
+from reports.figures import OUT, make  # noqa: E402
 from reports.page import write_index  # noqa: E402
 from reports.precision import write_precision  # noqa: E402
 from reports.runs import add_missing, load_runs  # noqa: E402
@@ -24,30 +25,39 @@ from verification.stability.store import RECORDS  # noqa: E402
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Read the runs, make every figure, write the page; 1 where --strict is given and a figure met a defect."""
-    parser = argparse.ArgumentParser(description="Make figures and index.html from run folders.")
+    """Write the pages; 1 where a page asked for alone has nothing to show, or where --strict is given and something met a defect."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--page", default="index", choices=("index", "verification", "precision", "stability"))
     parser.add_argument("--runs", type=Path, default=RUNS, help="folder of runs/<mechanics>/<scene>/<variant>/")
     parser.add_argument("--out", type=Path, default=OUT, help="folder for the page")
     parser.add_argument("--experiments", type=Path, default=ROOT / "experiments", help="scenes whose variants without a run are shown as not run")
     parser.add_argument("--precision", type=Path, default=DATA, help="folder of the work-precision chart's data")
     parser.add_argument("--stability", type=Path, default=RECORDS, help="folder of the stability atlas' records")
-    parser.add_argument("--strict", action="store_true", help="exit 1 if a figure could not be drawn for a defect")
+    parser.add_argument("--ladder", type=Path, help="the ladder's judgement (default: RUNS/ladder/ladder.json)")
+    parser.add_argument("--strict", action="store_true", help="exit 1 if something could not be drawn for a defect")
     options = parser.parse_args(arguments)
-    points = read_points(options.experiments)
-    runs = add_missing(load_runs(options.runs), options.experiments, options.runs)
-    with ProcessPoolExecutor(max_workers=2) as beside:  # the other pages are drawn at the same time
-        atlas_page = beside.submit(write_stability, options.out, options.stability)
-        verification = beside.submit(write_verification, options.runs, options.out, with_index=True)
-        chart_page = beside.submit(write_precision, options.out, options.precision)
-        figures = [make(figure, options.out) for figure in catalogue(runs, points)]
-        verified, chart, atlas = verification.result(), chart_page.result(), atlas_page.result()
-    page = write_index(options.out, runs, read_claims(options.runs / "claims.json"), figures, points,
-                       verified=verified.headline if verified else "", precision=chart, stability=atlas)
-    defects = [*(verified.defects if verified else []), *filter(None, [chart.defect, atlas.defect])]
-    told = [f"{made.label}: {made.reason}\n{made.defect}" for made in figures if made.reason]
-    print(*defects, *told, sep="\n", end="\n" if defects or told else "", file=sys.stderr)
-    print(f"{page}: {sum(not made.reason for made in figures)} of {len(figures)} figures, {len(runs)} runs")
-    return 1 if options.strict and (defects or defects_of(figures)) else 0
+    out, alone = options.out, options.page != "index"
+    makers = {"verification": partial(write_verification, options.runs, out, options.ladder, not alone),
+              "precision": partial(write_precision, out, options.precision), "stability": partial(write_stability, out, options.stability)}
+    if alone:
+        made = makers[options.page]()
+        pages, told = [made], f"{out / made.name}: {made.words}"
+    else:
+        points, runs = read_points(options.experiments), add_missing(load_runs(options.runs), options.experiments, options.runs)
+        with ProcessPoolExecutor(max_workers=2) as pool:  # the other pages are drawn at the same time
+            waiting = {name: pool.submit(maker) for name, maker in makers.items()}
+            figures = [make(figure, out) for figure in catalogue(runs, points)]
+            beside = {name: one.result() for name, one in waiting.items()}
+        page = write_index(out, runs, read_claims(options.runs / "claims.json"), figures, points, **beside)
+        pages = [*beside.values(), *figures]
+        told = f"{page}: {sum(not one.lack for one in figures)} of {len(figures)} figures, {len(runs)} runs"
+    for one in pages:
+        if one.lack or one.defect:
+            print(*filter(None, [f"{one.name}: {one.lack}" if one.lack else "", one.defect]), sep="\n", file=sys.stderr)
+    if alone and made.lack:
+        return 1
+    print(told)
+    return 1 if options.strict and any(one.defect for one in pages) else 0
 
 
 if __name__ == "__main__":

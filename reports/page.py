@@ -2,21 +2,22 @@
 
 import platform
 import shutil
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import jinja2
 
 from reports.claims import SYMBOLS, claim_rows, counts, mechanics_of_rows, sensitivity
-from reports.comparison import Pair, comparisons, inertia_words
+from reports.comparison import comparisons, inertia_words
 from reports.figures import write_page
 from reports.layout import flat_keys
 from reports.ledger import closure_of, differences, spread_of, suspicions
 from reports.outcome import held, interface_states, outcome_of
 from reports.runs import Run, mechanics_in
 from reports.shown import Shown
-from reports.words import NONE, listed, mechanics_name, metres, metres_signed, mpa, number, plain, setting, share, signed_mpa, thousands
+from reports.words import NONE, listed, mechanics_name, metres, mpa, number, plain, setting, share, thousands, written
+from verification.benchmarks.machine import this_machine
 from verification.harness.choices import Point
 from verification.harness.claim_data import ClaimResult
 from verification.harness.scenes import MECHANICS
@@ -24,9 +25,9 @@ from verification.harness.scenes import MECHANICS
 COPIED: tuple[str, ...] = ("scene.toml", "summary.json", "history.csv")
 
 
-def write_index(out: Path, runs: list[Run], claims: list[ClaimResult], figures: list[Shown], points: Sequence[Point] = (), **beside: Any) -> Path:
-    """Write index.html and copies of each run's small files. Beside: `verified`, what verification.html beside it says, if it is there; `precision`,
-    the chart of error against time, which comes first; `stability`, what stability.html says."""
+def write_index(out: Path, runs: list[Run], claims: list[ClaimResult], figures: list[Shown], points: Sequence[Point] = (), **beside: Shown) -> Path:
+    """Write index.html and copies of each run's small files. Beside: what is told of the pages `verification`, `precision` (whose chart comes first)
+    and `stability`, of those that there are."""
     for run in runs:
         _copy_sources(run, out)
     return write_page(out, "index.html", {**context(runs, claims, figures, points), **beside})
@@ -50,12 +51,12 @@ def context(runs: list[Run], claims: list[ClaimResult], figures: list[Shown], po
     numbers = {0, *(number for number, _ in experiments)}
     return {
         "claims": verdicts, "counts": [(name, [entry for entry in entries if entry[2]]) for name, entries in tally],
-        "mechanics": mechanics_of_rows(verdicts), "both": len(mechanics_in(runs)) > 1, "compared": [comparison_row(row) for row in compared],
+        "mechanics": mechanics_of_rows(verdicts), "both": len(mechanics_in(runs)) > 1, "compared": compared,
         "inertia": inertia_words(compared), "symbols": SYMBOLS, "headline": headline(runs, tally), "made_of": made_of(runs),
         "sensitivity": sensitivity([claim for claim in claims if claim.mechanics in MECHANICS], points), "figures": figures,
         "sections": [section([run for run in runs if run.experiment == stem], verdicts, figures) for _, stem in experiments],
         "homeless": [made for made in figures if made.experiment not in numbers],
-        "findings": [made for made in figures if not made.reason and made.experiment > 0 and made.name.startswith("fig")],
+        "findings": [made for made in figures if not made.lack and made.experiment > 0 and made.name.startswith("fig")],
         "failures": [{"run": f"{run.experiment} / {plain(run.variant)}, {mechanics_name(run.mechanics)}", "status": run.status, "reason": run.reason}
                      for run in runs if run.status not in ("completed", "missing")],
     }
@@ -95,40 +96,20 @@ def section(runs: list[Run], claims: list[Shown], figures: list[Shown]) -> Shown
     )
 
 
-def _told(value: Any, written: Callable[[Any], str]) -> str:
-    """A number in words, a dash where there is none."""
-    return written(value) if isinstance(value, (int, float)) else NONE
-
-
 def run_row(run: Run, runs: list[Run]) -> dict[str, Any]:
     """One run's line in its experiment's table."""
     summary, outcome = run.summary, outcome_of(run, runs) if run.drawable else None
     return {
         "variant": plain(run.variant), "mechanics": mechanics_name(run.mechanics), "is_main": run.is_main, "status": run.status, "reason": run.reason,
         "link": f"data/{run.mechanics}/{run.experiment}/{run.variant}/", "files": [name for name in COPIED if (run.folder / name).exists()],
-        "differs": differences(run, runs), "start": _told(outcome.start_Pa if outcome else None, mpa),
+        "differs": differences(run, runs), "start": written(outcome.start_Pa if outcome else None, mpa),
         "arrest": (held(run, runs) or NONE) if outcome else NONE,
         "end": f"{metres(outcome.final_height_m)} at {mpa(outcome.final_inlet_Pa)}" if outcome else NONE,
         "interfaces": interface_states(run), "steps": thousands(summary.get("steps")),
-        "wall": _told(summary.get("wall_s"), lambda seconds: f"{number(float(seconds))} s"),
-        "rate": _told(summary.get("particle_steps_per_s"), lambda rate: f"{number(float(rate) / 1e6)} M/s"),
-        "closure": _told(closure_of(run), lambda size: share(abs(size))), "spread": _told(spread_of(run), share), "suspect": suspicions(run, runs),
-    }
-
-
-def comparison_row(row: Shown) -> dict[str, Any]:
-    """One variant's line in the table of the two mechanics: (without inertia, with it, difference) a quantity."""
-
-    def triple(pair: Pair, written: Callable[[float], str], signed: Callable[[float], str]) -> tuple[str, str, str]:
-        """A pair and its difference in words."""
-        return (_told(pair.quasistatic, written), _told(pair.explicit, written), "" if pair.difference is None else signed(pair.difference))
-
-    pressures = {name: triple(getattr(row, f"{name}_Pa"), mpa, signed_mpa) for name in ("start", "arrest", "restart")}
-    lengths = {name: triple(pair, metres, metres_signed) for name, pair in (("arrest_m", row.arrest_m), ("end", row.end_m))}
-    return {
-        "experiment": row.number, "variant": plain(row.variant), "is_main": row.is_main, **pressures, **lengths, "unlike": row.unlike,
-        "path": _told(row.path_m, lambda length: f"{length:.2f}\u00a0m"), "kinetic": [_told(value, share) for value in row.kinetic_ratio],
-        "G_over_J": _told(row.G_over_J, number),
+        "wall": written(summary.get("wall_s"), lambda seconds: f"{number(float(seconds))} s"),
+        "rate": written(summary.get("particle_steps_per_s"), lambda rate: f"{number(float(rate) / 1e6)} M/s"),
+        "closure": written(closure_of(run), lambda size: share(abs(size))), "spread": written(spread_of(run), share),
+        "suspect": suspicions(run, runs),
     }
 
 
@@ -147,19 +128,7 @@ def made_of(runs: list[Run]) -> list[tuple[str, str]]:
         ("strata", listed(versions) or "no run has said"), ("mechanics", listed(list(map(mechanics_name, present))) or "no run has said"),
         ("cells", listed(list(map(metres, cells))) or "no run has said"), ("runs", str(len(runs))),
         *((f"run time, {mechanics_name(name)}, summed", f"{number(sum(times))} s in {len(times)} runs") for name, times in walls.items()),
-        ("longest run", _told(max(known("wall_s"), default=None), lambda seconds: f"{number(seconds)} s")),
-        ("largest memory of a run", _told(max(known("peak_memory_MB"), default=None), lambda size: f"{number(size)} MB")),
-        ("machine that made this page", machine()), ("page made with", f"Python {platform.python_version()}, jinja2 {jinja2.__version__}"),
+        ("longest run", written(max(known("wall_s"), default=None), lambda seconds: f"{number(seconds)} s")),
+        ("largest memory of a run", written(max(known("peak_memory_MB"), default=None), lambda size: f"{number(size)} MB")),
+        ("machine that made this page", this_machine().words), ("page made with", f"Python {platform.python_version()}, jinja2 {jinja2.__version__}"),
     ]
-
-
-def machine() -> str:
-    """The processor's name and the number of its threads, and the system."""
-    names: list[str] = []
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-        names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
-    except OSError:
-        pass
-    processor = f"{names[0]}, {len(names)} threads" if names else platform.processor() or platform.machine()
-    return f"{processor}; {platform.system()} {platform.release()}"

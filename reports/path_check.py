@@ -1,7 +1,6 @@
 """The paths of Experiments 5 and 6 with a perfect interface beside those of boundary elements in the infinite plane."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from reports.charts.parts import draw_path_check
@@ -24,53 +23,28 @@ TITLES = {5: "Experiment 5: away from the stiff rock", 6: "Experiment 6: to the 
 CONVERGED: dict[int, tuple[float, str]] = {5: (0.5, "corrected"), 6: (0.125, "forward")}
 
 
-@dataclass(frozen=True)
-class SolverPath:
-    """A run's path (tips from the first on, x from the first crack, m) and how it compares."""
-
-    experiment: int
-    block: str
-    mechanics: str
-    flow: str
-    cell_m: float
-    increment_m: float
-    tips: Array
-    same: Array  # forward path of boundary elements in the run's own increments
-    off_m: float  # farthest from the converged path of boundary elements
-    off_same_m: float  # and from the forward one of the run's own increment
-
-    @property
-    def within(self) -> bool:
-        """Whether the path is as near as is asked for to the converged path, or to the exact one of its own increment."""
-        return min(self.off_m, self.off_same_m) <= CELLS * self.cell_m
-
-    @property
-    def label(self) -> str:
-        """For a legend."""
-        sizes = f"cells {self.cell_m:g} m, increments {self.increment_m:g} m"
-        return f"{mechanics_name(self.mechanics)}, {self.block}{self.flow}, {sizes}"
+def path_of(experiment: int, block: str, words: str, run: Run, reference: Array) -> Shown:
+    """A run's path (tips from the first on, x from the first crack, m) and how far it is from the converged path of boundary elements (off_m) and
+    from the forward one of the run's own increment (same, off_same_m); `near` where either is within the cell that is asked for."""
+    tips, cell_m = grown(run), float(run.scene["numerics"]["cell_m"])
+    same = exact_path(experiment, run.increment_m, "forward", GROWTH_M)
+    inside = tips[tips[:, 0] < INTERFACE_M - KEPT_OFF_M]
+    off_m, off_same_m = farthest(inside, reference), farthest(inside, same)
+    mechanics = mechanics_name(run.summary.mechanics)
+    return Shown(experiment=experiment, block=block, where=block + words, mechanics=mechanics, cell_m=cell_m, increment_m=run.increment_m, tips=tips,
+                 same=same, off_m=off_m, off_same_m=off_same_m, shipped=bool(words), near=min(off_m, off_same_m) <= CELLS * cell_m,
+                 label=f"{mechanics}, {block}{words}, cells {cell_m:g} m, increments {run.increment_m:g} m")
 
 
 def _folders(runs: Path, experiment: int) -> Iterator[tuple[Path, str, str]]:
     """Folders of runs to compare, each with its block and what is special about its flow."""
     for ending, block in CASES.items():
-        folder = runs / "ladder" / "paths" / f"path_exp{experiment}{ending}"
-        for level in sorted(folder.glob("*/summary.json")):
+        for level in sorted((runs / "ladder" / "paths" / f"path_exp{experiment}{ending}").glob("*/summary.json")):
             yield level.parent, block, ""
     for mechanics in ("quasistatic", "explicit"):
         folder = runs / mechanics / SHIPPED[experiment] / "perfect"
         if (folder / "summary.json").is_file():
             yield folder, "80 m", ", study's flow"
-
-
-def compare(experiment: int, run: Run, block: str, flow: str, reference: Array) -> SolverPath:
-    """A run's path held against the reference's, and against the forward one of its own increment."""
-    tips = grown(run)
-    same = exact_path(experiment, run.increment_m, "forward", GROWTH_M)
-    inside = tips[tips[:, 0] < INTERFACE_M - KEPT_OFF_M]
-    cell_m = float(run.scene["numerics"]["cell_m"])
-    return SolverPath(experiment, block, run.summary.mechanics, flow, cell_m, run.increment_m, tips, same,
-                      farthest(inside, reference), farthest(inside, same))
 
 
 def path_check(runs: Path) -> Shown | None:
@@ -82,10 +56,10 @@ def path_check(runs: Path) -> Shown | None:
     panels: list[Shown] = []
     missing: list[str] = []
     for experiment, (increment, turning) in CONVERGED.items():
-        found: list[SolverPath] = []
-        for folder, block, flow in _folders(runs, experiment):
+        found: list[Shown] = []
+        for folder, block, words in _folders(runs, experiment):
             try:
-                found.append(compare(experiment, load(folder), block, flow, exact_path(experiment, increment, turning, GROWTH_M)))
+                found.append(path_of(experiment, block, words, load(folder), exact_path(experiment, increment, turning, GROWTH_M)))
             except LoadError as error:
                 missing.append(f"{folder.relative_to(runs)}: {error}")
         if found:
@@ -98,23 +72,17 @@ def path_check(runs: Path) -> Shown | None:
     return Shown(figure=Shown(title=_finding(every), panels=panels, interface_m=INTERFACE_M, settled=_settled()), paths=every, missing=missing)
 
 
-def _finding(paths: list[SolverPath]) -> str:
+def _finding(paths: list[Shown]) -> str:
     """What the comparison shows, from the finest run of each experiment in the large block and uniform flow."""
     words = []
     for experiment in SHIPPED:
-        own = [path for path in paths if path.experiment == experiment and not path.flow]
+        own = [path for path in paths if path.experiment == experiment and not path.shipped]
         if own:
             best = min(own, key=lambda path: (path.block != CASES[""], path.cell_m))
-            off = min(best.off_m, best.off_same_m)
             which = "converged path" if best.off_m <= best.off_same_m else "path in the same increments"
+            off = min(best.off_m, best.off_same_m)
             words.append(f"Experiment {experiment}: {off:.2g} m from the boundary elements' {which} at {best.cell_m:g} m cells")
     return "; ".join(words) or "Paths of the experiments beside those of boundary elements"
-
-
-def _row(path: SolverPath) -> list[str]:
-    """A run's line of the table."""
-    return [f"{path.experiment}", path.block + path.flow, mechanics_name(path.mechanics), f"{path.cell_m:g}", f"{path.increment_m:g}",
-            f"{path.tips[-1, 0]:.2f}, {path.tips[-1, 1]:.2f}", f"{path.off_m:.3f}", f"{path.off_m / path.cell_m:.2f}", f"{path.off_same_m:.3f}"]
 
 
 def section(runs: Path) -> Section | None:
@@ -129,10 +97,13 @@ def section(runs: Path) -> Section | None:
         title=f"Largest distance of the paths over the first {GROWTH_M:g} m of growth, or to {KEPT_OFF_M:g} m from the interface",
         header=["experiment", "block", "mechanics", "cell (m)", "increment (m)", "last tip x, y (m)", "distance (m)", "in cells",
                 "from forward path of that increment (m)"],
-        rows=[_row(path) for path in check.paths], marked=[k for k, path in enumerate(check.paths) if not path.within],
+        rows=[[f"{path.experiment}", path.where, path.mechanics, f"{path.cell_m:g}", f"{path.increment_m:g}",
+               f"{path.tips[-1, 0]:.2f}, {path.tips[-1, 1]:.2f}", f"{path.off_m:.3f}", f"{path.off_m / path.cell_m:.2f}", f"{path.off_same_m:.3f}"]
+              for path in check.paths],
+        marked=[k for k, path in enumerate(check.paths) if not path.near],
         note=words_of("path_check_note", leaving_m=leaving_m(), missing=check.missing),
     )
-    intro = words_of("path_check_intro", near=sum(path.within for path in check.paths), count=len(check.paths))
+    intro = words_of("path_check_intro", near=sum(path.near for path in check.paths), count=len(check.paths))
     return Section(title=TITLE, intro=intro, figures=[Figure("path_check", check.figure, draw_path_check, "path_check")], tables=[table])
 
 

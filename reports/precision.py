@@ -2,17 +2,15 @@
 
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from reports.charts.precision import draw_front, draw_full
-from reports.figures import Figure, defects_of, front_of, make, words_of, write_page
+from reports.figures import Figure, make, told_of, words_of, write_page
 from reports.shown import Shown
 from reports.words import NONE, listed, minus, number, share, thousands, wall_time
 from verification.precision import store
-from verification.precision.judge import (
-    TOLERANCES, Advice, Dot, Lack, Panel, advice, bounds, cheapest, choice_for, in_group, nearest, panel_of, pareto, run_at,
-)
+from verification.precision.judge import GROUPS, TOLERANCES, Dot, Panel, cheapest, choice_for, nearest, panel_of, pareto, run_at
 from verification.precision.problem import STRATA, Method
 from verification.precision.problems import PROBLEMS
 
@@ -34,11 +32,10 @@ def recipe(sheets: Sequence[store.Sheet]) -> tuple[tuple[str, str], ...]:
     """Hardware and method of the measurements, as names with words."""
     points = [point for sheet in sheets for point in sheet.points]
     dates = sorted(point.date for point in points)
-    machines = [sheet.machine for sheet in sheets]
 
     def each(*keys: str) -> str:
         """All that the machines say under some keys."""
-        return "; ".join(dict.fromkeys(", ".join(str(one[key]) for key in keys) for one in machines))
+        return "; ".join(dict.fromkeys(", ".join(str(sheet.machine[key]) for key in keys) for sheet in sheets))
 
     return (
         ("processor", f"{each('processor')}, {each('cores')} cores, {each('caches')}, {each('memory_GB')} GB; {each('system')}"),
@@ -51,24 +48,14 @@ def recipe(sheets: Sequence[store.Sheet]) -> tuple[tuple[str, str], ...]:
 def notes(sheets: Sequence[store.Sheet]) -> tuple[str, ...]:
     """What is odd about the data: disturbed runs, single runs, several machines or versions."""
     points = [point for sheet in sheets for point in sheet.points]
-    found = []
-    for count, words in (
-        (sum(point.disturbed for point in points), "were disturbed by something else on the machine"),
-        (sum(point.once for point in points), "are of a single run"),
-    ):
-        if count:
-            found.append(f"{count} of {len(points)} points {words}")
+    odd = {"were disturbed by something else on the machine": sum(point.disturbed for point in points),
+           "are of a single run": sum(point.once for point in points)}
+    found = [f"{count} of {len(points)} points {words}" for words, count in odd.items() if count]
     for key in ("processor", "revision"):
-        several = sorted({str(sheet.machine[key]) for sheet in sheets})
-        if len(several) > 1:
+        if len(several := sorted({str(sheet.machine[key]) for sheet in sheets})) > 1:
             found.append(f"problems were measured with different {key}: {', '.join(several)}")
     missing = [problem.name for problem in PROBLEMS if all(sheet.problem != problem.name for sheet in sheets)]
-    if missing:
-        found.append(f"not measured: {', '.join(missing)}")
-    return tuple(found)
-
-
-# --- words
+    return (*found, *([f"not measured: {', '.join(missing)}"] if missing else []))
 
 
 def choice_words(dot: Dot) -> str:
@@ -76,22 +63,11 @@ def choice_words(dot: Dot) -> str:
     return f"{dot.name}: {wall_time(dot.time_s)}"
 
 
-def own_dots(panel: Panel) -> list[Dot]:
-    """What the solver itself has to show in a panel."""
-    return [dot for dot in panel.dots if in_group(dot, "any method")]
-
-
 def advice_lines(panel: Panel) -> tuple[str, ...]:
     """The cheapest ways of the solver to 1 % and 0.1 % in a panel."""
-    best = nearest(own_dots(panel))
+    best = nearest(panel.of())
     lack = f"none (best: {share(best.judged)} in {wall_time(best.time_s)})" if best else "nothing was measured"
-    chosen = [(error, cheapest(own_dots(panel), error)) for error in TOLERANCES[1:]]
-    return tuple(f"{share(error)}: {choice_words(dot) if dot else lack}" for error, dot in chosen)
-
-
-def lacks_words(lacks: Sequence[Lack]) -> str:
-    """How many have nothing to show, by how they ended."""
-    return ", ".join(f"{count} {status}" for status, count in Counter(lack.status for lack in lacks).items())
+    return tuple(f"{share(error)}: {choice_words(dot) if (dot := cheapest(panel.of(), error)) else lack}" for error in TOLERANCES[1:])
 
 
 # --- figures
@@ -108,29 +84,35 @@ def look_of(method: Method) -> Shown:
     return Shown(family=family, shape=setting.shape, filled=max(setting.graded, setting.beyond_m) > 0.0, dashes=dashes)
 
 
+def bounds(values: Iterable[float]) -> tuple[float, float]:
+    """Smallest and largest of positive numbers; NaN without any."""
+    known = [value for value in values if value > 0.0 and math.isfinite(value)]
+    return (min(known), max(known)) if known else (math.nan, math.nan)
+
+
 def panel_shown(panel: Panel, spread: tuple[float, float] | None = None) -> Shown:
     """A wanted number as it is drawn: curves, Pareto front, failures, the reference's uncertainty; `spread`: of times (s) of all panels.
 
     A curve's errors are as judged; `lucky`: as measured where they are much smaller by luck, else None.
     """
+
+    def places(dots: Iterable[Dot]) -> list[tuple[float, float]]:
+        """Times and errors of dots."""
+        return [(dot.time_s, max(dot.judged, LEAST_SHOWN)) for dot in dots]
+
     curves = []
     for method in panel.problem.methods:
-        own = [dot for dot in panel.dots if dot.method is method]
-        if own:
-            lucky = [max(abs(dot.error), LEAST_SHOWN) if dot.lucky else None for dot in own]
-            curves.append(Shown(label=method.label, look=look_of(method), main=method.main, times_s=[dot.time_s for dot in own],
-                                errors=[max(dot.judged, LEAST_SHOWN) for dot in own], lucky=lucky))
-    solver = own_dots(panel)
-    front = pareto(solver)
-    chosen = [dot for error in TOLERANCES[1:] if (dot := cheapest(solver, error)) is not None]
-    every = [error for curve in curves for error in (*curve.errors, *(one for one in curve.lucky if one is not None))]
+        if own := [dot for dot in panel.dots if dot.method is method]:
+            times_s, errors = map(list, zip(*places(own)))
+            curves.append(Shown(label=method.label, look=look_of(method), main=method.main, times_s=times_s, errors=errors,
+                                lucky=[max(abs(dot.error), LEAST_SHOWN) if dot.lucky else None for dot in own]))
     return Shown(
-        heading=panel.wanted.title, advice=advice_lines(panel), curves=curves,
-        front=([dot.time_s for dot in front], [max(dot.judged, LEAST_SHOWN) for dot in front]),
-        chosen=[(dot.time_s, max(dot.judged, LEAST_SHOWN)) for dot in chosen],
+        heading=panel.wanted.title, advice=advice_lines(panel), curves=curves, front=tuple(map(list, zip(*places(pareto(panel.of()))))) or ([], []),
+        chosen=places(filter(None, (cheapest(panel.of(), error) for error in TOLERANCES[1:]))),
         lacks=[Shown(look=look_of(lack.method), status=lack.status, time_s=lack.time_s) for lack in panel.lacks],
-        lacks_words=lacks_words(panel.lacks), uncertainty=panel.uncertainty, times_s=spread or bounds(dot.time_s for dot in panel.dots),
-        errors=bounds(every),
+        lacks_words=", ".join(f"{count} {status}" for status, count in Counter(lack.status for lack in panel.lacks).items()),
+        uncertainty=panel.uncertainty, times_s=spread or bounds(dot.time_s for dot in panel.dots),
+        errors=bounds(error for curve in curves for error in (*curve.errors, *filter(None, curve.lucky))),
     )
 
 
@@ -142,7 +124,7 @@ def front_figure(panels: Sequence[Panel]) -> Shown:
 
 def finding(panels: Sequence[Panel]) -> str:
     """What the chart shows, in a sentence."""
-    found = [dot for panel in panels if (dot := cheapest(own_dots(panel), 0.01)) is not None]
+    found = [dot for panel in panels if (dot := cheapest(panel.of(), 0.01)) is not None]
     if not found:
         return "No quantity is had within 1 %"
     still = sum(dot.method.setting is not None and dot.method.setting.mechanics == "quasistatic" for dot in found)
@@ -156,19 +138,19 @@ def finding(panels: Sequence[Panel]) -> str:
 # --- tables
 
 
-def table_of(panels: Sequence[Panel]) -> list[dict[str, object]]:
-    """The table that users need, for the template."""
+def table_of(panels: Sequence[Panel]) -> list[Shown]:
+    """The table that users need: for each panel and group that has anything (the first has a row anyway) the cheapest way to each tolerance."""
 
-    def cell(row: Advice, dot: Dot | None) -> dict[str, object]:
+    def cell(own: Sequence[Dot], error: float) -> Shown:
         """The cheapest way to a tolerance, or that there is none."""
-        if dot is None:
-            best = row.best
-            words = f"none reaches it; best {share(best.judged)}: {choice_words(best)}" if best else "nothing was measured"
-            return {"words": words, "error": "", "ok": False}
-        return {"words": choice_words(dot), "error": share(dot.judged), "ok": True}
+        if dot := cheapest(own, error):
+            return Shown(words=choice_words(dot), error=share(dot.judged), ok=True)
+        best = nearest(own)
+        lack = f"none reaches it; best {share(best.judged)}: {choice_words(best)}" if best else "nothing was measured"
+        return Shown(words=lack, error="", ok=False)
 
-    return [{"title": row.panel.wanted.title, "group": row.group, "first": row.group == "any method",
-             "cells": [cell(row, dot) for dot in row.choices]} for row in advice(panels)]
+    return [Shown(title=panel.wanted.title, group=group, first=group == GROUPS[0], cells=[cell(own, error) for error in TOLERANCES])
+            for panel in panels for group in GROUPS if (own := panel.of(group)) or group == GROUPS[0]]
 
 
 def point_rows(panel: Panel) -> list[list[str]]:
@@ -177,7 +159,7 @@ def point_rows(panel: Panel) -> list[list[str]]:
     for dot in panel.dots:
         point, times = dot.point, dot.point.wall_s
         flags = [word for word, on in (("disturbed", point.disturbed), ("one run", point.once), ("luck", dot.lucky)) if on]
-        rows.append([dot.method.label, dot.level, thousands(point.particles or None), minus(f"{100.0 * dot.error:+.3g}\u00a0%"), share(dot.judged),
+        rows.append([dot.method.label, point.level, thousands(point.particles or None), minus(f"{100.0 * dot.error:+.3g}\u00a0%"), share(dot.judged),
                      number(dot.time_s, 3), f"{number(min(times), 3)} to {number(max(times), 3)}" if len(times) > 1 else NONE,
                      number(min(point.cpu_s), 3) if point.cpu_s else NONE, f"{len(times)}", ", ".join(flags)])
     return rows
@@ -191,27 +173,17 @@ def lack_rows(panel: Panel) -> list[list[str]]:
     return [[label, listed(levels), status, reason] for (label, status, reason), levels in groups.items()]
 
 
-def reference_words(panel: Panel) -> str:
-    """What the reference of a panel is, and how well it is known."""
-    said = f"Errors are {panel.wanted.says}."
-    if panel.uncertainty > 0.0 and not math.isnan(panel.uncertainty):
-        said += f" The reference is known to {share(panel.uncertainty)}."
-    return said
-
-
 def recommendations(panels: Sequence[Panel]) -> list[str]:
     """What the chart says each experiment should be run with, and why, a sentence or two a problem."""
     told = []
     for problem in dict.fromkeys(panel.problem.name for panel in panels if panel.problem.experiments):
         own = [panel for panel in panels if panel.problem.name == problem]
-        numbers = [str(number) for number in own[0].problem.experiments]
         choice = choice_for(own, TOLERANCES[1])
-        if choice is None:
-            continue
-        heading = f"Experiments {listed(numbers)}: {choice.name}, {wall_time(choice.time_s)} a run"
-        nearest = "none is within 1 % in all; this comes nearest,"
-        reason = "the cheapest within 1 %, or the reference's uncertainty," if choice.within else nearest
-        told.append(f"{heading}; {reason} with errors of {_errors(choice.dots, own)}. {_shipped(own)}")
+        if choice is not None:
+            dots, within = choice
+            reason = "the cheapest within 1 %, or the reference's uncertainty," if within else "none is within 1 % in all; this comes nearest,"
+            told.append(f"Experiments {listed(list(map(str, own[0].problem.experiments)))}: {choice_words(dots[0])} a run; {reason} with errors of"
+                        f" {_errors(dots, own)}. {_shipped(own)}")
     return told
 
 
@@ -227,29 +199,29 @@ def _shipped(panels: Sequence[Panel]) -> str:
     dots = run_at(panels, method, level)
     if dots is None:
         return f"The scenes' own setting ({label}, {level}) has not been measured, or has no value."
-    took = wall_time(dots[0].time_s)
-    return f"The scenes' own setting ({label}, {level}) takes {took}, with errors of {_errors(dots, panels)}; it has inertia."
+    return f"The scenes' own setting ({label}, {level}) takes {wall_time(dots[0].time_s)}, with errors of {_errors(dots, panels)}; it has inertia."
 
 
 def write_precision(out: Path, folder: Path = store.DATA) -> Shown:
     """Write the chart and the page of all settings below a page's folder; whatever is wrong with the data is told, not raised."""
-    return front_of(lambda: _write(out, folder), "The work-precision chart could not be made")
+    return told_of(NAME, lambda: _write(out, folder), "The work-precision chart could not be made")
 
 
 def _write(out: Path, folder: Path) -> Shown:
     """The page with every method and every point, and the chart with what the front page says of it."""
     found = measurements(folder)
     if found is None:
-        return Shown(lack="The work-precision chart has not been measured: ci/chart measures it, one run at a time on an idle machine.", defect="")
+        return Shown(lack="The work-precision chart has not been measured: ci/chart measures it, one run at a time on an idle machine.")
     front = make(Figure("precision", front_figure(found.panels), draw_front, "precision"), out)
     parts = []
     for panel in found.panels:
-        lines = advice_lines(panel)
-        data = Shown(title=f"{panel.wanted.title}: {'; '.join(lines)}", panels=[panel_shown(panel)])
-        parts.append(Shown(name=panel.wanted.name, title=panel.wanted.title, says=f"{panel.problem.says}.", reference=reference_words(panel),
-                           advice=lines, figure=make(Figure(f"precision_{panel.wanted.name}", data, draw_full, "precision_full"), out),
-                           points=point_rows(panel), lacks=lack_rows(panel)))
+        wanted, lines = panel.wanted, advice_lines(panel)
+        data = Shown(title=f"{wanted.title}: {'; '.join(lines)}", panels=[panel_shown(panel)])
+        known = f" The reference is known to {share(panel.uncertainty)}." if panel.uncertainty > 0.0 else ""
+        parts.append(Shown(name=wanted.name, title=wanted.title, says=f"{panel.problem.says}. Errors are {wanted.says}.{known}", advice=lines,
+                           figure=make(Figure(f"precision_{wanted.name}", data, draw_full, "precision_full"), out), points=point_rows(panel),
+                           lacks=lack_rows(panel)))
     write_page(out, NAME, {"parts": parts, "recipe": found.recipe, "notes": found.notes})
     return Shown(figure=front, rows=table_of(found.panels), tolerances=[share(error) for error in TOLERANCES],
-                 recommendations=recommendations(found.panels), recipe=found.recipe, notes=found.notes, link=NAME, words=front.title, lack="",
-                 defect="\n".join(defects_of([front, *(part.figure for part in parts)])))
+                 recommendations=recommendations(found.panels), recipe=found.recipe, notes=found.notes, words=front.title,
+                 defect="\n".join(filter(None, [front.defect, *(part.figure.defect for part in parts)])))

@@ -2,13 +2,11 @@
 
 import math
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
 
 from reports.charts.stability import draw_edges, draw_part
-from reports.figures import Figure, defects_of, front_of, make, write_page
+from reports.figures import Figure, make, told_of, write_page
 from reports.shown import Shown
 from reports.words import NONE, general, minus, span
 from verification.stability import store
@@ -22,70 +20,25 @@ MANY = 6  # families of a section that are drawn one by one
 OUTCOME_WORDS = {STABLE: "stable", MARKED: "marked", REFUSED: "refused (exit 2)", FAILED: "ended with its reason (exit 3)", GARBAGE: "GARBAGE"}
 
 
-@dataclass(frozen=True)
-class Walk:
-    """A family with what was found of it and what is wrong with that."""
-
-    family: Family
-    record: Record | None
-    wrong: tuple[str, ...]
-
-    @property
-    def points(self) -> tuple[PointFound, ...]:
-        """Its points as found."""
-        return self.record.points if self.record is not None else ()
-
-    @property
-    def edge(self) -> EdgeFound:
-        """Its edge as found, without numbers where there is none."""
-        return (self.record.edge if self.record is not None else None) or EdgeFound(None, None)
-
-    @property
-    def parameter(self) -> str:
-        """The walked parameter with its unit."""
-        unit = self.family.parameter.unit
-        return f"{self.family.parameter.name} ({unit})" if unit else self.family.parameter.name
-
-    @property
-    def heading(self) -> str:
-        """Its title without that of its section."""
-        return self.family.title.split(": ", 1)[-1]
+def walk_of(family: Family, record: Record | None) -> Shown:
+    """A family with what was found of it and what is wrong with that; its heading is its title without that of its section."""
+    unit, edge = family.parameter.unit, record.edge if record is not None else None
+    return Shown(family=family, record=record, title=family.title, heading=family.title.split(": ", 1)[-1], wrong=problems(family, record),
+                 points=record.points if record is not None else (), edge=edge or EdgeFound(None, None),
+                 parameter=f"{family.parameter.name} ({unit})" if unit else family.parameter.name)
 
 
-@dataclass(frozen=True)
-class Part:
-    """Families of a section; the anchor is the first one's name."""
-
-    title: str
-    walks: tuple[Walk, ...]
-
-    @property
-    def anchor(self) -> str:
-        """Where it is on the page."""
-        return self.walks[0].family.name
-
-    @property
-    def wrong(self) -> tuple[str, ...]:
-        """All that is wrong with its families."""
-        return tuple(f"{walk.family.title}: {words}" for walk in self.walks for words in walk.wrong)
-
-    @property
-    def points(self) -> list[PointFound]:
-        """All points of its families."""
-        return [point for walk in self.walks for point in walk.points]
-
-    def edges(self, key: str) -> list[float]:
-        """A number of all edges that have it: "predicted", "measured" or "difference"."""
-        return [value for walk in self.walks if (value := getattr(walk.edge, key)) is not None]
-
-
-def parts(folder: Path = store.RECORDS, known: dict[str, Family] | None = None) -> tuple[Part, ...]:
-    """All families with their records, by section in the order of the catalogue."""
-    sections: dict[str, list[Walk]] = {}
-    for name, family in (families() if known is None else known).items():
-        record = store.read(name, folder)
-        sections.setdefault(family.section or family.title, []).append(Walk(family, record, tuple(problems(family, record))))
-    return tuple(Part(title, tuple(walks)) for title, walks in sections.items())
+def parts(folder: Path = store.RECORDS) -> list[Shown]:
+    """All families with their records, by section in the order of the catalogue; the anchor is the first one's name, edges are those that have
+    a number under a name ("predicted", "measured" or "difference")."""
+    sections: dict[str, list[Shown]] = {}
+    for name, family in families().items():
+        sections.setdefault(family.section or family.title, []).append(walk_of(family, store.read(name, folder)))
+    return [Shown(title=title, walks=walks, anchor=walks[0].family.name, points=[point for walk in walks for point in walk.points],
+                  wrong=[f"{walk.title}: {words}" for walk in walks for words in walk.wrong],
+                  edges={key: [value for walk in walks if (value := getattr(walk.edge, key)) is not None]
+                         for key in ("predicted", "measured", "difference")})
+            for title, walks in sections.items()]
 
 
 def percent(value: float | None) -> str:
@@ -93,39 +46,30 @@ def percent(value: float | None) -> str:
     return NONE if value is None else minus(f"{100.0 * value:+.1f} %")
 
 
-def outcomes_of(points: Sequence[PointFound]) -> str:
+def outcomes_of(points: Iterable[PointFound]) -> str:
     """How many points ended how."""
     tally = Counter(point.outcome for point in points)
     return ", ".join(f"{tally[name]} {name}" for name in OUTCOMES if tally[name])
 
 
-def beyond_words(walks: Sequence[Walk]) -> str:
-    """What strata does beyond the edge."""
+def row_of(what: str, walks: Sequence[Shown], numbers: tuple[str, str, str], wrong: Sequence[str]) -> list[str]:
+    """A section's or a family's row: what is walked, edges predicted and measured, their difference, what strata does beyond, outcomes, verdict."""
     names = {name for walk in walks for name in walk.family.beyond}
-    return "stable by construction" if names == {STABLE} else " or ".join(OUTCOME_WORDS[name] for name in OUTCOMES if name in names)
+    beyond = "stable by construction" if names == {STABLE} else " or ".join(OUTCOME_WORDS[name] for name in OUTCOMES if name in names)
+    return [what, "; ".join(dict.fromkeys(walk.parameter for walk in walks)), *numbers, beyond,
+            outcomes_of(point for walk in walks for point in walk.points), f"{len(wrong)} NOT as they are to be" if wrong else "as it is to be"]
 
 
-def verdict(wrong: Sequence[str]) -> tuple[str, str]:
-    """A verdict and its kind."""
-    return ("as it is to be", "yes") if not wrong else (f"{len(wrong)} NOT as they are to be", "no")
-
-
-def first_row(part: Part) -> dict[str, str]:
+def part_row(part: Shown) -> list[str]:
     """A section's row of the first table."""
-    words, kind = verdict(part.wrong)
-    return {
-        "anchor": part.anchor, "title": part.title, "walks": str(len(part.walks)),
-        "parameter": "; ".join(dict.fromkeys(walk.parameter for walk in part.walks)), "predicted": span(part.edges("predicted")),
-        "measured": span(part.edges("measured")), "difference": percent(max(part.edges("difference"), key=abs, default=None)),
-        "beyond": beyond_words(part.walks), "points": outcomes_of(part.points), "verdict": words, "kind": kind,
-    }
+    edges, off = part.edges, max(part.edges["difference"], key=abs, default=None)
+    return row_of(part.title, part.walks, (span(edges["predicted"]), span(edges["measured"]), percent(off)), part.wrong)
 
 
-def edge_row(walk: Walk) -> list[str]:
+def walk_row(walk: Shown) -> list[str]:
     """A family's row of its section's table."""
     edge = walk.edge
-    return [walk.family.title, walk.parameter, general(edge.predicted), general(edge.measured), percent(edge.difference), beyond_words([walk]),
-            outcomes_of(walk.points), verdict(walk.wrong)[0]]
+    return row_of(walk.title, [walk], (general(edge.predicted), general(edge.measured), percent(edge.difference)), walk.wrong)
 
 
 def point_row(point: PointFound) -> list[str]:
@@ -136,7 +80,7 @@ def point_row(point: PointFound) -> list[str]:
     return [point.label, general(point.value), point.outcome, *found, words, f"{point.cpu_s:.2g}"]
 
 
-def walk_panel(walk: Walk) -> Shown:
+def walk_panel(walk: Shown) -> Shown:
     """A family's panel: the checked error (None where there is no finite one) over the walked parameter; edges predicted and measured."""
     errors = [point.checked.error if point.checked is not None else None for point in walk.points]
     errors = [error if error is not None and math.isfinite(error) else None for error in errors]
@@ -149,70 +93,53 @@ def walk_panel(walk: Walk) -> Shown:
                  y_name=walk.family.check_name, x_log=walk.family.parameter.log, y_log=y_log)
 
 
-def edges_shown(part: Part) -> Shown | None:
-    """The edges of a section with more families than are drawn one by one; None where there are few."""
-    rows = [(walk.heading, walk.edge.predicted, walk.edge.measured) for walk in part.walks
-            if walk.edge.predicted is not None and walk.edge.measured is not None]
-    if len(part.walks) <= MANY or len(rows) < 2:
-        return None
-    worst = max(abs(measured / predicted - 1.0) for _, predicted, measured in rows)
-    return Shown(title=f"{len(rows)} edges measured within {100.0 * worst:.1f} % of what theory says", x_name=part.walks[0].parameter, rows=rows)
+def figures_of(part: Shown) -> list[Figure]:
+    """The figures of a section: of more families than are drawn one by one their edges side by side, and the first walks."""
+    rows = [(walk.heading, walk.edge.predicted, walk.edge.measured) for walk in part.walks if None not in (walk.edge.predicted, walk.edge.measured)]
+    figures = []
+    if len(part.walks) > MANY and len(rows) > 1:
+        worst = max(abs(measured / predicted - 1.0) for _, predicted, measured in rows)
+        edges = Shown(title=f"{len(rows)} edges measured within {100.0 * worst:.1f} % of what theory says", x_name=part.walks[0].parameter, rows=rows)
+        figures.append(Figure(f"stability_{part.anchor}_edges", edges, draw_edges, "stability_edges"))
+    walks = [walk for walk in part.walks if walk.record is not None]
+    if walks:
+        data = Shown(title=finding(part), panels=[walk_panel(walk) for walk in walks[:: -(-len(walks) // MANY)]])
+        figures.append(Figure(f"stability_{part.anchor}", data, draw_part, "stability"))
+    return figures
 
 
-def finding(part: Part) -> str:
+def finding(part: Shown) -> str:
     """What a section's walks show, in a sentence."""
-    off, points = part.edges("difference"), part.points
+    off, garbage = part.edges["difference"], sum(point.outcome == GARBAGE for point in part.points)
     lead = f"edge within {100.0 * max(map(abs, off)):.1f} % of theory, " if off else ""
-    garbage = sum(point.outcome == GARBAGE for point in points)
-    rest = f"{garbage} POINTS ARE GARBAGE" if garbage else f"no garbage in {len(points)} points ({outcomes_of(points)})"
+    rest = f"{garbage} POINTS ARE GARBAGE" if garbage else f"no garbage in {len(part.points)} points ({outcomes_of(part.points)})"
     return f"{part.title}: {lead}{rest}"
 
 
-def headline(every: Sequence[Part]) -> str:
+def headline(every: Sequence[Shown]) -> str:
     """What the whole atlas says, in a sentence."""
     walks, points = [walk for part in every for walk in part.walks], [point for part in every for point in part.points]
-    off = [size for part in every for size in part.edges("difference")]
+    off = [size for part in every for size in part.edges["difference"]]
     wrong = sum(bool(walk.wrong) for walk in walks)
     said = f"{len(every)} known failures in {len(walks)} walks and {len(points)} points ({outcomes_of(points)})"
     theory = f"; {len(off)} edges that theory gives, measured within {100.0 * max(map(abs, off)):.1f} %" if off else ""
     return said + theory + (f"; {wrong} walks are NOT as they are to be" if wrong else "; all as they are to be")
 
 
-def figures_of(part: Part) -> list[Figure]:
-    """The figures of a section: many edges side by side, and the first walks one by one."""
-    edges = edges_shown(part)
-    made = [] if edges is None else [Figure(f"stability_{part.anchor}_edges", edges, draw_edges, "stability_edges")]
-    walks = [walk for walk in part.walks if walk.record is not None]
-    panels = [walk_panel(walk) for walk in walks[:: max(1, -(-len(walks) // MANY))]]
-    return made + ([Figure(f"stability_{part.anchor}", Shown(title=finding(part), panels=panels), draw_part, "stability")] if panels else [])
-
-
-def content_of(part: Part, pictures: list[Shown]) -> dict[str, Any]:
-    """What the template needs of a section."""
-    first = part.walks[0].family
-    return {
-        "anchor": part.anchor, "title": part.title, "about": first.about or first.says, "beyond": beyond_words(part.walks),
-        "sources": list(dict.fromkeys(walk.family.edge.source for walk in part.walks if walk.family.edge is not None)),
-        "remarks": list(dict.fromkeys(walk.family.remark for walk in part.walks if walk.family.remark)),
-        "says": list(dict.fromkeys(walk.family.says for walk in part.walks)) if first.about else [],
-        "wrong": list(part.wrong), "figures": pictures, "rows": [edge_row(walk) for walk in part.walks],
-        "walks": [{"title": walk.family.title, "check": walk.family.check_name, "points": list(map(point_row, walk.points))} for walk in part.walks],
-    }
-
-
 def write_stability(out: Path, folder: Path = store.RECORDS) -> Shown:
     """Write the page below a page's folder; whatever is wrong with the records is told, not raised."""
-    return front_of(lambda: _write(out, folder), "The stability atlas could not be shown")
+    return told_of(NAME, lambda: _write(out, folder), "The stability atlas could not be shown")
 
 
 def _write(out: Path, folder: Path) -> Shown:
     """The page with every family and every point."""
     every = parts(folder)
-    records = [walk.record for part in every for walk in part.walks if walk.record is not None]
-    if not records:
-        return Shown(lack="The stability atlas has not been walked: ci/atlas --accept.", defect="")
-    pictures = [[make(figure, out) for figure in figures_of(part)] for part in every]
-    versions = dict.fromkeys(record.version for record in records if record.version)
-    write_page(out, NAME, {"headline": headline(every), "first": [first_row(part) for part in every], "versions": ", ".join(versions),
-                           "parts": [content_of(part, own) for part, own in zip(every, pictures)]})
-    return Shown(words=headline(every), link=NAME, lack="", defect="\n".join(defects_of([made for own in pictures for made in own])))
+    versions = dict.fromkeys(walk.record.version for part in every for walk in part.walks if walk.record is not None and walk.record.version)
+    if not any(walk.record for part in every for walk in part.walks):
+        return Shown(lack="The stability atlas has not been walked: ci/atlas --accept.")
+    for part in every:
+        part.figures, part.row = [make(figure, out) for figure in figures_of(part)], part_row(part)
+        for walk in part.walks:
+            walk.row, walk.rows = walk_row(walk), list(map(point_row, walk.points))
+    write_page(out, NAME, {"headline": headline(every), "versions": ", ".join(versions), "parts": every})
+    return Shown(words=headline(every), defect="\n".join(made.defect for part in every for made in part.figures if made.defect))

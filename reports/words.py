@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 # How keys end, with the factor to the printed unit and that unit; longer endings before those they end in.
@@ -12,6 +12,11 @@ _SCALES: tuple[tuple[str, float, str], ...] = (
     ("deg", 1.0, "°"), ("MB", 1.0, "MB"), ("m", 1.0, "m"), ("s", 1.0, "s"), ("J", 1.0, "J/m"),
 )
 NONE = "–"  # where there is no number
+
+
+def written(value: Any, words: Callable[[Any], str]) -> str:
+    """A number in words, a dash where there is none."""
+    return words(value) if isinstance(value, (int, float)) else NONE
 
 
 def minus(text: str) -> str:

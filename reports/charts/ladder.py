@@ -1,4 +1,4 @@
-"""Draws the accuracy ladder: error against size, a panel a case, and error against cost, a panel a family."""
+"""Draws the accuracy ladder: error against size, a panel a case."""
 
 import math
 from collections.abc import Sequence
@@ -8,9 +8,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
-from reports.charts.style import DASHED, FLAG, INK, PALE, entry, panel_grid, put_legend
+from reports.charts.style import FLAG, INK, PALE, entry, panel_grid, put_legend
 from reports.shown import Shown
-from reports.words import mechanics_name, order_words
+from reports.words import order_words
 
 # Wong's palette again and paler ones, each with its own mark for those who see no colours.
 _LOOKS: tuple[tuple[str, str], ...] = (
@@ -37,43 +37,18 @@ def draw_convergence(data: Shown) -> Figure:
             axes.plot(curve.sizes, curve.gates, linestyle="none", marker="_", markersize=11, color=colour, alpha=0.45, zorder=2)
             axes.plot(curve.sizes, curve.errors, color=colour, marker=mark, markersize=4.6, linewidth=1.5,
                       linestyle="-" if curve.judged else (0, (2.5, 1.8)), zorder=3)
-            _crosses(axes, curve.sizes, curve)
+            wrong = [(size, error) for size, error, passed in zip(curve.sizes, curve.errors, curve.passed) if not passed]
+            axes.plot(*zip(*wrong), linestyle="none", marker="X", markersize=7 if len(curve.sizes) > 1 else 4.5, color=FLAG, zorder=5)
         _order_labels(axes, panel, low, high, {name: colour for name, (colour, _) in looks.items()})
         _slopes(axes)
         if k % columns == 0:
             axes.set_ylabel("relative error")
     handles = [entry(name, color=colour, marker=mark, markersize=5) for name, (colour, mark) in looks.items()]
-    _put_legend(figure, [*handles, entry("gate", color=PALE, marker="_", markersize=11, linestyle="none")])
-    return figure
-
-
-def draw_cost(data: Shown) -> Figure:
-    """Every case's way down in error with wall time, a panel a family and a colour a mechanics."""
-    figure, every, columns = panel_grid(data.title, len(data.panels), 3.1, sharey=True, sharex=True)
-    looks = {name: _LOOKS[k] for k, name in enumerate(data.mechanics)}
-    for k, (axes, panel) in enumerate(zip(every, data.panels, strict=True)):
-        axes.grid(True, which="major")
-        axes.set(xscale="log", yscale="log", title=panel.heading)
-        _percent_axis(axes)
-        axes.axhline(0.01, color=PALE, linewidth=0.9, linestyle=DASHED, zorder=1)
-        for curve in panel.curves:
-            colour, mark = looks[curve.mechanics]
-            axes.plot(curve.walls_s, curve.errors, color=colour, linewidth=0.9, marker=mark, markersize=3.4, alpha=0.75, zorder=3)
-            _crosses(axes, curve.walls_s, curve)
-        if k % columns == 0:
-            axes.set_ylabel("largest relative error of the case")
-        if k + columns >= len(data.panels):
-            axes.set_xlabel("wall time of the run (s)")
-            axes.tick_params(labelbottom=True)
-    _put_legend(figure, [entry(mechanics_name(name), color=colour, marker=mark, markersize=5) for name, (colour, mark) in looks.items()])
-    return figure
-
-
-def _put_legend(figure: Figure, handles: list[Line2D]) -> None:
-    """A legend in as many columns as the longest label lets into the figure's width."""
-    handles = [*handles, entry("not as its gate asks", color=FLAG, marker="X", markersize=8, linestyle="none")]
+    handles += [entry("gate", color=PALE, marker="_", markersize=11, linestyle="none"),
+                entry("not as its gate asks", color=FLAG, marker="X", markersize=8, linestyle="none")]
     longest = max(len(str(handle.get_label())) for handle in handles)
-    put_legend(figure, handles, max(1, min(6, int(figure.get_figwidth() / (0.075 * longest + 0.7)))))
+    put_legend(figure, handles, max(1, min(6, int(figure.get_figwidth() / (0.075 * longest + 0.7)))))  # as many columns as the longest allows
+    return figure
 
 
 def _size_axes(axes: Axes, panel: Shown, low: float, high: float) -> None:
@@ -86,22 +61,10 @@ def _size_axes(axes: Axes, panel: Shown, low: float, high: float) -> None:
     axes.xaxis.set_minor_formatter(NullFormatter())
     axes.set(title=panel.heading, xlabel={"m": "cell size (m)", "s": "step (s)"}.get(panel.unit, "size (m)"))
     axes.grid(True, which="major")
-    _percent_axis(axes)
-
-
-def _percent_axis(axes: Axes) -> None:
-    """Errors as percentages on the decades."""
     axes.yaxis.set_major_locator(LogLocator(base=10.0, numticks=20))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100.0 * value:g} %" if value >= 1e-7 else f"{value:.0e}"))
     axes.yaxis.set_minor_formatter(NullFormatter())
     axes.tick_params(labelleft=axes.get_subplotspec().is_first_col())
-
-
-def _crosses(axes: Axes, places: Sequence[float], curve: Shown) -> None:
-    """A red cross on every point that is not as its gate asks."""
-    wrong = [(place, error) for place, error, passed in zip(places, curve.errors, curve.passed) if not passed]
-    if wrong:
-        axes.plot(*zip(*wrong), linestyle="none", marker="X", markersize=7 if len(places) > 1 else 4.5, color=FLAG, zorder=5)
 
 
 def _order_labels(axes: Axes, panel: Shown, low: float, high: float, colours: dict[str, str]) -> None:

@@ -22,18 +22,14 @@ def draw_ablation(data: Shown) -> Figure:
     width = max(2.9 + 0.72 * len(data.columns), 8.0)
     figure = new_figure(width, 1.9 + 0.36 * len(data.rows), data.title, int(11.0 * width))
     axes = figure.subplots()
-    for place, (_, _, cells) in enumerate(data.rows):
+    for place, (_, cells) in enumerate(data.rows):
         for column, cell in enumerate(cells):
             if cell is not None:
                 _draw_cell(axes, column, place, cell)
-    groups = [group for _, group, _ in data.rows]
-    for place in range(1, len(groups)):
-        if groups[place] != groups[place - 1]:
-            axes.axhline(place - 0.5, color=INK, linewidth=1.2)
     axes.set(xlim=(-0.5, len(data.columns) - 0.5), ylim=(len(data.rows) - 0.5, -0.5))
     axes.set_xticks(range(len(data.columns)), data.columns, fontsize=8)
     axes.xaxis.tick_top()
-    axes.set_yticks(range(len(data.rows)), [label if group != "gone without" else f"+ {label}" for label, group, _ in data.rows], fontsize=8)
+    axes.set_yticks(range(len(data.rows)), [label for label, _ in data.rows], fontsize=8)
     axes.tick_params(length=0)
     for spine in axes.spines.values():
         spine.set_visible(False)

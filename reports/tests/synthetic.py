@@ -85,47 +85,30 @@ def write_run(root: Path, number: int, plan: Plan) -> Path:
 
 
 def _history(plan: Plan, inlet: np.ndarray, height: np.ndarray, drift: np.ndarray) -> dict[str, np.ndarray]:
-    """The history with the ledger's columns, and in quasi-static the energy released and the fluid's balance."""
-    work = 1e3 * (height - 5.0) ** 1.5
-    columns = {
-        "time_s": (inlet - START_PA) / RATE_PA_S, "inlet_Pa": inlet, "tip_x_m": 40.0 + drift, "tip_y_m": height,
-        "height_m": height, "J_N_m": np.full_like(inlet, 200.0), "mouth_opening_m": 1e-4 * height,
-        "kinetic_J": plan.kinetic * work * (plan.mechanics == "explicit"), "strain_J": 0.6 * work, "fluid_work_J": work, "damping_J": 0.3 * work,
-        "friction_J": 0.075 * work, "energy_closure": np.full_like(inlet, 0.005), "J_spread": np.full_like(inlet, 0.006),
+    """The history with the ledger's columns, and in quasi-static the energy released."""
+    work, same = 1e3 * (height - 5.0) ** 1.5, np.ones_like(inlet)
+    return {
+        "time_s": (inlet - START_PA) / RATE_PA_S, "inlet_Pa": inlet, "tip_x_m": 40.0 + drift, "tip_y_m": height, "height_m": height,
+        "J_N_m": 200.0 * same, "kinetic_J": plan.kinetic * work * (plan.mechanics == "explicit"), "strain_J": 0.6 * work, "fluid_work_J": work,
+        "damping_J": 0.3 * work, "friction_J": 0.075 * work, "J_spread": 0.006 * same,
+        **({"G_N_m": 204.0 * same, "G_by_J_N_m": 200.0 * same} if plan.mechanics == "quasistatic" else {}),
     }
-    if plan.mechanics == "quasistatic":
-        columns |= {"G_N_m": np.full_like(inlet, 204.0), "G_by_J_N_m": np.full_like(inlet, 200.0), "fluid_volume_balance": np.full_like(inlet, 1e-11)}
-    return columns
-
-
-def _event(kind: str, row: int, inlet: np.ndarray, height: np.ndarray, drift: np.ndarray) -> dict[str, Any]:
-    """An event at a row of the history."""
-    return {"kind": kind, "time_s": (inlet[row] - START_PA) / RATE_PA_S, "inlet_Pa": inlet[row], "tip_x_m": 40.0 + drift[row], "tip_y_m": height[row]}
 
 
 def _summary(folder: Path, plan: Plan, inlet: np.ndarray, height: np.ndarray, drift: np.ndarray) -> dict[str, Any]:
     """The summary with the events that the curve has."""
-    here = (inlet, height, drift)
+    stop = np.inf if plan.stop_at_m is None else plan.stop_at_m
+    when = {"start": height > 5.0, "reach_interface": height >= stop, "arrest": height >= stop,
+            "restart": (height > stop) & (plan.restart_Pa is not None)}
+    rows = [(kind, int(np.argmax(there))) for kind, there in when.items() if there.any()]
     events = []
-    if (height > 5.0).any():
-        events.append(_event("start", int(np.argmax(height > 5.0)), *here))
-    if plan.stop_at_m is not None and (height >= plan.stop_at_m).any():
-        row = int(np.argmax(height >= plan.stop_at_m))
-        events += [_event("reach_interface", row, *here), _event("arrest", row, *here)]
-        if plan.restart_Pa is not None and (height > plan.stop_at_m).any():
-            events.append(_event("restart", int(np.argmax(height > plan.stop_at_m)), *here))
-    events.append(_event("stop", inlet.size - 1, *here))
-    for event in events:
-        near = plan.interfaces[0] != "perfect" and bool(abs(event["tip_y_m"] - 10.0) <= 3.0)
-        event |= {"by": plan.by, "at_interface": plan.by == "J" and near}
-    summary = {
-        "scene": folder.parent.name, "variant": plan.variant, "status": plan.status, "reason": plan.reason,
-        "mechanics": plan.mechanics, "inlet_Pa": inlet[-1], "energy": {"closure": 0.005}, "suspect": [], "events": events,
-        "tips": [{"x_m": 40.0, "y_m": height[-1], "J_spread": 0.006, "kink_deg": 1.0}],
-    }
-    if plan.mechanics == "quasistatic":
-        summary["monitors"] = {"volume_balance": 3e-11, "contact_residual": 2e-12, "mirror": True}
-    return summary
+    for kind, row in [*rows, ("stop", inlet.size - 1)]:
+        near = plan.interfaces[0] != "perfect" and bool(abs(height[row] - 10.0) <= 3.0)
+        events.append({"kind": kind, "time_s": (inlet[row] - START_PA) / RATE_PA_S, "inlet_Pa": inlet[row], "tip_x_m": 40.0 + drift[row],
+                       "tip_y_m": height[row], "by": plan.by, "at_interface": plan.by == "J" and near})
+    return {"scene": folder.parent.name, "variant": plan.variant, "status": plan.status, "reason": plan.reason, "mechanics": plan.mechanics,
+            "inlet_Pa": inlet[-1], "energy": {"closure": 0.005}, "suspect": [], "events": events,
+            "tips": [{"x_m": 40.0, "y_m": height[-1], "J_spread": 0.006, "kink_deg": 1.0}]}
 
 
 def _write_fields(folder: Path, inlet: np.ndarray, height: np.ndarray, plan: Plan) -> None:

@@ -2,15 +2,13 @@
 
 import html
 import shutil
-import subprocess
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from reports import precision, stability
-from reports.figures import write_alone
-from reports.shown import Shown
+from reports.make_page import main
 from verification.precision import store
 from verification.precision.problem import Problem
 from verification.precision.problems import PROBLEMS
@@ -18,43 +16,14 @@ from verification.precision.store import FAILED, OK, REFUSED, Found, Point, Shee
 from verification.stability import store as atlas_store
 from verification.stability.family import GARBAGE
 
-REPORTS = Path(__file__).resolve().parents[1]
-PAGES = [("make_stability.py", "--records", "stability.html"), ("make_precision.py", "--precision", "precision.html")]
 
-
-def run_of(script: str, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """A script's run."""
-    return subprocess.run([str(REPORTS / script), *arguments], capture_output=True, text=True, timeout=300, check=False)
-
-
-@pytest.mark.parametrize(("script", "option", "name"), PAGES)
-def test_without_data_the_reason_is_told(tmp_path: Path, script: str, option: str, name: str) -> None:
-    """An empty folder of data: status 1, how to fill it on stderr, no page."""
-    done = run_of(script, option, str(tmp_path), "--out", str(tmp_path / "out"))
-    assert done.returncode == 1 and done.stdout == ""
-    assert "ci/" in done.stderr
-    assert not (tmp_path / "out" / name).exists()
-
-
-def test_the_page_is_written_where_it_is_asked_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Status 0, the page's path and its words; a defect is shown whole, with status 1."""
-
-    def write(out: Path, data: Path) -> Shown:
-        """The folder of data says what is wrong."""
-        (out / "page.html").write_text(str(data))
-        if data.name == "torn":
-            return Shown(lack="no page", defect="a defect of five lines")
-        return Shown(words="seven words", link="page.html", lack="", defect="")
-
-    def make(*arguments: str) -> int:
-        """The page from a folder of data that is kept by default."""
-        return write_alone("A page.", "--from", tmp_path / "kept", write, ["--out", str(tmp_path), *arguments])
-
-    assert make() == 0
-    assert (tmp_path / "page.html").read_text() == str(tmp_path / "kept")
-    assert capsys.readouterr().out == f"{tmp_path / 'page.html'}: seven words\n"
-    assert make("--from", "torn") == 1
-    assert capsys.readouterr() == ("", "a defect of five lines\n")
+@pytest.mark.parametrize("name", ["stability", "precision", "verification"])
+def test_without_data_the_reason_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str) -> None:
+    """A page alone, of an empty folder: status 1, how to fill it, no page."""
+    assert main(["--page", name, f"--{name}" if name != "verification" else "--runs", str(tmp_path), "--out", str(tmp_path / "out")]) == 1
+    told = capsys.readouterr()
+    assert told.out == "" and f"{name}.html: " in told.err
+    assert ("ci/" in told.err or name == "verification") and not (tmp_path / "out" / f"{name}.html").exists()
 
 
 # --- the stability atlas
@@ -65,7 +34,7 @@ def test_the_page_shows_every_walk_with_its_edge(tmp_path: Path) -> None:
     front = stability.write_stability(tmp_path)
     text = html.unescape((tmp_path / stability.NAME).read_text(encoding="utf-8"))
     every = stability.parts()
-    assert not front.lack and front.link == stability.NAME and "all as they are to be" in front.words
+    assert not front.lack and front.name == stability.NAME and "all as they are to be" in front.words
     for part in every:
         assert f'id="{part.anchor}"' in text and (tmp_path / "figures" / f"stability_{part.anchor}.svg").is_file()
         assert "no garbage" in stability.finding(part)
@@ -90,9 +59,8 @@ def test_garbage_and_a_wrong_edge_are_told(tmp_path: Path, monkeypatch: pytest.M
     assert "1 POINTS ARE GARBAGE" in "".join(map(stability.finding, every))
 
 
-def test_without_records_the_atlas_says_how_to_make_them(tmp_path: Path) -> None:
-    """No record, and one that is torn."""
-    assert "ci/atlas" in stability.write_stability(tmp_path, tmp_path / "none").lack
+def test_a_torn_record_is_told(tmp_path: Path) -> None:
+    """Not raised."""
     (tmp_path / "torn").mkdir()
     (tmp_path / "torn" / "flow_explicit.json").write_text("{", encoding="utf-8")
     front = stability.write_stability(tmp_path, tmp_path / "torn")
@@ -133,7 +101,7 @@ def test_the_chart_has_every_quantity_every_failure_and_the_table(data: Path, tm
     """Nothing that was measured is missing from the page of all settings."""
     front = precision.write_precision(tmp_path / "out", data)
     assert not front.lack and front.figure is not None
-    assert [row["title"] for row in front.rows if row["first"]] == [one.title for problem in PROBLEMS for one in problem.wanted]
+    assert [row.title for row in front.rows if row.first] == [one.title for problem in PROBLEMS for one in problem.wanted]
     text = (tmp_path / "out" / "precision.html").read_text(encoding="utf-8")
     for problem in PROBLEMS:
         for one in problem.wanted:
@@ -141,12 +109,6 @@ def test_the_chart_has_every_quantity_every_failure_and_the_table(data: Path, tm
             assert one.title in text
     assert text.count("it broke") == 2 * sum(len(problem.wanted) for problem in PROBLEMS)
     assert "a processor" in text and "median of five runs" in text
-
-
-def test_without_data_the_chart_says_how_to_make_them(tmp_path: Path) -> None:
-    """No data is no defect."""
-    front = precision.write_precision(tmp_path / "out", tmp_path / "nothing")
-    assert "ci/chart" in front.lack and not front.defect
 
 
 def test_torn_data_cost_the_chart_alone(data: Path, tmp_path: Path) -> None:
@@ -187,8 +149,7 @@ def test_the_table_says_where_none_reaches(tmp_path: Path) -> None:
     found = precision.measurements(tmp_path)
     assert found is not None
     row = precision.table_of(found.panels)[0]
-    assert not any(cell["ok"] for cell in row["cells"])  # type: ignore[index, attr-defined]
-    assert "none reaches it; best" in row["cells"][0]["words"]  # type: ignore[index]
+    assert not any(cell.ok for cell in row.cells) and "none reaches it; best" in row.cells[0].words
     assert precision.finding(found.panels).startswith("No quantity")
 
 

@@ -1,6 +1,7 @@
 """The part of the page about paths: what counts as near, what the title says, what is drawn and what is said of nothing."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,36 +9,41 @@ import pytest
 from reports import path_check
 from reports.charts.parts import draw_path_check
 from reports.figures import words_of
-from reports.path_check import SolverPath, _finding, _row, _settled, section
 from reports.shown import Shown
 
 
-def a_path(experiment: int, off_m: float, off_same_m: float, cell_m: float = 0.5, block: str = "400 m, graded") -> SolverPath:
-    """A path of a run that leans to the right."""
-    tips = np.array([[0.0, 5.0], [0.2, 7.0], [4.8, 9.0]])
-    return SolverPath(experiment, block, "quasistatic", "", cell_m, 1.0, tips, tips + 0.1, off_m, off_same_m)
+STRAIGHT = np.array([[0.0, 5.0], [0.0, 30.0]])
 
 
-def test_near_is_a_cell_from_the_converged_path_or_from_that_of_the_same_increment() -> None:
-    """Either path will do, and a cell is the limit."""
-    assert a_path(5, 0.4, 3.0).within
-    assert a_path(6, 3.0, 0.4).within
-    assert not a_path(6, 0.6, 0.7).within
+def a_path(
+    monkeypatch: pytest.MonkeyPatch, experiment: int, off_m: float, off_same_m: float, cell_m: float = 0.5, block: str = "400 m, graded",
+) -> Shown:
+    """A path of a run, straight and so far from the converged one and from that in its own increments."""
+    monkeypatch.setattr(path_check, "grown", lambda run: STRAIGHT)
+    monkeypatch.setattr(path_check, "exact_path", lambda *given: STRAIGHT + [off_same_m, 0.0])
+    run = SimpleNamespace(increment_m=1.0, scene={"numerics": {"cell_m": cell_m}}, summary=SimpleNamespace(mechanics="quasistatic"))
+    return path_check.path_of(experiment, block, "", run, STRAIGHT + [off_m, 0.0])  # type: ignore[arg-type]
 
 
-def test_title_and_rows_tell_the_finest_run_of_the_large_block() -> None:
+@pytest.mark.parametrize("off_m, off_same_m, near", [(0.4, 3.0, True), (3.0, 0.4, True), (0.6, 0.7, False)])
+def test_near_is_a_cell_from_either_path(monkeypatch: pytest.MonkeyPatch, off_m: float, off_same_m: float, near: bool) -> None:
+    """The converged path or that in the same increments."""
+    one = a_path(monkeypatch, 5, off_m, off_same_m)
+    assert one.near == near and (one.off_m, one.off_same_m) == (pytest.approx(off_m), pytest.approx(off_same_m))
+
+
+def test_the_title_tells_the_finest_run_of_the_large_block(monkeypatch: pytest.MonkeyPatch) -> None:
     """The large block counts before finer cells."""
-    paths = [a_path(5, 0.3, 0.9, 1.0), a_path(5, 0.1, 0.9), a_path(5, 0.05, 0.9, 0.25, "80 m"), a_path(6, 2.0, 0.02)]
-    title = _finding(paths)
+    given = ((5, 0.3, 0.9, 1.0), (5, 0.1, 0.9), (5, 0.05, 0.9, 0.25, "80 m"), (6, 2.0, 0.02))
+    title = path_check._finding([a_path(monkeypatch, *one) for one in given])
     assert "Experiment 5: 0.1 m from the boundary elements' converged path at 0.5 m cells" in title
     assert "Experiment 6: 0.02 m from the boundary elements' path in the same increments" in title
-    assert _row(paths[1])[-4:] == ["4.80, 9.00", "0.100", "0.20", "0.900"]
 
 
-def test_chart_shows_every_run_and_the_interface_where_paths_come_near() -> None:
+def test_chart_shows_every_run_and_the_interface_where_paths_come_near(monkeypatch: pytest.MonkeyPatch) -> None:
     """Lines of each panel by their labels."""
     tips = np.array([[0.0, 5.0], [0.5, 7.0], [4.0, 9.0]])
-    runs = {k: (a_path(k, 0.1, 0.1), a_path(k, 0.2, 0.1, 1.0)) for k in (5, 6)}
+    runs = {k: (a_path(monkeypatch, k, 0.1, 0.1), a_path(monkeypatch, k, 0.2, 0.1, 1.0)) for k in (5, 6)}
     panels = [Shown(heading=f"panel {k}", converged=tips, converged_words="converged", shows_same=k == 6, runs=runs[k],
                     interface_m=5.0) for k in (5, 6)]
     figure = draw_path_check(Shown(title="a title", panels=panels))
@@ -56,7 +62,7 @@ def test_how_far_converged_paths_are_is_counted(monkeypatch: pytest.MonkeyPatch)
         return np.array([[0.5 * increment_m, 5.0], [0.5 * increment_m, 5.0 + growth_m]])
 
     monkeypatch.setattr(path_check, "exact_path", leaning)
-    assert _settled() == (
+    assert path_check._settled() == (
         "Experiment 5 moved by 0.25 m when increments were halved to 0.5 m; Experiment 6 moved by 0.062 m when increments were halved to"
         " 0.125 m, and is as far from its limit (first order)"
     )
@@ -65,4 +71,4 @@ def test_how_far_converged_paths_are_is_counted(monkeypatch: pytest.MonkeyPatch)
 
 def test_nothing_is_said_where_nothing_was_run(tmp_path: Path) -> None:
     """No runs, no part of the page."""
-    assert section(tmp_path) is None
+    assert path_check.section(tmp_path) is None

@@ -9,7 +9,7 @@ import pytest
 
 from reports import budget, refinement
 from reports.figures import make
-from reports.make_verification import main as make_verification
+from reports.make_page import main
 from verification.harness.richardson import estimate
 
 SIZES = (2.0, 1.0, 0.5, 0.25)
@@ -144,6 +144,6 @@ def test_bars_are_ordered_by_size_and_what_says_nothing_is_last(tmp_path: Path) 
 def test_both_parts_are_on_the_page(tmp_path: Path) -> None:
     """The page is written without a defect and shows both."""
     runs, out = write_budget(write_refined(tmp_path / "runs")), tmp_path / "out"
-    assert make_verification(["--runs", str(runs), "--out", str(out), "--strict"]) == 0
+    assert main(["--page", "verification", "--runs", str(runs), "--out", str(out), "--strict"]) == 0
     page = (out / "verification.html").read_text(encoding="utf-8")
     assert "Mesh refinement of the experiments" in page and "Error budgets of the experiments" in page

@@ -13,9 +13,8 @@ from reports import verification
 from reports.charts.ladder import spread_apart
 from reports.charts.style import new_figure
 from reports.figures import Figure
-from reports.ladder import Ladder, convergence_figure, cost_figure, load_ladder
+from reports.ladder import convergence_figure, load_ladder
 from reports.make_page import main as make_page
-from reports.make_verification import main
 from reports.shown import Shown
 from reports.tests.test_page import links_of
 from reports.words import relative
@@ -66,16 +65,21 @@ def some_rows() -> list[dict[str, Any]]:
     return rows
 
 
-def ladder_of(root: Path, rows: list[dict[str, Any]]) -> Ladder:
-    """The rows as a ladder that was read."""
+def rows_of(root: Path, rows: list[dict[str, Any]]) -> list[Shown]:
+    """The rows as they are read."""
     ladder = load_ladder(write_ladder(root, rows) / "ladder" / "ladder.json")
     assert ladder is not None
-    return ladder
+    return ladder.rows
 
 
-def page_of(runs: Path, out: Path, *options: str) -> str:
+def main(runs: Path, out: Path) -> int:
+    """Make the page from runs; its exit status."""
+    return make_page(["--page", "verification", "--runs", str(runs), "--out", str(out), "--strict"])
+
+
+def page_of(runs: Path, out: Path) -> str:
     """The page made from runs."""
-    assert main(["--runs", str(runs), "--out", str(out), "--strict", *options]) == 0
+    assert main(runs, out) == 0
     return (out / "verification.html").read_text(encoding="utf-8")
 
 
@@ -103,22 +107,15 @@ def test_what_falls_short_is_said_first_and_marked(tmp_path: Path) -> None:
     assert re.search(r'rowspan="5" class="quantity">mouth', table), "a quantity's cell spans its levels and their reasons"
 
 
-def test_all_well_is_said_as_such(tmp_path: Path) -> None:
-    """Without a failing row nothing is red, and the tally of mutants is told."""
-    page = page_of(write_ladder(tmp_path, some_rows()[:6]), tmp_path / "out")
-    assert "All 6 comparisons with references (1 case in 1 family) are within their gates." in page
-    assert 'class="failures"' not in page and 'class="mark no"' not in page
-    assert "Each of the 7 gates was tried" in page and "31 in all: all were refused" in page
-
-
 def test_gates_that_can_be_tightened_are_noted(tmp_path: Path) -> None:
-    """A note has a line of its own in the table, and makes nothing red."""
+    """A note has a line of its own in the table, and makes nothing red; the tally of mutants is told."""
     rows = some_rows()[:6]
     rows[2] |= {"note": "gate can be tightened (error 0.01, accepted at 0.02): --accept"}
     page = page_of(write_ladder(tmp_path, rows), tmp_path / "out")
     assert page.count('<tr class="noted">') == 1 and "0.5 m: gate can be tightened (error 0.01, accepted at 0.02)" in page
     assert re.search(r'rowspan="4" class="quantity">K_I', page), "its quantity's cell spans it"
-    assert 'class="failures"' not in page and 'class="mark no"' not in page and "6 comparisons" in page
+    assert 'class="failures"' not in page and 'class="mark no"' not in page and "31 in all: all were refused" in page
+    assert "All 6 comparisons with references (1 case in 1 family) are within their gates." in page
 
 
 def test_gates_that_let_mutants_pass_and_stale_ones_are_told(tmp_path: Path) -> None:
@@ -133,37 +130,22 @@ def test_figures_say_what_the_numbers_say(tmp_path: Path) -> None:
     titles = []
     for factor in (1.0, 2.0):
         rows = [row | {"error": row["error"] * factor} for row in some_rows()[:3]]
-        ladder = ladder_of(tmp_path, rows)
-        titles.append((convergence_figure(ladder, "cracks").title, cost_figure(ladder).title))
-    assert titles[0][0] == "Errors of 1\u00a0% (K_I, at rest) at the finest level; orders 1.0 between the finest two levels"
-    assert titles[1][0].startswith("Errors of 2\u00a0%")
+        titles.append(convergence_figure(rows_of(tmp_path, rows)).title)
+    assert titles[0] == "Errors of 1\u00a0% (K_I, at rest) at the finest level; orders 1.0 between the finest two levels"
+    assert titles[1].startswith("Errors of 2\u00a0%")
     two = some_rows()[:3] + [row | {"quantity": "J", "no_order": "rings"} for row in some_rows()[:3]]
-    assert convergence_figure(ladder_of(tmp_path, two), "cracks").title == (
+    assert convergence_figure(rows_of(tmp_path, two)).title == (
         "Errors from 1\u00a0% to 1\u00a0% (K_I, at rest) at the finest level; 1 of 2 are judged by their order, 1.0 between the finest two levels"
     )
-    assert titles[0][1] == "Within 1\u00a0% in all that they measure: 1 of 1 quasi-static cases in 32\u00a0s (median)"
-    assert titles[1][1] == "Within 1\u00a0% in all that they measure: 0 of 1 quasi-static cases"
-
-
-def test_the_worst_of_a_case_is_what_it_costs(tmp_path: Path) -> None:
-    """The largest error at each size counts, with a cross where any quantity falls short."""
-    found = {"K": (0.04, 0.001), "w": (0.02, 0.01)}
-    rows = [a_row("at_rest", name, k, error) for name, errors in found.items() for k, error in enumerate(errors)]
-    rows[0] |= {"verdict": "FAIL", "problems": ["error above"]}
-    ladder = ladder_of(tmp_path, rows)
-    (curve,) = cost_figure(ladder).panels[0].curves
-    assert (curve.sizes, curve.errors, curve.passed, curve.walls_s) == ((2.0, 1.0), (0.04, 0.01), (False, True), (0.5, 4.0))
 
 
 def test_round_off_is_not_drawn_but_counted(tmp_path: Path) -> None:
     """A curve at 1e-15 would leave no room for the others."""
-    ladder = ladder_of(tmp_path, some_rows())
-    figure = convergence_figure(ladder, "cracks")
+    figure = convergence_figure(rows_of(tmp_path, some_rows()))
     assert [(panel.heading, panel.unit) for panel in figure.panels] == [("at rest, quasi-static", "m"), ("moving, explicit", "m")]
     assert [curve.quantity for panel in figure.panels for curve in panel.curves] == ["K_I", "mouth"] and figure.left_out == 1
     assert "1 quantity that holds to round-off" in page_of(tmp_path / "runs", tmp_path / "out")
-    exact = ladder_of(tmp_path, some_rows()[3:6])
-    assert convergence_figure(exact, "cracks") is None and cost_figure(exact) is None
+    assert convergence_figure(rows_of(tmp_path, some_rows()[3:6])) is None
     assert "Everything holds to round-off" in page_of(tmp_path / "runs", tmp_path / "out2")
 
 
@@ -197,7 +179,7 @@ def test_every_link_leads_somewhere(tmp_path: Path) -> None:
 
 def test_nothing_run_is_no_page(tmp_path: Path) -> None:
     """Without a ladder and parts there is neither a page nor a link to it."""
-    assert main(["--runs", str(tmp_path), "--out", str(tmp_path / "out")]) == 1
+    assert main(tmp_path, tmp_path / "out") == 1
     assert not (tmp_path / "out" / "verification.html").exists()
     assert make_page(["--runs", str(tmp_path), "--out", str(tmp_path / "out"), *none_of("experiments", "precision", "stability")]) == 0
     assert "verification.html" not in (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
@@ -208,7 +190,7 @@ def test_a_torn_judgement_is_a_defect(tmp_path: Path, content: str) -> None:
     """It is told on the page and by the exit status."""
     runs = write_ladder(tmp_path, [])
     (runs / "ladder" / "ladder.json").write_text(content, encoding="utf-8")
-    assert main(["--runs", str(runs), "--out", str(tmp_path / "out"), "--strict"]) == 1
+    assert main(runs, tmp_path / "out") == 1
     page = (tmp_path / "out" / "verification.html").read_text(encoding="utf-8")
     assert "could not be made" in page and "could not be read" in page
 
@@ -227,7 +209,7 @@ def test_parts_of_other_modules_are_shown(tmp_path: Path, monkeypatch: pytest.Mo
         """A part with a figure and a table."""
         rows = [["path <5>", "0.3"], ["path 6", "2.1"]]
         table = {"title": "Largest", "header": ["what", "m"], "rows": rows, "marked": [1], "note": "In cells."}
-        picture = Figure("paths", Shown(title="Paths agree"), lambda data: new_figure(3.0, 2.0), "cost")
+        picture = Figure("paths", Shown(title="Paths agree"), lambda data: new_figure(3.0, 2.0), "stability")
         return {"title": "Paths", "intro": "They agree within a cell.", "figures": [picture], "tables": [table]}
 
     def breaks(runs: Path) -> None:
@@ -237,7 +219,7 @@ def test_parts_of_other_modules_are_shown(tmp_path: Path, monkeypatch: pytest.Mo
     for name, section in (("one", found), ("two", lambda runs: None), ("three", breaks)):
         a_part(name, monkeypatch, section)
     monkeypatch.setattr(verification, "PARTS", ("one", "two", "three", "not_there"))
-    assert main(["--runs", str(tmp_path), "--out", str(tmp_path / "out"), "--strict"]) == 1
+    assert main(tmp_path, tmp_path / "out") == 1
     page = (tmp_path / "out" / "verification.html").read_text(encoding="utf-8")
     for words in ("They agree within a cell.", 'src="figures/paths.svg"', "path &lt;5&gt;", "In cells."):
         assert words in page, words

@@ -46,6 +46,9 @@ std::atomic<long> allocations{0};
 [[gnu::noinline]] void operator delete(void* p, std::align_val_t /*alignment*/) noexcept {
   std::free(p);
 }
+[[gnu::noinline]] void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
+  std::free(p);
+}
 [[gnu::noinline]] void operator delete(void* p) noexcept {
   std::free(p);
 }

@@ -1,8 +1,4 @@
-"""What a scene models and resolves, each as the settings that leave it out alone, and how its run is then read.
-
-An ingredient of the group `modelled` is switched off, one of `resolved` is made coarser; `left_out` is what the scene itself goes without
-and its run has: the table's other side.
-"""
+"""What a scene models, each as the settings that leave it out alone, and how its run is then read."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -10,16 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from verification.harness.factors import is_graded, toml
+from verification.harness.factors import toml
 from verification.harness.load import Run
-
-MODELLED, RESOLVED, LEFT_OUT = "modelled", "resolved", "left_out"
 
 # Rock beyond the block's edges that stands for rock without end, m: 20 blocks (verification/ladder/cases/cracks.py).
 BEYOND_M = 1600.0
-
-# Cells far away, over those near the fracture, of the graded alternative.
-GRADED = 4.0
 
 
 @dataclass(frozen=True)
@@ -49,14 +40,13 @@ class View:
 
 @dataclass(frozen=True)
 class Ingredient:
-    """Something that a scene has, or goes without: its group, what is done about it, and the settings that do it.
+    """Something that a scene has: what is done about it, and the settings that do it.
 
     view: how its run is read beside the scene's own. why_not: why it does not apply.
     """
 
     id: str
     label: str
-    group: str
     done: str = ""
     settings: tuple[str, ...] = ()
     view: View = View()
@@ -81,14 +71,12 @@ def ingredients_of(content: dict[str, Any]) -> list[Ingredient]:
         _soft_contact(content),
         _part("direction", "direction of growth", "the path is straight" if straight else "", "straight ahead", "fracture.direction=straight"),
         _symmetry(content),
-        *_resolution(content),
-        *_left_out(content),
     ]  # fmt: skip
 
 
-def _part(id_: str, label: str, why_not: str, done: str, *settings: str, view: View = View(), group: str = MODELLED) -> Ingredient:
+def _part(id_: str, label: str, why_not: str, done: str, *settings: str, view: View = View()) -> Ingredient:
     """An ingredient that is left out by settings, or why it does not apply."""
-    return Ingredient(id_, label, group, why_not=why_not) if why_not else Ingredient(id_, label, group, done, settings, view)
+    return Ingredient(id_, label, why_not=why_not) if why_not else Ingredient(id_, label, done, settings, view)
 
 
 def _interfaces(content: dict[str, Any]) -> list[Ingredient]:
@@ -160,38 +148,6 @@ def mirrored(strata: dict[str, Any], height_m: float) -> dict[str, Any]:
     middle = {**layers[0], "thickness_m": 2.0 * float(layers[0]["thickness_m"])}
     both = [*reversed(layers[1:]), middle, *layers[1:]]
     return {"strata.layers": both, "strata.interfaces": [*reversed(names), *names]}
-
-
-def _resolution(content: dict[str, Any]) -> list[Ingredient]:
-    """What is resolved, coarser."""
-    numerics = content["numerics"]
-    cell, courant = float(numerics["cell_m"]), float(numerics["courant"])
-    ends = any(key in numerics for key in ("fine_left_m", "fine_right_m", "fine_bottom_m", "fine_top_m"))
-    meets = content["fracture"].get("direction", "straight") != "straight" and not ends
-    far = ("far_cells", "fine cells far away", "the path may turn into coarse cells" if meets else "", f"{GRADED * cell:g} m there",
-           f"numerics.far_cell_m={GRADED * cell!r}")  # fmt: skip
-    coarser = [
-        ("cells", f"cells of {cell:g} m", "", f"{2.0 * cell:g} m", f"numerics.cell_m={2.0 * cell!r}"),
-        *([] if is_graded(content) else [far]),
-        ("step", f"Courant number {courant:g}", "", f"{2.0 * courant:g}", f"numerics.courant={2.0 * courant!r}"),
-        ("looks", "looks at the tips every 4 steps", "", "every 8", "numerics.tip_steps=8"),
-        ("ring", "J rings of up to 4 cells", "", "3 cells", "numerics.ring_cells=3.0"),
-        ("shape", "quadratic shape functions", "", "linear", "numerics.shape=linear"),
-    ]
-    return [_part(*one, group=RESOLVED) for one in coarser]
-
-
-def _left_out(content: dict[str, Any]) -> list[Ingredient]:
-    """What the scene goes without: finer cells, such ones far away, more points, points that move."""
-    numerics = content["numerics"]
-    cell = float(numerics["cell_m"])
-    lacks = [
-        (True, "finer", f"cells of {cell / 2.0:g} m", f"numerics.cell_m={cell / 2.0!r}"),
-        (is_graded(content), "far_cells", "fine cells far away", f"numerics.far_cell_m={cell!r}"),
-        (int(numerics.get("particles_per_cell", 4)) < 16, "points", "16 points a cell", "numerics.particles_per_cell=16"),
-        (numerics.get("kinematics", "updated") == "total", "moving", "points that move", "numerics.kinematics=updated"),
-    ]
-    return [_part(id_, label, "", "modelled", setting, group=LEFT_OUT) for lacking, id_, label, setting in lacks if lacking]
 
 
 def named(found: Sequence[Ingredient], names: Sequence[str]) -> list[Ingredient]:

@@ -2,20 +2,17 @@
 
 import argparse
 import datetime
+import math
 import re
 import sys
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
-from verification.benchmarks import kernels, runs
-from verification.benchmarks.figure import Figure
-from verification.benchmarks.judge import BAD, SLOWER, Line, as_plain, compare, marks
+from verification.benchmarks import measure, record
 from verification.benchmarks.machine import Load, busy_processors, this_build, this_machine
-from verification.benchmarks.records import BadRecord, OtherMachine, Record, append, as_json, broken, last_record, why_not_recorded
-from verification.benchmarks.table import report
+from verification.benchmarks.record import BAD, BAND, NEW, SLOWER, STEP, BadRecord, Figure, Line, Record, compare, marks
+from verification.harness.command import aligned
 from verification.harness.paths import RUNS
 
 LAST = RUNS / "bench" / "last.json"
@@ -42,96 +39,122 @@ def parse(arguments: Sequence[str] | None) -> argparse.Namespace:
     return parser.parse_args(arguments)
 
 
-def progress() -> Callable[[str], None]:
-    """What tells a line with the seconds since now."""
-    start = time.monotonic()
-    return lambda words: print(f"[{time.monotonic() - start:5.0f} s] {words}", file=sys.stderr, flush=True)
-
-
-def kernel_figures(options: argparse.Namespace, tell: runs.Tell) -> tuple[list[Figure], dict[str, str]]:
-    """Figures of strata_bench, and its context."""
-    chosen = [name for name in kernels.names() if not name.startswith("calibration/") and re.search(options.only, name)]
-    if options.quick:
-        chosen = [name for name in chosen if QUICK_KERNELS.match(name)]
-    if not chosen:
-        return [], {}
-    return kernels.measure(chosen, 2 if options.quick else REPETITIONS, tell)
-
-
-def run_figures(options: argparse.Namespace, tell: runs.Tell) -> list[Figure]:
-    """Figures of whole runs."""
-    quick, repetitions = options.quick, 2 if options.quick else REPETITIONS
-    batches = runs.QUICK if quick else runs.LONG if options.long else runs.DEFAULT
-    both = partial(kernels.rates, runs.JOBS)  # of as many threads as a batch has runs side by side
-    parts = [
-        ("crack/", lambda: runs.crack_figures(repetitions, quick, kernels.rates, tell)),
-        ("whole/", lambda: runs.growth_figures(repetitions, quick, kernels.rates, tell)),
-        ("memory/", lambda: runs.memory_figures(quick, tell)),
-        *((f"{batch.name}/", lambda batch=batch: runs.batch_figures(batch, both, tell)) for batch in batches),
-    ]
-    return [figure for name, make in parts if re.search(options.only, name) for figure in make()]
-
-
-def take_record(options: argparse.Namespace, tell: runs.Tell) -> Record:
+def measured(options: argparse.Namespace) -> Record:
     """Measure what was asked for."""
     average = options.load if options.load is not None else float(Path("/proc/loadavg").read_text().split()[0])
-    busy = busy_processors()
-    figures: list[Figure] = []
-    context: dict[str, str] = {}
+    busy, repetitions = busy_processors(), 2 if options.quick else REPETITIONS
+    figures, context = [], {}
     if options.kernels or not options.runs:
-        figures, context = kernel_figures(options, tell)
+        chosen = [name for name in measure.names() if not name.startswith("calibration/") and re.search(options.only, name)
+                  and (not options.quick or QUICK_KERNELS.match(name))]  # fmt: skip
+        figures, context = measure.measure(chosen, repetitions) if chosen else ([], {})
     if options.runs or not options.kernels:
-        figures += run_figures(options, tell)
+        for whole in measure.wholes(options.quick, options.long, repetitions):
+            if re.search(options.only, whole.name):
+                figures.append(measure.whole_figure(whole))
+                print(f"{whole.name}: {figures[-1].problem or f'{figures[-1].median:.3g} s'}", file=sys.stderr, flush=True)
     part = bool(options.quick or options.only or options.kernels != options.runs)
     date = datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds")
-    return Record(this_machine(), this_build(context), Load(average, busy, busy_processors()), date, tuple(figures), part)
+    found = Record(this_machine(), this_build(context), Load(average, busy, busy_processors()), date, tuple(figures), part)
+    return replace(found, marks=marks(found))
+
+
+# --- words
+
+
+def told(value: float, unit: str) -> str:
+    """A value with three digits and a unit that suits it."""
+    if not math.isfinite(value):
+        return "-"
+    if unit == "s":
+        factor, unit = next((one for one in ((1.0, "s"), (1e3, "ms"), (1e6, "us")) if value * one[0] >= 1.0), (1e9, "ns"))
+        value *= factor
+    return f"{value:.0f} {unit}".rstrip() if value >= 100.0 else f"{value:.3g} {unit}".rstrip()
+
+
+def share(value: float | None) -> str:
+    """A share in per cent."""
+    return "" if value is None else f"{100.0 * value:.0f} %"
+
+
+def figure_row(figure: Figure, line: Line | None) -> list[str]:
+    """The cells of a figure: name, cost (particle-steps as a rate), spread, shares of core and memory, ratio to the last record, verdict."""
+    cost = "-" if not figure.values else f"{record.rate(figure):.1f} M/s" if figure.per == STEP else told(figure.median, figure.unit)
+    ratio = "" if line is None or not math.isfinite(line.ratio) else f"{line.ratio:.2f}"
+    verdict = figure.problem[:60] or ("" if line is None or line.verdict == NEW else line.verdict)
+    return [figure.name, cost, share(figure.spread if len(figure.values) > 1 else None), share(figure.share_of_peak),
+            share(figure.share("byte_a_unit", figure.stream_B_s)), ratio, verdict]  # fmt: skip
+
+
+def calibration_line(now: Record) -> str:
+    """What the machine itself gave beside the figures: the median rates by threads."""
+    parts = []
+    for threads in sorted({figure.threads for figure in now.figures if figure.peak_flop_s}):
+        own = [figure for figure in now.figures if figure.threads == threads]
+        words = []
+        for rate, unit, size in (("peak_flop_s", "GFlop/s", 1e9), ("stream_B_s", "GB/s", 1e9), ("round_trip_s", "ns between processors", 1e-9)):
+            if values := sorted(value / size for figure in own for value in getattr(figure, rate)):
+                words.append(f"{values[len(values) // 2]:.1f} {unit} ({values[0]:.1f} to {values[-1]:.1f})")
+        parts.append(f"{threads} threads: {', '.join(words)}")
+    return f"calibration beside the figures, median (range): {'; '.join(parts)}"
+
+
+def report(now: Record, lines: Sequence[Line], then: Record | None) -> list[str]:
+    """All that is said at the end."""
+    of, built, load = {line.name: line for line in lines}, now.build, now.load
+    rows = [figure_row(figure, of.get(figure.name)) for figure in now.figures]
+    kept = [[one["what"], told(one["found"], one["unit"]), f"{'at least' if one['at_least'] else 'at most'} {told(one['wanted'], one['unit'])}",
+             "reached" if one["reached"] else "FALLS SHORT", one["note"][:70]] for one in now.marks]  # fmt: skip
+    said = [
+        f"machine: {now.machine.words}", f"build:   {built.version} {built.commit}, {built.compiler} {built.flags}",
+        f"load:    average {load.average:.2f} at the start, others used {load.busy_before:.2f} processors before, {load.busy_after:.2f} after",
+        calibration_line(now), "", *aligned([["figure", "cost", "spread", "of peak", "of stream", "now/then", ""], *rows], range(1, 6)),
+        "", *aligned([["mark (2 cores)", "found", "wanted", "", ""], *kept], range(1, 4)), "",
+    ]  # fmt: skip
+    if then is None:
+        return [*said, "nothing recorded on this machine to compare with"]
+    bad = [f"  {line.verdict.upper()}: {line.name}: {line.why}" for line in lines if line.verdict in BAD]
+    other = "" if (then.build.compiler, then.build.flags) == (built.compiler, built.flags) else ", by another compiler or flags"
+    return [*said, f"against {then.date}, {then.build.version} {then.build.commit}{other}: calibrated costs, band {BAND:g}",
+            *(bad or ["  nothing slower, nothing missing"])]  # fmt: skip
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Measure, print, compare, record; 0 where nothing is slower, 1 where something is, 2 wrong use, 4 not recorded."""
     options = parse(arguments)
-    if options.quick and (options.record or options.long):
-        print("ci/bench: --quick goes with neither --record nor --long", file=sys.stderr)
-        return WRONG_USE
-    tell = progress()
     try:
         re.compile(options.only)
+        if options.quick and (options.record or options.long):
+            raise measure.NoBenchmark("--quick goes with neither --record nor --long")
         if options.list:
-            print("\n".join(kernels.names()))
+            print("\n".join(measure.names()))
             return OK
-        record = take_record(options, tell)
-    except (re.error, kernels.NoBenchmark) as error:
+        now = measured(options)
+        if not now.figures:
+            raise measure.NoBenchmark(f"no figure matches {options.only}")
+    except (re.error, measure.NoBenchmark) as error:
         print(f"ci/bench: {error}", file=sys.stderr)
         return WRONG_USE
-    if not record.figures:
-        print(f"ci/bench: no figure matches {options.only}", file=sys.stderr)
-        return WRONG_USE
-    found = marks(record)
-    record = replace(record, marks=as_plain(found))
-    lines: list[Line] = []
-    then, why = None, ""
+    then = None
     try:
-        then = last_record(record.machine)
-        lines = compare(record, then) if then else []
-    except (OtherMachine, BadRecord) as error:
-        why = str(error)
-    print("\n".join(report(record, lines, then, found)))
+        then = record.last_of(now.machine)
+    except BadRecord as error:
+        print(f"ci/bench: not compared: {error}", file=sys.stderr)
+    lines = compare(now, then) if then else []
+    print("\n".join(report(now, lines, then)))
     options.out.parent.mkdir(parents=True, exist_ok=True)
-    options.out.write_text(as_json(record) + "\n", encoding="utf-8")
+    options.out.write_text(record.as_json(now) + "\n", encoding="utf-8")
     print(f"figures: {options.out}")
-    if why:
-        print(f"ci/bench: not compared: {why}", file=sys.stderr)
-    noisy = record.load.noisy
+    noisy, reasons, kept = now.load.noisy, now.why_not_kept(), OK
     if noisy:
         print(f"ci/bench: {noisy}: these are no results, and nothing is judged by them", file=sys.stderr)
-    kept, reasons = OK, why_not_recorded(record)
     if options.record and reasons and not options.force:
         print(f"ci/bench: not recorded: {'; '.join(reasons)}", file=sys.stderr)
         kept = NOT_RECORDED
     elif options.record:
-        print(f"recorded: {append(record)}")
+        print(f"recorded: {record.append(now)}")
     worse = any(line.verdict in BAD and (not noisy or line.verdict != SLOWER) for line in lines)
-    return WORSE if worse or broken(record) else kept
+    return WORSE if worse or now.broken() else kept
 
 
 if __name__ == "__main__":

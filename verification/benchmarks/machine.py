@@ -12,10 +12,8 @@ from typing import Any
 
 from verification.harness.paths import ROOT, solver
 
-# Above either, figures are not recorded without --force: load average when ci/bench began and processors at work for
-# others just before the first benchmark, both in processors.
-LARGEST_LOAD = 0.5
-LARGEST_BUSY = 0.15
+# Above either nothing is recorded without --force: load average at the start, and processors at work for others.
+LARGEST_LOAD, LARGEST_BUSY = 0.5, 0.15
 WAIT_S = 90.0  # how long the chart waits for an idle machine
 
 
@@ -31,6 +29,11 @@ class Machine:
     def key(self) -> str:
         """A name for files: all of it in lower case."""
         return re.sub(r"[^a-z0-9]+", "_", f"{self.cpu} {self.cores} cores {self.caches}".lower()).strip("_")
+
+    @property
+    def words(self) -> str:
+        """For people."""
+        return f"{self.cpu}, {self.cores} cores, {self.caches}"
 
 
 @dataclass(frozen=True)
@@ -56,42 +59,39 @@ class Load:
         """Why figures taken now are not to be trusted; empty where they are."""
         if self.average > LARGEST_LOAD:
             return f"the load average was {self.average:.2f} at the start, above {LARGEST_LOAD:g}"
-        if max(self.busy_before, self.busy_after) > LARGEST_BUSY:
-            return f"other programs used {max(self.busy_before, self.busy_after):.2f} processors, more than {LARGEST_BUSY:g}"
+        busy = max(self.busy_before, self.busy_after)
+        return f"other programs used {busy:.2f} processors, more than {LARGEST_BUSY:g}" if busy > LARGEST_BUSY else ""
+
+
+def first(pattern: str, file: Path) -> str:
+    """The first match of a pattern's group in a file; nothing where there is none."""
+    try:
+        found = re.search(pattern, file.read_text(encoding="utf-8", errors="replace"), re.MULTILINE)
+    except OSError:
         return ""
+    return found.group(1).strip() if found else ""
 
 
-def parse_cpu(cpuinfo: str) -> str:
-    """The processor's name with family, model and stepping, from the text of /proc/cpuinfo."""
-    found = {name.strip(): value.strip() for name, _, value in (line.partition(":") for line in cpuinfo.split("\n\n")[0].splitlines())}
-    numbers = [found[name] for name in ("cpu family", "model", "stepping") if found.get(name)]
-    return " ".join([found.get("model name", "unknown processor"), *numbers])
+def this_machine(info: Path = Path("/proc/cpuinfo"), caches: Path = Path("/sys/devices/system/cpu/cpu0/cache")) -> Machine:
+    """The machine this runs on: name, family, model and stepping of its first processor, and that one's data and unified caches."""
+    numbers = [first(rf"^{name}\s*:(.*)$", info) for name in ("cpu family", "model", "stepping")]
+    cpu = " ".join([first(r"^model name\s*:(.*)$", info) or "unknown processor", *filter(None, numbers)])
+    levels = [[first("(.*)", index / name) for name in ("level", "type", "size")] for index in sorted(caches.glob("index*"))]
+    return Machine(cpu, os.cpu_count() or 1, " ".join(f"L{level} {size}" for level, kind, size in levels if level and kind != "Instruction"))
 
 
-def caches_of(folder: Path = Path("/sys/devices/system/cpu/cpu0/cache")) -> str:
-    """Data and unified caches of the first processor, such as "L1 32K L2 1024K L3 32768K"."""
-    found = [[first(r"(.*)", index / name) for name in ("level", "type", "size")] for index in sorted(folder.glob("index*"))]
-    return " ".join(f"L{level} {size}" for level, kind, size in found if level and kind != "Instruction")
+def busy_processors(seconds: float = 1.5) -> float:
+    """Processors at work over some seconds in which this program waits, from the ticks in the first line of /proc/stat."""
 
+    def ticks() -> tuple[int, int]:
+        """Idle or waiting for a disk, and all."""
+        every = [int(word) for word in Path("/proc/stat").read_text(encoding="utf-8").splitlines()[0].split()[1:9]]
+        return every[3] + every[4], sum(every)
 
-def this_machine() -> Machine:
-    """The machine this runs on."""
-    return Machine(parse_cpu(Path("/proc/cpuinfo").read_text(encoding="utf-8")), os.cpu_count() or 1, caches_of())
-
-
-def busy_processors(seconds: float = 1.5, stat: Path = Path("/proc/stat")) -> float:
-    """Processors at work over some seconds in which this program waits."""
-    before = _idle_and_total(stat.read_text(encoding="utf-8"))
+    idle, total = ticks()
     time.sleep(seconds)
-    after = _idle_and_total(stat.read_text(encoding="utf-8"))
-    total = after[1] - before[1]
-    return (os.cpu_count() or 1) * (1.0 - (after[0] - before[0]) / total) if total > 0 else 0.0
-
-
-def _idle_and_total(stat: str) -> tuple[int, int]:
-    """Ticks of all processors from the first line of /proc/stat: idle or waiting for a disk, and all."""
-    ticks = [int(word) for word in stat.splitlines()[0].split()[1:9]]
-    return ticks[3] + ticks[4], sum(ticks)
+    later, end = ticks()
+    return (os.cpu_count() or 1) * (1.0 - (later - idle) / (end - total)) if end > total else 0.0
 
 
 def others_running() -> int:
@@ -108,15 +108,6 @@ def becomes_idle(wait_s: float = WAIT_S) -> bool:
     return True
 
 
-def first(pattern: str, file: Path) -> str:
-    """The first match of a pattern's group in a file; nothing where there is none."""
-    try:
-        found = re.search(pattern, file.read_text(encoding="utf-8", errors="replace"), re.MULTILINE)
-    except OSError:
-        return ""
-    return found.group(1).strip() if found else ""
-
-
 def _said(*command: str) -> str:
     """What a command says, empty where it cannot."""
     try:
@@ -125,11 +116,10 @@ def _said(*command: str) -> str:
         return ""
 
 
-def this_build(context: Mapping[str, str] | None = None) -> Build:
+def this_build(context: Mapping[str, str]) -> Build:
     """Version and commit of the solver; compiler and flags as strata_bench says them in its context."""
     commit = _said("git", "rev-parse", "--short=12", "HEAD")
     changed = _said("git", "status", "--porcelain", "--untracked-files=no", "--", "solver", "CMakeLists.txt")
-    context = context or {}
     flags = " ".join(word for word in context.get("flags", "").split() if not word.startswith("-W"))
     return Build(_said(str(solver()), "--version"), commit + ("+" if changed else ""), context.get("compiler", ""), flags)
 

@@ -24,7 +24,7 @@ from verification.harness.scenes import content_of
 from verification.ladder.case import Level
 from verification.precision import store
 from verification.precision.measure import LONG_S, REPEATS, RUNS, SOME, WARM_S, key_of, measured
-from verification.precision.problem import STRATA, Method, Problem, thinned
+from verification.precision.problem import Method, Problem, thinned
 from verification.precision.problems import PROBLEMS
 from verification.precision.store import Point, Sheet
 
@@ -41,37 +41,28 @@ class Task:
     known: Point | None
     fresh: bool  # what is known is of this scene, program and machine
 
-    @property
-    def name(self) -> str:
-        """Problem, method and level."""
-        return f"{self.problem.name}/{self.method.name} {self.level.label}"
-
     def expected_s(self) -> float:
         """How long one run may take, s: as before, or by what such runs cost elsewhere."""
         if self.known is not None and self.known.wall_s:
             return self.known.time_s
-        if self.method.program != STRATA or self.method.setting is None:
+        if self.method.setting is None:
             return 0.1
-        assert isinstance(self.method.source, Path)
         if self.method.setting.mechanics == "quasistatic":
             return self.problem.about_s * (self.method.levels[-1].size / self.level.size) ** 2
-        content = content_of(self.method.source, self.level.variant, self.level.settings)
-        return min(about_s(content), self.problem.limit_s)
+        return min(about_s(content_of(Path(self.method.source), self.level.variant, self.level.settings)), self.problem.limit_s)
 
-    def expected_total_s(self, once: bool) -> float:
-        """How long all runs of the point may take, s; one that failed before ends at its first."""
+    def left_s(self, once: bool) -> float:
+        """How long all its runs may still take, s; one that failed before ends at its first."""
         one = self.expected_s()
-        if once or one > LONG_S or (self.known is not None and not self.known.ok):
-            return one
-        return one * (SOME if one > WARM_S else REPEATS + 1)
+        alone = once or one > LONG_S or (self.known is not None and not self.known.ok)
+        return 0.0 if self.fresh else one * (1 if alone else SOME if one > WARM_S else REPEATS + 1)
 
 
 def chosen(only: str, methods: str, quick: bool) -> list[Problem]:
     """The problems and methods that are asked for; raises ValueError for names that are not there."""
     wanted, starts = beginnings(only), beginnings(methods)
-    strangers = [name for name in wanted if all(problem.name != name for problem in PROBLEMS)]
-    if strangers:
-        raise ValueError(f"no problem {', '.join(strangers)}; there are {', '.join(problem.name for problem in PROBLEMS)}")
+    if strangers := set(wanted) - {problem.name for problem in PROBLEMS}:
+        raise ValueError(f"no problem {', '.join(sorted(strangers))}; there are {', '.join(problem.name for problem in PROBLEMS)}")
     found = [thinned(problem) if quick else problem for problem in PROBLEMS if not wanted or problem.name in wanted]
     found = [replace(one, methods=tuple(method for method in one.methods if not starts or method.name.startswith(starts))) for one in found]
     if not any(problem.methods for problem in found):
@@ -82,59 +73,50 @@ def chosen(only: str, methods: str, quick: bool) -> list[Problem]:
 def tasks_of(problem: Problem, sheet: Sheet | None, same: bool, fresh: bool) -> list[Task]:
     """All points of a problem, with what is known of them; `same`: by this machine."""
     tasks = []
-    for method in problem.methods:
-        for level in method.levels:
-            known = sheet.point(method.name, level.label) if sheet is not None else None
-            done = same and not fresh and known is not None and known.key == key_of(method, level)
-            tasks.append(Task(problem, method, level, known, done))
+    for method, level in ((method, level) for method in problem.methods for level in method.levels):
+        known = sheet.point(method.name, level.label) if sheet is not None else None
+        tasks.append(Task(problem, method, level, known, same and not fresh and known is not None and known.key == key_of(method, level)))
     return tasks
-
-
-def minutes(seconds: float) -> str:
-    """A time span in minutes."""
-    return f"{seconds / 60.0:.1f} min"
 
 
 def show(tasks: Sequence[Task], once: bool) -> None:
     """Print what is to be measured, and how long it will take."""
+
+    def left(own: Sequence[Task]) -> str:
+        """Points, those to be measured, and their time."""
+        minutes = sum(task.left_s(once) for task in own) / 60.0
+        return f"{len(own)} points, {sum(not task.fresh for task in own)} to measure, in about {minutes:.1f} min"
+
     for name in dict.fromkeys(task.problem.name for task in tasks):
         own = [task for task in tasks if task.problem.name == name]
-        left = [task for task in own if not task.fresh]
-        total = sum(task.expected_total_s(once) for task in left)
-        print(f"{name}: {own[0].problem.says}: {len(own)} points, {len(left)} to measure, {minutes(total)}")
+        print(f"{name}: {own[0].problem.says}: {left(own)}")
         for task in own:
             about = "measured" if task.fresh else f"about {task.expected_s():.2g} s a run"
             was = f" ({task.known.status})" if task.known is not None and not task.known.ok else ""
             print(f"  {task.method.label}, {task.level.label}: {about}{was}")
-    left_s = sum(task.expected_total_s(once) for task in tasks if not task.fresh)
-    print(f"{len(tasks)} points, {sum(not task.fresh for task in tasks)} to measure, in about {minutes(left_s)}")
+    print(left(tasks))
 
 
 def words(point: Point) -> str:
     """A point in a line."""
     if not point.ok:
         return f"{point.status}: {point.reason[:140]}"
-    told = []
-    for name, found in point.found.items():
-        value = f"{100.0 * found.error:+.4g} %" if found.error is not None else f"{found.value}"
-        told.append(f"{name} {found.failure[:90] or value}")
-    cpu = f", CPU {min(point.cpu_s):.3g} s" if point.cpu_s else ""
-    beside = " (disturbed)" if point.disturbed else ""
-    return f"{point.time_s:.4g} s{cpu}{beside}; {', '.join(told)}"
+    told = [f"{name} {found.failure[:90] or (f'{100.0 * found.error:+.4g} %' if found.error is not None else found.value)}"
+            for name, found in point.found.items()]  # fmt: skip
+    return f"{point.time_s:.4g} s{' (disturbed)' if point.disturbed else ''}; {', '.join(told)}"
 
 
 def measure_all(tasks: Sequence[Task], sheets: dict[str, Sheet], folder: Path, runs: Path, once: bool) -> None:
     """Measure the points that are not known, and write each as it comes."""
     left = [task for task in tasks if not task.fresh]
     order = {problem.name: [method.name for method in problem.methods] for problem in PROBLEMS}
-    remaining = sum(task.expected_total_s(once) for task in left)
     for k, task in enumerate(left, 1):
         name = task.problem.name
         point = measured(task.problem, task.method, task.level, runs, once)
         sheets[name] = sheets[name].with_point(point)
         store.write(sheets[name], folder, order[name])
-        remaining -= task.expected_total_s(once)
-        print(f"[{k:3d}/{len(left)}, {minutes(max(remaining, 0.0))} left] {task.name}: {words(point)}", flush=True)
+        minutes = sum(one.left_s(once) for one in left[k:]) / 60.0
+        print(f"[{k:3d}/{len(left)}, {minutes:.1f} min left] {name}/{task.method.name} {task.level.label}: {words(point)}", flush=True)
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -40,7 +40,10 @@ def without_inertia(fine: tuple[float, ...], uniform: tuple[float, ...], far: fl
         Curve("qs_graded", "quasi-static, graded", graded, fine, True, 2),
         Curve("qs_graded_16", "quasi-static, graded, 16 points a cell", replace(graded, points=16), fine[:-1], True),
         Curve("qs_graded_linear", "quasi-static, graded, linear", replace(graded, shape="linear"), fine, True),
-        *uniform_still(uniform),
+        Curve("qs_uniform", "quasi-static, uniform", STILL, uniform, True),
+        Curve("qs_uniform_9", "quasi-static, uniform, 9 points a cell", replace(STILL, points=9), uniform[:-1]),
+        Curve("qs_uniform_16", "quasi-static, uniform, 16 points a cell", replace(STILL, points=16), uniform[:-1]),
+        Curve("qs_uniform_linear", "quasi-static, uniform, linear", replace(STILL, shape="linear"), uniform),
     ]
 
 
@@ -50,16 +53,6 @@ def endless(cells: tuple[float, ...], beyond_m: float) -> list[Curve]:
     return [
         Curve("qs_beyond", "quasi-static, small block in endless rock", setting, cells, True),
         Curve("qs_beyond_linear", "quasi-static, small block in endless rock, linear", replace(setting, shape="linear"), cells),
-    ]
-
-
-def uniform_still(uniform: tuple[float, ...]) -> list[Curve]:
-    """The quasi-static curves on uniform grids."""
-    return [
-        Curve("qs_uniform", "quasi-static, uniform", STILL, uniform, True),
-        Curve("qs_uniform_9", "quasi-static, uniform, 9 points a cell", replace(STILL, points=9), uniform[:-1]),
-        Curve("qs_uniform_16", "quasi-static, uniform, 16 points a cell", replace(STILL, points=16), uniform[:-1]),
-        Curve("qs_uniform_linear", "quasi-static, uniform, linear", replace(STILL, shape="linear"), uniform),
     ]
 
 
@@ -95,13 +88,11 @@ def with_inertia(cells: tuple[float, ...], some: tuple[float, ...], one: tuple[f
 
 def methods(scene: Path, base: Base, curves: list[Curve]) -> tuple[Method, ...]:
     """The curves as methods of a problem whose scene is given."""
-    return tuple(method(scene, base, curve) for curve in curves)
 
+    def level(setting: Setting, cell_m: float) -> Level:
+        """A setting at a cell size."""
+        variant, further = base(setting, cell_m)
+        return Level(f"{cell_m:g} m", cell_m, (*setting.keys(cell_m), *further), variant)
 
-def method(scene: Path, base: Base, curve: Curve) -> Method:
-    """A curve as a method."""
-    levels = []
-    for cell in curve.cells_m:
-        variant, further = base(curve.setting, cell)
-        levels.append(Level(f"{cell:g} m", cell, (*curve.setting.keys(cell), *further), variant))
-    return Method(curve.name, curve.label, STRATA, scene, tuple(levels), curve.setting, curve.main, curve.quick)
+    return tuple(Method(one.name, one.label, STRATA, scene, tuple(level(one.setting, cell) for cell in one.cells_m), one.setting, one.main, one.quick)
+                 for one in curves)  # fmt: skip

@@ -103,26 +103,16 @@ class Problem:
     about_s: float = 1.0  # a rough time of its finest graded run, to plan with before anything is known
 
 
-class BadProblem(Exception):
-    """A problem that the chart cannot use; the message says which and why."""
-
-
 def checked(problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
-    """The problems, if names are unique and sizes fall; raises BadProblem otherwise."""
-    names = {"problems": [problem.name for problem in problems], "quantities": [wanted.name for problem in problems for wanted in problem.wanted]}
-    for problem in problems:
-        names[f"{problem.name}: methods"] = [method.name for method in problem.methods]
-        for method in problem.methods:
-            where = f"{problem.name}/{method.name}"
-            names[f"{where}: levels"] = [level.label for level in method.levels]
-            sizes = [level.size for level in method.levels]
-            if not sizes or any(fine >= coarse for coarse, fine in zip(sizes, sizes[1:])):
-                raise BadProblem(f"{where}: sizes {sizes} do not fall")
-            if isinstance(method.source, Path) and not method.source.is_file():
-                raise BadProblem(f"{where}: no scene {method.source}")
-    for what, every in names.items():
-        if twice(every):
-            raise BadProblem(f"{what} of the same name: {', '.join(twice(every))}")
+    """The problems, if names are unique and sizes fall; raises ValueError otherwise."""
+    every = [*(problem.name for problem in problems), *(f"{wanted.name}: wanted" for problem in problems for wanted in problem.wanted)]
+    for problem, method in ((problem, method) for problem in problems for method in problem.methods):
+        every += [where := f"{problem.name}/{method.name}", *(f"{where}: {level.label}" for level in method.levels)]
+        sizes = [level.size for level in method.levels]
+        if not sizes or any(fine >= coarse for coarse, fine in zip(sizes, sizes[1:])):
+            raise ValueError(f"{where}: sizes {sizes} do not fall")
+    if twice(every):
+        raise ValueError(f"of the same name: {', '.join(twice(every))}")
     return problems
 
 

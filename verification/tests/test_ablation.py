@@ -3,7 +3,7 @@
 Mutations that were tried by hand and failed here: pressures not net of the closing stress; the sign of the added closing stress, in the
 history and in events; the fold left out; a lost arrest taken for no effect; the verdict turned round; an interface counted from 0; the
 lowest layer of a mirrored block as thick as it was, its interfaces not mirrored; shares that are NaN let pass; what costs nothing taken
-for what wants a reason; ingredients without need, or missing ones, that want none.
+for what wants a reason; ingredients without need that want none.
 """
 
 from dataclasses import replace
@@ -11,11 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from verification.ablation import store
-from verification.ablation.effects import CHANGES, NEEDED, NOTHING, SPARED, Tried, effects_of, free, missing, needs, not_needed, tried
-from verification.ablation.ingredients import LEFT_OUT, MODELLED, RESOLVED, Ingredient, View, ingredients_of, mirrored, named
-from verification.ablation.measure import INTERFACES, OWN, NoBase, table_of
-from verification.ablation.store import reasons, unexplained
+from verification.ablation.ingredients import View, ingredients_of, mirrored, named
+from verification.ablation.measure import EVERYTHING, INTERFACES, NoBase, effects_of, table_of
+from verification.ablation.table import CHANGES, NEEDED, NOTHING, SPARED, Table, Tried, read_all, reasons, write
 from verification.harness.load import Run, load
 from verification.harness.paths import EXPERIMENTS
 from verification.harness.quantities import Effect, quantities_of
@@ -26,11 +24,11 @@ EXP1 = EXPERIMENTS / "exp1_single_interface.toml"
 SHORT = ("stop.tip_y_m=11.0", "stop.inlet_Pa=2.7e6")
 
 
-def line(share: float | None, group: str = MODELLED, cpu_s: float = 0.5, lost: bool = False, status: str = "completed") -> Tried:
+def line(share: float | None, cpu_s: float = 0.5, lost: bool = False, status: str = "completed") -> Tried:
     """A line with one effect."""
     effects = {"start_Pa": Effect(None, "does not start")} if lost else {}
     shares = {} if share is None else {"pressure_Pa": share}
-    return Tried("flow", "flow", group, "none", (), status, "", effects | {name: Effect(1.0) for name in shares}, shares, cpu_s)
+    return Tried("flow", "flow", "none", (), status, "", effects | {name: Effect(1.0) for name in shares}, shares, cpu_s)
 
 
 @pytest.mark.parametrize("scene", scenes_of(EXPERIMENTS), ids=lambda path: path.stem[:4])
@@ -46,18 +44,6 @@ def test_every_experiment_has_its_ingredients(scene: Path) -> None:
         acting = [one.id for one in found if one.id.startswith("interface_")]
         both = ["interface_1", "interface_2"]
         assert acting == {"soft": both if scene.stem.startswith("exp4") else both[:1], "weak_soft": both, "perfect": []}[variant]
-
-
-@pytest.mark.parametrize("scene", scenes_of(EXPERIMENTS), ids=lambda path: path.stem[:4])
-def test_cells_far_away_are_what_a_fracture_goes_without_that_cannot_meet_them(scene: Path) -> None:
-    """A graded scene is tried with the uniform grid, a uniform one with a graded grid, but for a path that would meet it: it turns, and nothing says how far."""
-    own = content_of(scene, "perfect", ())
-    uniform = content_of(scene, "perfect", ("numerics.far_cell_m=1.0",))
-    endless = {**uniform, "numerics": {key: value for key, value in uniform["numerics"].items() if not key.startswith("fine_")}}
-    found, other, turned = (next(one for one in ingredients_of(content) if one.id == "far_cells") for content in (own, uniform, endless))
-    assert (found.group, found.settings) == (LEFT_OUT, ("numerics.far_cell_m=1.0",))
-    assert (other.group, other.settings) == (RESOLVED, ("numerics.far_cell_m=4.0",))
-    assert bool(turned.why_not) == (own["fracture"]["direction"] != "straight")
 
 
 def test_layers_are_mirrored() -> None:
@@ -126,27 +112,23 @@ def test_verdicts() -> None:
     assert line(0.0101).verdict == NEEDED and line(0.0099).verdict == SPARED
     assert line(0.0001, lost=True).verdict == CHANGES
     assert line(0.5, status="failed").verdict == NOTHING and line(None).verdict == NOTHING
-    lines = [line(0.5), line(0.001, cpu_s=0.5), line(0.001, cpu_s=1.2), line(0.02, group=LEFT_OUT), line(0.001, group=LEFT_OUT)]
-    assert needs(lines) == lines[:1]
-    assert not_needed(lines, 1.0) == [lines[1]]
-    assert free(lines, 1.0) == [lines[2]]
-    assert missing(lines) == [lines[3]]
+    lines = (line(0.5), line(0.001, cpu_s=0.5), line(0.001, cpu_s=1.2))
+    table = Table("exp1", "soft", EVERYTHING, "0", 1.0, (), {}, lines)
+    assert (table.needs(), table.spared(True), table.spared(False)) == ([lines[0]], [lines[1]], [lines[2]])
 
 
-def test_a_reason_is_wanted_of_what_is_not_needed_and_of_what_is_missing() -> None:
-    """Of an ingredient at a cost, and of one left out that matters; of no other; the experiment's own or that of all."""
-    lines = (line(0.001, cpu_s=0.5), line(0.001, cpu_s=1.2), line(0.5), line(0.001, group=LEFT_OUT))
-    lacks = replace(line(0.5, group=LEFT_OUT), id="depth")
-    table = store.Table("exp1", "soft", OWN, "0", 1.0, (), {}, (*lines, lacks))
-    assert unexplained(table, {}) == ["flow", "depth"]
-    assert unexplained(table, {"all": {"flow": "cheap"}, "exp2": {"depth": "not this one"}}) == ["depth"]
-    assert unexplained(table, {"all": {"flow": "cheap"}, "exp1": {"depth": "the study has none"}}) == []
+    edges = replace(lines[1], id="edges")
+    assert replace(table, lines=(*lines, edges)).unexplained({}) == ["flow", "edges"]
+    assert replace(table, lines=(*lines, edges)).unexplained({"all": {"flow": "cheap"}, "exp2": {"edges": "not this one"}}) == ["edges"]
+    assert replace(table, lines=(*lines, edges)).unexplained({"all": {"flow": "cheap"}, "exp1": {"edges": "the study has them"}}) == []
 
 
-def test_a_share_that_is_no_number_is_refused() -> None:
+def test_a_share_that_is_no_number_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """NaN compares as smaller than 1 %: it must not pass for no effect."""
+    base = run_of(tmp_path / "base", [(2.4e6, 40.0, 6.0)])
+    monkeypatch.setattr("verification.harness.quantities.effects_of", lambda *given: {"start_Pa": Effect(float("nan"))})
     with pytest.raises(ValueError, match="not finite"):
-        tried(Ingredient("flow", "flow", MODELLED, "none"), "completed", "", ({}, {"start_Pa": float("nan")}), 1.0)
+        effects_of([one for one in quantities_of(base.scene, ()) if one.name == "start_Pa"], False, base, base)
 
 
 def test_unknown_ingredients_are_refused() -> None:
@@ -157,13 +139,13 @@ def test_unknown_ingredients_are_refused() -> None:
 
 def test_a_short_run_is_taken_apart(tmp_path: Path) -> None:
     """Both halves of the block give the scene's own result, no flow and no stress other ones, and the rock is one."""
-    table = table_of(EXP1, "perfect", OWN, SHORT, ("flow", "symmetry", "prestress", "layering"), tmp_path)
+    table = table_of(EXP1, "perfect", EVERYTHING, SHORT, ("flow", "symmetry", "prestress", "layering"), tmp_path)
     lines = {one.id: one for one in table.lines}
     assert {one.status for one in table.lines if one.applies} == {"completed"}
     assert lines["symmetry"].largest is not None and lines["symmetry"].largest < 1e-3 and not lines["symmetry"].lost
     assert lines["flow"].verdict == NEEDED and lines["prestress"].verdict == NEEDED
     assert not lines["layering"].applies
-    assert store.read(store.write(table, tmp_path / "kept")) == table
+    assert write(table, tmp_path / "kept") and read_all(tmp_path / "kept") == [table]
 
 
 def test_a_scene_that_fails_has_no_table(tmp_path: Path) -> None:
@@ -174,11 +156,11 @@ def test_a_scene_that_fails_has_no_table(tmp_path: Path) -> None:
 
 def test_kept_tables_are_whole_and_explained() -> None:
     """Each experiment has its tables, and for whatever it has at a cost without needing it, or lacks, the reason."""
-    kept = store.read_all()
+    kept = read_all()
     assert {one.experiment for one in kept} == {scene.stem for scene in scenes_of(EXPERIMENTS)}
     why = reasons()
     for one in kept:
-        assert unexplained(one, why) == [], f"{one.experiment} {one.variant}"
+        assert one.unexplained(why) == [], f"{one.experiment} {one.variant}"
         assert not [line.id for line in one.lines if line.applies and line.status == "refused"]
 
 

@@ -1,0 +1,112 @@
+"""What came of leaving ingredients out: a table a variant of an experiment, kept as a JSON file in verification/ablation/records/; what follows for
+the scene; and why scenes keep what 1 % does not ask of them: experiments/choices/ablation.toml."""
+
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from verification.harness import store
+from verification.harness.paths import EXPERIMENTS, ROOT
+from verification.harness.quantities import Effect
+
+RECORDS = ROOT / "verification" / "ablation" / "records"
+REASONS = EXPERIMENTS / "choices" / "ablation.toml"
+Reasons = dict[str, dict[str, str]]  # by experiment ("all": every one) and ingredient
+
+WANTED = 0.01  # the share that a scene is to be right to
+NO_SAVING = 0.05  # CPU times of the same run differ by this share from one to the next; what saves less than that costs nothing
+
+# Verdicts on an ingredient.
+NEEDED, SPARED, CHANGES, NOTHING = "needed", "not needed", "needed: without it something else happens", "says nothing"
+
+
+@dataclass(frozen=True)
+class Tried:
+    """An ingredient left out: how that run ended, its effects (in units, and as shares), and its CPU time, s."""
+
+    id: str
+    label: str
+    done: str
+    settings: tuple[str, ...]
+    status: str  # "completed", "failed", "refused"; "" where it does not apply
+    reason: str
+    effects: dict[str, Effect]
+    shares: dict[str, float]
+    cpu_s: float
+
+    @property
+    def applies(self) -> bool:
+        """Whether the scene has it at all."""
+        return bool(self.status)
+
+    @property
+    def largest(self) -> float | None:
+        """The largest share, None where nothing could be compared."""
+        return max(self.shares.values(), default=None)
+
+    @property
+    def lost(self) -> list[str]:
+        """What of the base its run does not have."""
+        return [name for name, effect in self.effects.items() if effect.value is None]
+
+    @property
+    def verdict(self) -> str:
+        """What 1 % asks of the scene."""
+        if self.status != "completed":
+            return NOTHING
+        if self.lost:
+            return CHANGES
+        return NOTHING if self.largest is None else NEEDED if self.largest >= WANTED else SPARED
+
+
+@dataclass(frozen=True)
+class Table:
+    """A variant with everything that was left out of it, its own values, and its CPU time, s."""
+
+    experiment: str
+    variant: str
+    extent: str  # how much was tried; "interfaces": these alone
+    version: str
+    cpu_s: float
+    quantities: tuple[tuple[str, str, str], ...]  # name, label, unit
+    base: dict[str, float]
+    lines: tuple[Tried, ...]
+
+    def spared(self, at_a_cost: bool) -> list[Tried]:
+        """What 1 % does not ask for: what saves time where it is left out, which wants a reason, or what costs nothing."""
+        return [one for one in self.lines if one.verdict == SPARED and (one.cpu_s < (1.0 - NO_SAVING) * self.cpu_s) == at_a_cost]
+
+    def needs(self) -> list[Tried]:
+        """What the scene needs for 1 %."""
+        return [one for one in self.lines if one.verdict in (NEEDED, CHANGES)]
+
+    def unexplained(self, why: Reasons) -> list[str]:
+        """Ingredients that the scene has at a cost, and 1 % does not ask for, without a reason."""
+        return [one.id for one in self.spared(True) if not reason_for(one, self.experiment, why)]
+
+
+def write(table: Table, folder: Path = RECORDS) -> Path:
+    """Keep a table; the file of an experiment's variant."""
+    return store.write(table, folder / f"{table.experiment}.{table.variant}.json")
+
+
+def read_all(folder: Path = RECORDS) -> list[Table]:
+    """All kept tables by their names; raises ValueError for a file that is none."""
+    return [found for path in sorted(folder.glob("*.json")) if (found := store.read(Table, path)) is not None]
+
+
+def reasons(path: Path = REASONS) -> Reasons:
+    """All reasons that are given."""
+    return tomllib.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+
+
+def reason_for(line: Tried, experiment: str, why: Reasons) -> str:
+    """Why an experiment keeps an ingredient; empty where nothing is said."""
+    name = "interface" if line.id.startswith("interface") else line.id
+    return why.get(experiment, {}).get(name) or why.get("all", {}).get(name, "")
+
+
+def named(lines: Sequence[Tried]) -> str:
+    """Labels one after the other."""
+    return ", ".join(line.label for line in lines)
