@@ -135,7 +135,7 @@ std::vector<double> Inputs::numbers(const std::string& key) const {
 std::vector<Entry> catalogue() {
   std::vector<Entry> all;
   for (auto part : {crack_entries(), block_entries(), flow_entries(), interface_entries(), path_entries(),
-                    wave_entries(), motion_entries(), laminate_entries()})
+                    wave_entries(), motion_entries(), laminate_entries(), height_entries()})
     for (Entry& entry : part) all.push_back(std::move(entry));
   return all;
 }

@@ -120,5 +120,6 @@ std::vector<Entry> motion_entries();
 std::vector<Entry> path_entries();
 std::vector<Entry> wave_entries();
 std::vector<Entry> laminate_entries();
+std::vector<Entry> height_entries();
 
 }  // namespace strata::reference
