@@ -96,7 +96,12 @@ struct Run {
   WeighGrowth weigh = growth_weighing(scene, rocks);  // of one with inertia
 
   const std::vector<double>& output_times() const { return recorder.written().output_times; }
-  double next_output() const { return static_cast<double>(output_times().size()) * interval; }
+  // Where no time or pressure bounds the run, outputs become rarer: each time is a tenth later than the one before.
+  double next_output() const {
+    const std::vector<double>& times = output_times();
+    const bool even = scene.output.fields_every_s || expected_duration(scene) || times.empty();
+    return even ? static_cast<double>(times.size()) * interval : times.back() + std::max(interval, 0.1 * times.back());
+  }
 };
 
 // The first state, or that of a checkpoint made whole; both as a resumed run finds them.

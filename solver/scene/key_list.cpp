@@ -237,7 +237,9 @@ std::vector<Key> run_keys() {
       number("stop.time_s", at<&Scene::stop, &Stop::time_s>, "s", not_negative,
              "Ends the run at this time; 0, quasi-static only: one equilibrium at the start pressure."),
       number("output.fields_every_s", at<&Scene::output, &Output::fields_every_s>, "s", positive,
-             "Time between stored fields; by default 1/50 of the run."),
+             "Time between stored fields; by default 1/50 of the run, or where no time or pressure ends it 0.02 s, "
+             "from 0.2 s on a "
+             "tenth of the time so far."),
       required(other("claim[].id", Way<std::string>{}, "Name of the claim; further keys are the harness's.")),
       required(other("claim[].text", Way<std::string>{}, "The claim in words.")),
       required(other("claim[].observable", Way<std::string>{}, "What of a run it is judged by.")),

@@ -214,7 +214,7 @@ struct Stop {
 };
 
 struct Output {
-  std::optional<double> fields_every_s;  // absent: 1/50 of the run
+  std::optional<double> fields_every_s;  // absent: 1/50 of the run, or see run.cpp where its length is not known
   bool operator==(const Output&) const = default;
 };
 

@@ -2,15 +2,16 @@
 
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 
 from verification.faults.same import differences
 from verification.harness import smoke
 from verification.harness.load import Run
-from verification.harness.paths import EXPERIMENTS
+from verification.harness.paths import ANALYTIC, EXPERIMENTS
 from verification.harness.run import Job, run
-from verification.tests.cases import completed
+from verification.tests.cases import completed, strata
 
 STORED = ("kinetic_J", "strain_J", "interface_strain_J")
 DISSIPATED = ("damping_J", "transfer_J", "integration_J", "friction_J", "failure_J", "fracture_J", "excess_J")
@@ -55,3 +56,11 @@ def test_same_digits_on_one_and_two_threads_and_again(tmp_path: Path, scene: str
     for other in folders[1:]:
         assert differences(folders[0], other) == []
     assert len((folders[0] / "history.csv").read_text().splitlines()) > 3
+
+
+def test_a_run_of_unknown_length_writes_ever_rarer_fields(tmp_path: Path) -> None:
+    """Nothing but a height ends it: every 0.02 s up to 0.2 s, then each time a tenth later than the one before; the last is the run's end."""
+    assert strata(tmp_path, "run", ANALYTIC / "three_layers.toml", "--out", tmp_path / "X", "--quiet").returncode == 0
+    with h5py.File(tmp_path / "X/result.h5") as file:
+        times = file["times"][:-1]
+    assert times[-1] > 1.0 and np.diff(times) == pytest.approx(np.maximum(0.02, 0.1 * times[:-1]))
