@@ -1,15 +1,12 @@
 #include "quasistatic/loaded_stress.hpp"
 
-#include <Eigen/CholmodSupport>
-
+#include "quasistatic/intact_body.hpp"
 #include "state/rebuild.hpp"
 #include "state/stiffness.hpp"
 
 namespace strata {
 
 namespace {
-
-using SparseMatrix = Eigen::SparseMatrix<double>;
 
 // Adds the force of a uniform traction t (Pa) on 1/parts of an edge of `length` m to f, applied at x.
 void load_point(const Scene& scene, const State& state, const Vec2& x, const Vec2& t, double length, int parts,
@@ -42,19 +39,6 @@ void load_edge(const Scene& scene, const State& state, const Vec2& a, const Vec2
     load_point(scene, state, along_x ? Vec2{s.at, a.y()} : Vec2{a.x(), s.at}, t, s.length, 1, f);
 }
 
-// The loads are in balance, so holding as many unknowns as there are rigid motions costs no reaction.
-void hold_rigid_motion(const Scene& scene, const State& state, SparseMatrix& K, Eigen::VectorXd& f) {
-  std::vector<int> held{2 * state.grid.node(0, 0)};
-  if (scene.domain.bottom == Edge::traction) {
-    held.push_back(2 * state.grid.node(0, 0) + 1);
-    held.push_back(2 * state.grid.node(state.grid.nx, 0) + 1);
-  }
-  for (const int k : held) {
-    K.prune([k](Eigen::Index row, Eigen::Index column, double) { return (row != k && column != k) || row == column; });
-    f[k] = 0.0;
-  }
-}
-
 }  // namespace
 
 void load_in_situ(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
@@ -65,8 +49,9 @@ void load_in_situ(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
   // would leave the ghosts beyond it all but free.
   if (loaded.numerics.shape == Numerics::Shape::gimp) loaded.numerics.shape = Numerics::Shape::linear;
   rebuild_copies(loaded, state);
-  SparseMatrix K = assemble_stiffness(loaded, rocks, state, state.masters);
-  Eigen::VectorXd f = Eigen::VectorXd::Zero(K.rows());
+  const IntactBody body(loaded, rocks, state, false);  // the loads are in balance: what it holds costs no reaction
+  state.masters = body.masters();
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(body.unknowns());
   const Stretch x = scene.domain.along_x(), y = scene.domain.along_y();
   const Vec2 corners[4] = {{x.from, y.from}, {x.to, y.from}, {x.to, y.to}, {x.from, y.to}};
   load_edge(loaded, state, corners[0], corners[3], {scene.in_situ.horizontal_Pa, 0.0}, f);
@@ -74,11 +59,7 @@ void load_in_situ(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
   load_edge(loaded, state, corners[3], corners[2], {0.0, -scene.in_situ.vertical_Pa}, f);
   if (scene.domain.bottom == Edge::traction)
     load_edge(loaded, state, corners[0], corners[1], {0.0, scene.in_situ.vertical_Pa}, f);
-  hold_rigid_motion(loaded, state, K, f);
-  const Eigen::CholmodSupernodalLLT<SparseMatrix> factor(K);
-  if (factor.info() != Eigen::Success)
-    throw NumericalFailure("the loaded in-situ state cannot be found: the stiffness of the bonded block is singular");
-  const Eigen::VectorXd u = factor.solve(f);
+  const Eigen::VectorXd u = body.factor().solve(f);
   Particles& p = state.particles;
   for (const Bin& bin : state.bins) {
     for (const std::size_t q : bin) {
