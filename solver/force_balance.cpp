@@ -28,7 +28,7 @@ void add_reactions(State& state) {
 
 }  // namespace
 
-void watch_forces(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+void watch_forces(const Scene& scene, const Rocks& rocks, State& state) {
   const NodalSums kept = state.sums;
   particles_to_grid(scene, rocks, state);
   update_stencil_weights(scene, state);

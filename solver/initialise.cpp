@@ -17,7 +17,7 @@ namespace strata {
 
 namespace {
 
-Particles make_particles(const Scene& scene, const std::vector<Elasticity>& rocks, const Grid& grid) {
+Particles make_particles(const Scene& scene, const Rocks& rocks, const Grid& grid) {
   const std::vector<GridPoint> columns = points_along_x(grid, points_across(scene));
   Particles p;
   for (const GridPoint& y : points_along_y(grid, points_across(scene))) {
@@ -105,7 +105,7 @@ void set_start_reactions(State& state) {
 
 }  // namespace
 
-State initialise(const Scene& scene, const std::vector<Elasticity>& rocks) {
+State initialise(const Scene& scene, const Rocks& rocks) {
   State state;
   state.grid = make_grid(scene);
   state.particles = make_particles(scene, rocks, state.grid);

@@ -87,7 +87,7 @@ struct Run {
   Clock::time_point start;  // of the process
   Recorder recorder;
   Checkpoint good;  // the last state that was known to be sound, and what had been written then; or none yet
-  std::vector<Elasticity> rocks = make_elasticities(scene);
+  Rocks rocks = make_elasticities(scene);
   double interval = scene.output.fields_every_s.value_or(expected_duration(scene).value_or(1.0) / 50.0);  // s
   State state = State();                              // the present one
   std::int64_t saved_step = good.state.step;          // of the state that a resumed run would find
@@ -96,7 +96,8 @@ struct Run {
   WeighGrowth weigh = growth_weighing(scene, rocks);  // of one with inertia
 
   const std::vector<double>& output_times() const { return recorder.written().output_times; }
-  // Where no time or pressure bounds the run, outputs become rarer: each time is a tenth later than the one before.
+  // Where no time or pressure bounds the run its length is not known: from ten intervals on each output is a tenth
+  // later than the one before, so that a run a thousand times as long writes 72 more.
   double next_output() const {
     const std::vector<double>& times = output_times();
     const bool even = scene.output.fields_every_s || expected_duration(scene) || times.empty();

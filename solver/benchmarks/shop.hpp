@@ -19,7 +19,7 @@ namespace strata::bench {
 // A scene with the state it starts from.
 struct Workpiece {
   Scene scene;
-  std::vector<Elasticity> rocks;
+  Rocks rocks;
   State state;
 };
 

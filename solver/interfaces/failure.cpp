@@ -372,7 +372,7 @@ Bonds find_bonds(const Scene& scene, const State& state) {
   return bonds;
 }
 
-void find_forces(const std::vector<Elasticity>& rocks, const State& state, Bonds& bonds) {
+void find_forces(const Rocks& rocks, const State& state, Bonds& bonds) {
   const Particles& p = state.particles;
   bonds.forces.assign(bonds.samples.size(), Vec2::Zero());
   for (std::size_t k = 0; k < bonds.samples.size(); ++k) {

@@ -21,7 +21,7 @@ Bonds find_bonds(const Scene& scene, const State& state);
 
 /// Forces of the samples' rock, sum_p V_p sigma_p grad Phi + sum_i m_i a_i (N/m), from the particles' present strain
 /// and, in runs with inertia, the accelerations that forces gave the nodes. Throws nothing.
-void find_forces(const std::vector<Elasticity>& rocks, const State& state, Bonds& bonds);
+void find_forces(const Rocks& rocks, const State& state, Bonds& bonds);
 
 /// What bonded places carry under these forces, the body force and the present tractions on the fracture, and how near
 /// each is to failure. A place is judged on the mean traction over failure_length() of bonded

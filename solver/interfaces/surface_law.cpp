@@ -48,7 +48,7 @@ LawAnswer soft_law(const InterfaceLaw& law, double k, const LawInput& in) {
 
 }  // namespace
 
-double contact_stiffness(const InterfaceLaw& law, const std::vector<Elasticity>& rocks, const Grid& grid) {
+double contact_stiffness(const InterfaceLaw& law, const Rocks& rocks, const Grid& grid) {
   double E_prime = 0.0;
   for (const Elasticity& rock : rocks) E_prime = std::max(E_prime, rock.E_prime);
   const double k = 1e4 * E_prime / grid.h;

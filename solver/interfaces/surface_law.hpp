@@ -33,7 +33,7 @@ struct LawAnswer {
 /// rock has, so that faces overlap by less than 1e-4 of what a cell deforms; above that of the springs of a soft
 /// interface, 10 D. Rigid contact at two places a cell would ask for more than the one jump a cell that exists, and its
 /// reactions would not be unique.
-double contact_stiffness(const InterfaceLaw& law, const std::vector<Elasticity>& rocks, const Grid& grid);
+double contact_stiffness(const InterfaceLaw& law, const Rocks& rocks, const Grid& grid);
 
 /// Reaction of a law with contact stiffness k (Pa/m) at a jump.
 ///   friction, failed weak: n = max(0, n_rest - k w_n), t = r_t_start - k (w_t - w_t_start), no more than mu n

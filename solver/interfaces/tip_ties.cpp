@@ -54,7 +54,7 @@ TipTie make_tie(double c, const Elasticity& rock, const State& state, int node, 
 
 }  // namespace
 
-void update_tip_ties(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+void update_tip_ties(const Scene& scene, const Rocks& rocks, State& state) {
   std::vector<TipTie> old = std::move(state.ties);
   state.ties.clear();
   for (const Tip& tip : state.tips) {
@@ -80,7 +80,7 @@ void update_tip_ties(const Scene& scene, const std::vector<Elasticity>& rocks, S
   for (const TipTie& tie : old) state.ledger.excess += energy(tie);
 }
 
-void rebuild(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+void rebuild(const Scene& scene, const Rocks& rocks, State& state) {
   rebuild_copies(scene, state);
   update_tip_ties(scene, rocks, state);
   if (scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics) state.bonds = find_bonds(scene, state);

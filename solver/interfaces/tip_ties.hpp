@@ -15,11 +15,11 @@ namespace strata {
 /// with d the node's distance across the fracture and N the quadratic B-spline, so that a row shares one spring
 /// whatever its number of nodes. c is measured, not derived: see tip_tie_coefficient. Node pairs that stay keep their
 /// jump; energy in springs that vanish goes to the ledger's excess. Call after rebuild_copies().
-void update_tip_ties(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
+void update_tip_ties(const Scene& scene, const Rocks& rocks, State& state);
 
 /// All that follows from particles and surfaces: rebuild_copies(), then the springs of the present tips and, of runs
 /// with inertia, the bonded places of interfaces. Throws
 /// NumericalFailure as rebuild_copies() does.
-void rebuild(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
+void rebuild(const Scene& scene, const Rocks& rocks, State& state);
 
 }  // namespace strata

@@ -97,7 +97,7 @@ void put(hdf5::Id file, const std::string& path, const char* unit, const std::ve
 
 void write_particles(hdf5::Id file, const std::string& group, const Scene& scene, const State& state) {
   const Particles& of = state.particles;
-  const std::vector<Elasticity> rocks = make_elasticities(scene);
+  const Rocks rocks = make_elasticities(scene);
   const std::vector<std::size_t> order = by_id(of);
   const auto field = [&](const char* name, const char* unit, bool packed, const auto& value_of) {
     put<float>(file, group + name, unit, order, packed, value_of);
@@ -173,7 +173,7 @@ std::string xdmf_text(hdf5::Id result, const std::vector<double>& times) {
 
 }  // namespace
 
-Stress total_stress(const std::vector<Elasticity>& rocks, const Particles& particles, std::size_t p) {
+Stress total_stress(const Rocks& rocks, const Particles& particles, std::size_t p) {
   const Elasticity& rock = rocks[particles.rock[p]];
   return particles.in_situ[p] +
          stress_of(rock, particles.g_xx[p], particles.g_xy[p], particles.g_yx[p], particles.g_yy[p]);

@@ -30,7 +30,7 @@ namespace strata {
 
 /// Total stress of particle p (Pa, tension positive): in-situ stress and, in plane strain, that of the displacement
 /// gradient; rocks: in the order of the scene. Throws nothing.
-Stress total_stress(const std::vector<Elasticity>& rocks, const Particles& particles, std::size_t p);
+Stress total_stress(const Rocks& rocks, const Particles& particles, std::size_t p);
 
 /// Writes the file of output time k; throws OutputFailure where it cannot be written.
 void write_fields(const RunFolder& folder, std::size_t k, const Scene& scene, const State& state);

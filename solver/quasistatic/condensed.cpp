@@ -140,9 +140,8 @@ void add_particle(const LocalStiffness& K, const Bin& bin, const IntactBody& bod
 
 // Assembles G and K_jj of the new unknowns. Particles come cell by cell in the order of their ids, so that sums do not
 // depend on how copies group them into bins.
-std::vector<Entries> assemble_jumps(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
-                                    const IntactBody& body, const std::vector<int>& fresh, const Condensed& out,
-                                    NewStiffness& K_jj) {
+std::vector<Entries> assemble_jumps(const Scene& scene, const Rocks& rocks, const State& state, const IntactBody& body,
+                                    const std::vector<int>& fresh, const Condensed& out, NewStiffness& K_jj) {
   std::vector<Entries> G(out.columns.size());
   const Particles& p = state.particles;
   const auto touches_new = [&](const Bin& bin) {
@@ -300,7 +299,7 @@ Unknown jump_unknown(const Condensed& condensed, int record, int component) {
   return factor == 0.0 ? Unknown{} : Unknown{index, factor};
 }
 
-Condensed condense(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const IntactBody& body,
+Condensed condense(const Scene& scene, const Rocks& rocks, const State& state, const IntactBody& body,
                    const Condensed* before) {
   Condensed out;
   out.masters = body.halved() ? mirrored(state, state.masters) : state.masters;

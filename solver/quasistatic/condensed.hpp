@@ -54,7 +54,7 @@ struct Condensed {
 /// The condensed operator of a state whose copies are built and whose nodes have their masses (state.sums). Columns and
 /// entries that `before` has for the same particles are taken from there. Sums have an order of their own, so that the
 /// result has the same digits whatever came before. Throws nothing.
-Condensed condense(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, const IntactBody& body,
+Condensed condense(const Scene& scene, const Rocks& rocks, const State& state, const IntactBody& body,
                    const Condensed* before);
 
 /// The jump unknown that a record's component is a multiple of; index -1: it moves with the uncut node.

@@ -357,7 +357,7 @@ Vec2 jump_at(const Condensed& condensed, const SurfaceStencil& stencil, const Ei
   return {times(rows[0], j), times(rows[1], j)};
 }
 
-std::vector<ContactPlace> contact_places(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
+std::vector<ContactPlace> contact_places(const Scene& scene, const Rocks& rocks, const State& state,
                                          const Condensed& condensed) {
   std::vector<ContactPlace> places;
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {

@@ -23,7 +23,7 @@ struct Equilibrium {
 
 /// The split places of a state and the springs of its tips, with the memory of friction as the state holds it.
 /// Stencil weights must be up to date.
-std::vector<ContactPlace> contact_places(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
+std::vector<ContactPlace> contact_places(const Scene& scene, const Rocks& rocks, const State& state,
                                          const Condensed& condensed);
 
 /// Solves S j = sum_s A_s D_s^T (P n - t_in_situ + r(D j)) + condensed.load.jumps for the pressures that the state's

@@ -82,7 +82,7 @@ void add_place(const ContactPlace& place, const LawAnswer& r, double w, RockResp
 RockModel rock_of(const Scene& scene, double time, State& state, QuasistaticModel& model) {
   const auto& points = state.fracture().points;
   Eigen::VectorXd E_prime(points.size()), closing(points.size());
-  const std::vector<Elasticity> rocks = make_elasticities(scene);
+  const Rocks rocks = make_elasticities(scene);
   for (Eigen::Index k = 0; k < closing.size(); ++k) {
     const SurfacePoint& s = points[static_cast<std::size_t>(k)];
     E_prime[k] = rocks[rock_at(scene, s.x)].E_prime, closing[k] = s.closing_stress();

@@ -89,7 +89,7 @@ bool may_grow(const Scene& scene, const State& state, const Tip& tip) {
   return scene.fracture->growth != Fracture::Growth::none && tip.growing && what_stops(scene, state, tip).empty();
 }
 
-std::vector<GrowthTrial> build_trials(const Scene& scene, const std::vector<Elasticity>& rocks, State& state,
+std::vector<GrowthTrial> build_trials(const Scene& scene, const Rocks& rocks, State& state,
                                       const QuasistaticModel& model, bool halve) {
   std::vector<GrowthTrial> trials;
   for (std::size_t k = 0; k < state.tips.size(); ++k) {

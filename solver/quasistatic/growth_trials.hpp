@@ -25,7 +25,7 @@ bool may_grow(const Scene& scene, const State& state, const Tip& tip);
 /// one with the fracture longer by it, for the slope of the energy one a cell longer and, where a whole piece can be
 /// taken away, one a cell shorter, less where an interface is nearer. `model` is the state's own; halve: as in
 /// update_equations(), and throws as it does.
-std::vector<GrowthTrial> build_trials(const Scene& scene, const std::vector<Elasticity>& rocks, State& state,
+std::vector<GrowthTrial> build_trials(const Scene& scene, const Rocks& rocks, State& state,
                                       const QuasistaticModel& model, bool halve = true);
 
 /// Energy (N/m) that tip number `tip` would release per length at the present pressures, the new segment under the

@@ -69,8 +69,7 @@ std::vector<Master> mirrored(const State& state, std::vector<Master> masters) {
   return masters;
 }
 
-IntactBody::IntactBody(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, bool halved,
-                       std::vector<int> order)
+IntactBody::IntactBody(const Scene& scene, const Rocks& rocks, const State& state, bool halved, std::vector<int> order)
     : halved_(halved) {
   State intact;
   intact.grid = state.grid;

@@ -21,8 +21,7 @@ class IntactBody {
   /// energy of the left half counted twice. Rigid motion that no edge holds is held at corners: loads are in balance.
   /// order: that of the factor of a body on the same grid with the same ties, or none. Throws NumericalFailure where
   /// the factorisation fails.
-  IntactBody(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state, bool halved,
-             std::vector<int> order = {});
+  IntactBody(const Scene& scene, const Rocks& rocks, const State& state, bool halved, std::vector<int> order = {});
 
   /// K = L L^T in one value for each of the 2 x nodes unknowns (N/m, m); loads on held ones must be 0.
   const TreeFactor& factor() const { return factor_; }

@@ -45,8 +45,7 @@ double toughless_margin(const State& state, double E_prime, const Tip& tip) {
 
 // How near a tip is to growth: sqrt(G/J_c) by what decides about it. Where the fracture that a trial makes has no
 // equilibrium, K decides.
-double tip_margin(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run,
-                  std::size_t k) {
+double tip_margin(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run, std::size_t k) {
   Tip& tip = state.tips[k];
   tip.criterion = criterion_of(scene, state, tip);  // a trial may have had no equilibrium at another load
   const Elasticity& rock = rocks[rock_ahead(scene, state, tip)];
@@ -63,7 +62,7 @@ double tip_margin(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
   return weighs_energy(tip) ? (G > 0.0 ? 2.0 : 0.0) : toughless_margin(state, rock.E_prime, tip);
 }
 
-double margin_of(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+double margin_of(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run) {
   run.tip_margin = 0.0;
   for (std::size_t k = 0; k < state.tips.size(); ++k) {
     if (may_grow(scene, state, state.tips[k]))
@@ -78,7 +77,7 @@ double margin_of(const Scene& scene, const std::vector<Elasticity>& rocks, State
 }
 
 // Equilibrium at the state's pressures, its fields, and how near the next event is.
-void equilibrate(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+void equilibrate(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run) {
   run.equilibrium = find_equilibrium(scene, state.time, state, run.model);
   set_fields(scene, state, run.model, run.equilibrium);
   measure_tips(scene, rocks, run.rules, state);
@@ -195,7 +194,7 @@ void accept(const Scene& scene, const LoadPoint& before, Change change, State& s
   watch_row(scene, state);
 }
 
-void rebuild_all(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+void rebuild_all(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run) {
   const double excess = state.ledger.excess;
   run.trials.clear();  // two bodies are not to be held at a time
   update_model(scene, rocks, state, run.model);
@@ -229,8 +228,7 @@ struct Growing {
   double J_c = 0.0;        // of the rock ahead (N/m)
 };
 
-std::vector<Growing> tips_that_grow(const Scene& scene, const std::vector<Elasticity>& rocks, State& state,
-                                    Quasistatic& run) {
+std::vector<Growing> tips_that_grow(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run) {
   std::vector<Growing> due;
   for (std::size_t k = 0; k < state.tips.size(); ++k) {
     Tip& tip = state.tips[k];
@@ -259,8 +257,8 @@ void lengthen(const Scene& scene, std::vector<Growing>& growing, State& state) {
 // increment, and the mean of J over it (K linear between its ends, the new segment under the pressure that the tip
 // had). Where the tip all but closes on the way, under a pressure that falls off towards it, two values do not tell the
 // mean.
-void measure_release(const Scene& scene, const std::vector<Elasticity>& rocks, double energy_before,
-                     const std::vector<Growing>& growing, State& state, Quasistatic& run) {
+void measure_release(const Scene& scene, const Rocks& rocks, double energy_before, const std::vector<Growing>& growing,
+                     State& state, Quasistatic& run) {
   run.equilibrium = find_equilibrium(scene, state.time, state, run.model);
   set_fields(scene, state, run.model, run.equilibrium);
   measure_tips(scene, rocks, run.rules, state);
@@ -286,7 +284,7 @@ bool failure_goes_first(const Scene& scene, const Quasistatic& run) {
 }
 
 // What is due at the present load: the worst bonded column fails or tips grow.
-void grow_or_fail(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+void grow_or_fail(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run) {
   const LoadPoint before = load_point(state);
   std::vector<Growing> growing;
   double energy_before = 0.0;
@@ -311,8 +309,8 @@ void grow_or_fail(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
 
 // From `from` to the load a time dt later: run.margin is the margin there. Under law = "reynolds" there may be no
 // solution within the iterations allowed.
-FluidStep try_step(const Scene& scene, const std::vector<Elasticity>& rocks, const LoadPoint& from, double dt,
-                   State& state, Quasistatic& run) {
+FluidStep try_step(const Scene& scene, const Rocks& rocks, const LoadPoint& from, double dt, State& state,
+                   Quasistatic& run) {
   return_to(from, state);
   try {
     FluidStep fluid = advance_fluid(scene, dt, state, run.model);
@@ -346,8 +344,8 @@ struct LoadStep {
 
 // Takes the step of state.dt or, where nothing flows, of all the time that is left (s), halved until it is found, its
 // error is allowed and the margin does not change too much before an event; w: openings (m) at `from`.
-LoadStep find_step(const Scene& scene, const std::vector<Elasticity>& rocks, const LoadPoint& from,
-                   const std::vector<double>& w, double left, State& state, Quasistatic& run) {
+LoadStep find_step(const Scene& scene, const Rocks& rocks, const LoadPoint& from, const std::vector<double>& w,
+                   double left, State& state, Quasistatic& run) {
   const bool flowing = flows(scene, state), foresees = foresees_openings(scene, state);
   const double margin = run.margin;
   for (double dt = flowing ? std::min(state.dt, left) : left;; dt *= 0.5) {
@@ -375,8 +373,8 @@ double next_step(const Scene& scene, const LoadStep& step) {
 // The step at whose end the margin is 1 or hardly more, no longer than `high`, at which it is larger: regula falsi,
 // which turns the end that stays onto the slope of the parabola through the last three (Anderson and Bjorck, BIT 13,
 // 1973), and bisection where the margin has no size.
-void locate_event(const Scene& scene, const std::vector<Elasticity>& rocks, const LoadPoint& from, double margin_low,
-                  double high, State& state, Quasistatic& run) {
+void locate_event(const Scene& scene, const Rocks& rocks, const LoadPoint& from, double margin_low, double high,
+                  State& state, Quasistatic& run) {
   const double aim = 1.0 + 0.5 * event_tolerance;
   double low = 0.0, f_low = margin_low - aim, f_high = run.margin - aim;
   int side = 0;
@@ -406,7 +404,7 @@ bool failure_due(const Quasistatic& run) {
   return run.model.bonds.worst >= 1.0;
 }
 
-void start_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+void start_quasistatic(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run) {
   run.model.factor = TangentFactor{}, run.trials.clear();  // digits go by the state alone
   rebuild_all(scene, rocks, state, run);
   if (state.step == 0) fill_fracture(scene, state, run.model);
@@ -435,7 +433,7 @@ void start_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks,
   close_ledger(run, unloaded, Change::load, 0.0, state);
 }
 
-void restart_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run) {
+void restart_quasistatic(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run) {
   forget_solution(scene, rocks, state, run.model);
   if (std::ranges::any_of(run.trials, [&](const GrowthTrial& t) { return t.turn != state.tips[t.tip].turn; }))
     run.trials = build_trials(scene, rocks, state, run.model);
@@ -443,8 +441,7 @@ void restart_quasistatic(const Scene& scene, const std::vector<Elasticity>& rock
   equilibrate(scene, rocks, state, run);
 }
 
-void advance_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, double until, State& state,
-                         Quasistatic& run) {
+void advance_quasistatic(const Scene& scene, const Rocks& rocks, double until, State& state, Quasistatic& run) {
   if (run.margin >= 1.0) {
     grow_or_fail(scene, rocks, state, run);
     for (Tip& tip : state.tips) stop_at_edge(scene, state, tip);

@@ -23,11 +23,11 @@ struct Quasistatic {
 
 /// Equilibrium of a state that was initialised or read back; builds what `run` holds. Throws NumericalFailure where
 /// there is none.
-void start_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run);
+void start_quasistatic(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run);
 
 /// The same of a state that `run` was built for and has been at since: what a resumed run finds there, digit by digit,
 /// without building anew what has not changed. Throws as start_quasistatic() does.
-void restart_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Quasistatic& run);
+void restart_quasistatic(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run);
 
 /// Whether a bonded place carries more than it can at the present load: the next step lets it go before anything else
 /// happens, and the state is no equilibrium of its interfaces' laws yet. Throws nothing.
@@ -38,7 +38,6 @@ bool failure_due(const Quasistatic& run);
 /// to the load at which the next thing happens: growth where J or the energy released over a finite increment reaches
 /// J_c of the rock ahead, failure where an interface's strength is reached. Throws NumericalFailure where there is no
 /// equilibrium: parts of the block move freely.
-void advance_quasistatic(const Scene& scene, const std::vector<Elasticity>& rocks, double until, State& state,
-                         Quasistatic& run);
+void advance_quasistatic(const Scene& scene, const Rocks& rocks, double until, State& state, Quasistatic& run);
 
 }  // namespace strata

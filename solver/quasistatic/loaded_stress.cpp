@@ -41,7 +41,7 @@ void load_edge(const Scene& scene, const State& state, const Vec2& a, const Vec2
 
 }  // namespace
 
-void load_in_situ(const Scene& scene, const std::vector<Elasticity>& rocks, State& state) {
+void load_in_situ(const Scene& scene, const Rocks& rocks, State& state) {
   Scene loaded = scene;
   loaded.domain.sides = Edge::traction;
   loaded.domain.top = Edge::traction;

@@ -12,6 +12,6 @@ namespace strata {
 /// in-situ tractions on sides and top (and bottom, where it is no symmetry line), whatever the scene's edges are
 /// afterwards; writes the stress to particles.in_situ (Pa). Rigid motion that no edge holds is taken out. Throws
 /// NumericalFailure where the factorisation fails.
-void load_in_situ(const Scene& scene, const std::vector<Elasticity>& rocks, State& state);
+void load_in_situ(const Scene& scene, const Rocks& rocks, State& state);
 
 }  // namespace strata

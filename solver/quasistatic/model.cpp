@@ -231,8 +231,7 @@ double plastic_slip(const ContactPlace& place, const LawAnswer& r, const Vec2& w
 
 }  // namespace
 
-void update_model(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, QuasistaticModel& model,
-                  bool halve) {
+void update_model(const Scene& scene, const Rocks& rocks, State& state, QuasistaticModel& model, bool halve) {
   update_equations(scene, rocks, state, model, halve);
   model.bonds = find_bonds(scene, state);
   if (scene.body.acceleration_m_s2) {  // its work needs all
@@ -246,8 +245,7 @@ void update_model(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
   model.vertex_jumps = jumps_at_vertices(state, model.condensed);
 }
 
-void update_equations(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, QuasistaticModel& model,
-                      bool halve) {
+void update_equations(const Scene& scene, const Rocks& rocks, State& state, QuasistaticModel& model, bool halve) {
   rebuild(scene, rocks, state);
   weigh_copies(scene, state);
   update_stencil_weights(scene, state);
@@ -263,8 +261,7 @@ void update_equations(const Scene& scene, const std::vector<Elasticity>& rocks, 
   forget_solution(scene, rocks, state, model);
 }
 
-void forget_solution(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
-                     QuasistaticModel& model) {
+void forget_solution(const Scene& scene, const Rocks& rocks, const State& state, QuasistaticModel& model) {
   model.places = contact_places(scene, rocks, state, model.condensed);
   model.factor = TangentFactor{};
   model.j.resize(0);

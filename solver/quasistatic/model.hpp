@@ -35,16 +35,13 @@ struct QuasistaticModel {
 /// Rebuilds what follows from the state's particles and surfaces (copies, springs of tips, stencils) and brings the
 /// model up to date with it; what `model` holds already is reused where it still applies. halve: solve on half of a
 /// mirror-symmetric scene. Throws NumericalFailure as rebuild_copies() and IntactBody do.
-void update_model(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, QuasistaticModel& model,
-                  bool halve = true);
+void update_model(const Scene& scene, const Rocks& rocks, State& state, QuasistaticModel& model, bool halve = true);
 
 /// The same without what set_fields() needs, for a model that equilibria are only asked for.
-void update_equations(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, QuasistaticModel& model,
-                      bool halve = true);
+void update_equations(const Scene& scene, const Rocks& rocks, State& state, QuasistaticModel& model, bool halve = true);
 
 /// Takes back what a model has of former solutions: first guess and factor; friction's memory is that of the state.
-void forget_solution(const Scene& scene, const std::vector<Elasticity>& rocks, const State& state,
-                     QuasistaticModel& model);
+void forget_solution(const Scene& scene, const Rocks& rocks, const State& state, QuasistaticModel& model);
 
 /// Equilibrium under the pressures that the state's points hold and the body force at a time (s); see
 /// solve_equilibrium(), and what it throws. Sets state.body. Throws NumericalFailure, too, where a formula is not

@@ -58,8 +58,7 @@ void refine_beside_growth(const Scene& scene, State& state) {
 
 // Equations and trials of resting.state, which is that of the run. What holds of those of `before` (or none), of the
 // same particles in the same places, is taken over, and the rest let go: two are not to be held at a time.
-void build_resting_rock(const Scene& scene, const std::vector<Elasticity>& rocks, Resting before,
-                        RestingRock& resting) {
+void build_resting_rock(const Scene& scene, const Rocks& rocks, Resting before, RestingRock& resting) {
   resting.scene = without_inertia(scene);
   State& own = resting.state;
   own.total = {};
@@ -120,7 +119,7 @@ bool finds_rest(Do something, RestingRock& resting) {
 }
 
 // G of the tips that energy decides about, at the present pressures.
-void weigh(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, RestingRock& resting) {
+void weigh(const Scene& scene, const Rocks& rocks, State& state, RestingRock& resting) {
   follow(state, resting);
   if (!trials_hold(scene, resting.state, resting.trials))
     resting.trials = build_trials(resting.scene, rocks, resting.state, resting.model, false);
@@ -135,7 +134,7 @@ void weigh(const Scene& scene, const std::vector<Elasticity>& rocks, State& stat
   }
 }
 
-void weigh_growth(const Scene& scene, const std::vector<Elasticity>& rocks, State& state, Resting& resting) {
+void weigh_growth(const Scene& scene, const Rocks& rocks, State& state, Resting& resting) {
   for (Tip& tip : state.tips) {
     tip.criterion = criterion_of(scene, state, tip);
     if (weighs_energy(tip)) stop_at_edge(scene, state, tip);
@@ -166,7 +165,7 @@ void weigh_growth(const Scene& scene, const std::vector<Elasticity>& rocks, Stat
 
 }  // namespace
 
-std::function<void(State&)> growth_weighing(const Scene& scene, const std::vector<Elasticity>& rocks) {
+std::function<void(State&)> growth_weighing(const Scene& scene, const Rocks& rocks) {
   return [&scene, &rocks, resting = std::make_shared<Resting>()](State& state) {
     weigh_growth(scene, rocks, state, *resting);
   };

@@ -16,6 +16,6 @@ namespace strata {
 /// holds, K decides, and monitors.growth_unweighed counts it. What it keeps from one call to the next follows from the
 /// state: make it anew wherever a resumed run would begin. scene and rocks must outlive it. Throws nothing but
 /// std::bad_alloc.
-std::function<void(State&)> growth_weighing(const Scene& scene, const std::vector<Elasticity>& rocks);
+std::function<void(State&)> growth_weighing(const Scene& scene, const Rocks& rocks);
 
 }  // namespace strata

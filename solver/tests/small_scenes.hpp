@@ -111,7 +111,7 @@ inline InterfaceLaw weak_law(double S_c, double N_c, double residual = 0.0) {
 // A scene with its state.
 struct Run {
   Scene scene;
-  std::vector<Elasticity> rocks;
+  Rocks rocks;
   State state;
 
   explicit Run(const Scene& from) : scene(from), rocks(make_elasticities(scene)), state(initialise(scene, rocks)) {

@@ -160,7 +160,7 @@ TEST_CASE("total stress is the in-situ stress and plane strain's Hooke's law") {
 TEST_CASE("particles are written in the order of their id, and their number may change") {
   const TemporaryFolder folder;
   const Scene scene = made_scene();
-  const std::vector<Elasticity> rocks = make_elasticities(scene);
+  const Rocks rocks = make_elasticities(scene);
   const std::vector<State> states{made_state(), later_state()};
   const auto file = hdf5::open_file(result_of(folder, states));
   for (std::size_t k = 0; k < 2; ++k) {
