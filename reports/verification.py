@@ -17,7 +17,7 @@ from reports.shown import Shown
 from reports.words import counted
 
 # Modules of reports/ that fill parts of the page, in its order; one that is not there is left out.
-PARTS: tuple[str, ...] = ("ablation", "path_check", "refinement", "budget", "benchmarks")
+PARTS: tuple[str, ...] = ("measured", "ablation", "path_check", "refinement", "budget", "benchmarks")
 NAME = "verification.html"
 LADDER = Path("ladder") / "ladder.json"
 

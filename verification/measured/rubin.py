@@ -1,5 +1,6 @@
 """Rubin's fracture in a block of PMMA: a run read where and when the experiment was, and how far off each quantity is. No parameter is fitted."""
 
+import math
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -10,10 +11,13 @@ from verification.harness import store
 from verification.harness.load import Array, LoadError, Run, columns_of, frames
 
 HERE = Path(__file__).resolve().parent
-SCENE, DATA, RECORD = HERE / "rubin.toml", HERE / "data" / "rubin1983.csv", HERE / "records" / "rubin.json"
+SCENE, RECORD = HERE / "rubin.toml", HERE / "records" / "rubin.json"
+
+Course = tuple[Array, Array]  # times (s, the experiment's clock) and values (SI)
 
 START_S = 3.7  # the clock of the experiment at time 0 of a run: its first measurement, and the start of GEOS's run
 LATE_S = 15.0  # "late": from here on
+DEPTH_M = 0.055  # of the layer that breaks
 FLUID_AT_41_MM_S = 19.0  # gauge 57 rises from its reading without fluid after this
 
 # Quantities: the column of the data, the factor to SI, and from when on it is a measurement of the fluid or the fracture.
@@ -70,14 +74,14 @@ class Record:
 
 
 @cache
-def table() -> dict[str, Array]:
-    """The columns of the data as typed."""
-    lines = [line.split(",") for line in DATA.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")]
+def table(name: str = "rubin1983") -> dict[str, Array]:
+    """The columns of a file of data as typed."""
+    lines = [line.split(",") for line in (HERE / "data" / f"{name}.csv").read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
     return columns_of(lines[0], lines[1:])
 
 
-def measured(quantity: str) -> tuple[Array, Array]:
-    """Times (s, the experiment's clock) and values (SI) of a quantity where it was measured."""
+def measured(quantity: str) -> Course:
+    """A quantity where it was measured."""
     column, factor, from_s = COLUMNS[quantity]
     known = table()["t_s"] > from_s
     return table()["t_s"][known], factor * table()[column][known]
@@ -105,7 +109,7 @@ def variants() -> tuple[Variant, ...]:
     )
 
 
-def courses(run: Run, add_Pa: float = 0.0) -> dict[str, tuple[Array, Array]]:
+def courses(run: Run, add_Pa: float = 0.0) -> dict[str, Course]:
     """Each quantity of a run over the experiment's clock: times (s) and values (SI). Between two steps of growth the length is read along the line
     through what it was at each as the tip gave way: before the step. Raises LoadError for a run that does not grow."""
     time_s, tip_m = run.history["time_s"], run.history["tip_y_m"]
@@ -121,34 +125,52 @@ def courses(run: Run, add_Pa: float = 0.0) -> dict[str, tuple[Array, Array]]:
     return found
 
 
-def read(course: tuple[Array, Array], at: Array) -> Array:
+def read(course: Course, at: Array) -> Array:
     """A course where it is asked for, NaN beyond its ends; the times of a course rise."""
     return np.interp(at, *course, left=np.nan, right=np.nan)
 
 
-def errors_of(found: dict[str, tuple[Array, Array]]) -> tuple[dict[str, Errors], tuple[float, float]]:
+def late_error(course: Course, quantity: str) -> float:
+    """The mean relative error, without sign, of a quantity's course from 15 s on, where the run got so far."""
+    at, values = measured(quantity)
+    return float(np.nanmean(np.abs(read(course, at) / values - 1.0)[at >= LATE_S]))
+
+
+def errors_of(found: dict[str, Course]) -> tuple[dict[str, Errors], tuple[float, float]]:
     """The errors of each quantity and how much earlier the run is as long (s, least and most)."""
     times, lengths = measured(LENGTH)
     reached = read((found[LENGTH][1], found[LENGTH][0]), lengths)
-    early = (times - reached)[(times >= LATE_S) & np.isfinite(reached)]
+    early = (times - reached)[times >= LATE_S]
     errors = {}
-    for quantity in COLUMNS:
+    for quantity, course in found.items():
         at, values = measured(quantity)
-        off, alike = (np.abs(read(found[quantity], when) / values - 1.0) for when in (at, reached[-at.size :]))
-        late = (at >= LATE_S) & np.isfinite(off)
-        errors[quantity] = Errors(float(np.mean(off[late])), int(np.sum(late)), float(np.nanmean(off)),
-                                  float("nan") if quantity == LENGTH else float(np.nanmean(alike[at >= LATE_S])))  # fmt: skip
-    return errors, (float(early.min()), float(early.max()))
+        off, alike = (read(course, when) / values - 1.0 for when in (at, reached[-at.size :]))
+        same = math.nan if quantity == LENGTH else float(np.nanmean(np.abs(alike[at >= LATE_S])))
+        errors[quantity] = Errors(late_error(course, quantity), int(np.sum(np.isfinite(off) & (at >= LATE_S))), float(np.nanmean(np.abs(off))), same)
+    return errors, (float(np.nanmin(early)), float(np.nanmax(early)))
+
+
+def judged(name: str, says: str, found: dict[str, Course], cell_m: float, wall_s: float = math.nan, marks: tuple[str, ...] = ()) -> Result:
+    """The errors of courses, with what is drawn of them."""
+    errors, early = errors_of(found)
+    grid = np.arange(8.0, 70.0, 2.0)
+    curves = {quantity: tuple(map(float, read(found[quantity], grid))) for quantity in (LENGTH, WELL, OPENING)} | {"t_s": tuple(map(float, grid))}
+    return Result(name, says, cell_m, errors, early, marks, wall_s, curves)
 
 
 def result(variant: Variant, run: Run) -> Result:
     """What a variant's run gives."""
-    found = courses(run, variant.add_Pa)
-    errors, early = errors_of(found)
-    grid = np.arange(8.0, 70.0, 2.0)
-    curves = {name: tuple(map(float, read(found[name], grid))) for name in (LENGTH, WELL, OPENING)} | {"t_s": tuple(map(float, grid))}
     marks = tuple(mark.monitor for mark in run.summary.suspect)
-    return Result(variant.name, variant.says, float(run.scene["numerics"]["cell_m"]), errors, early, marks, run.summary.wall_s, curves)
+    return judged(variant.name, variant.says, courses(run, variant.add_Pa), float(run.scene["numerics"]["cell_m"]), run.summary.wall_s, marks)
+
+
+def geos() -> Result:
+    """What GEOS stores of its own run, read in the same way; its length is that of whole elements."""
+    stored = table("geos_model_results")
+    names = {WELL: "p_well_Pa", OPENING: "aperture_m", NEAR: "p_58_Pa", FAR: "p_57_Pa"}
+    at = stored["t_s"] + START_S
+    found = {LENGTH: (at, stored["area_m2"] / DEPTH_M)} | {quantity: (at, stored[name]) for quantity, name in names.items()}
+    return judged("GEOS", "its own stored run, 80 x 18 bricks on half the block", found, 0.1525 / 80)
 
 
 def kept() -> Record | None:
