@@ -23,7 +23,8 @@ ASKED = {rubin.LENGTH: 0.06, rubin.OPENING: 0.10}
 
 @pytest.mark.smoke
 def test_rubin_coarse() -> None:
-    """The run at 2 mm, also with its gauges from zero: length and opening within what is asked, all errors as recorded; a run of zero, twice and the flipped sign is neither."""
+    """The run at 2 mm, also with its gauges from zero: length and opening within what is asked, all errors as recorded, and the fall
+    from gauge to gauge, in which a common zero drops out, within 10 % from 30 s on; a run of zero, twice and the flipped sign is neither."""
     outcome, run = make(job("", COARSE_M, RUNS / "tests"))
     assert outcome.ok and run is not None, outcome.reason
     old = rubin.kept()
@@ -33,6 +34,9 @@ def test_rubin_coarse() -> None:
     found = own[0]
     assert [found.errors[name].values for name in rubin.COLUMNS] == [10, 10, 10, 10, 7]
     courses = rubin.courses(run)
+    (since, near), (_, far) = ((at[-6:], values[-6:]) for at, values in map(rubin.measured, (rubin.NEAR, rubin.FAR)))
+    fall = rubin.read(courses[rubin.NEAR], since) - rubin.read(courses[rubin.FAR], since)
+    assert since[0] > 30.0 and np.mean(np.abs(fall / (near - far) - 1.0)) < 0.1
     for name, (at, values) in courses.items():
         for times in (1.0, 0.0, 2.0, -1.0):
             late = rubin.late_error((at, times * values), name)
@@ -45,8 +49,8 @@ def test_the_record_is_whole() -> None:
     """Every variant at 2 mm, the plain run, also with its gauges from zero, at 1 mm: the two sizes agree to 1.5 %; within what is asked."""
     kept = rubin.kept()
     assert kept is not None
-    fine = [(one.name, FINE_M) for one in rubin.variants() if not one.scene]
-    assert [(one.name, one.cell_m) for one in kept.results] == [*((one.name, COARSE_M) for one in rubin.variants()), *fine]
+    wanted = [(one.name, COARSE_M) for one in rubin.variants()] + [(one.name, FINE_M) for one in rubin.variants() if not one.scene]
+    assert [(one.name, one.cell_m) for one in kept.results] == wanted
     for coarse, fine in zip(kept.results[:2], kept.results[-2:]):
         assert coarse.says == fine.says and all(one.errors[name].late <= bound for one in (coarse, fine) for name, bound in ASKED.items())
         assert all(abs(fine.errors[name].late - coarse.errors[name].late) < 0.015 for name in (rubin.LENGTH, rubin.OPENING, rubin.WELL))
