@@ -1,5 +1,8 @@
-// The declarations themselves, a function for each few tables of a scene.
+// The declarations themselves.
 #include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
 
 #include "scene/keys.hpp"
 
@@ -10,252 +13,244 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Bounds positive{0.0, infinity, true, true}, not_negative{0.0, infinity, false, true}, finite{};
 
 using Text = std::string_view;
+using Kind = Key::Kind;
 
-// `unit` as in messages and the table of keys, "" for none; `advice`: what to do where a value is out of bounds; `law`:
-// the interface law that the key belongs to.
-Key number(Text path, Place place, const char* unit, Bounds bounds, std::string help, Text advice = "", Text law = "") {
-  return {path, place, std::move(help), unit, bounds, {}, advice, false, law};
+constexpr Key number(Text path, Member member, Text unit, Bounds bounds, Text help, Text advice = "", Text law = "") {
+  return {Kind::number, path, member, help, unit, bounds, "", advice, law};
 }
 
-Key other(Text path, Place place, std::string help, const char* unit = "") {
-  return {path, place, std::move(help), unit};
-}
-
-Key integer(Text path, Place place, std::string help, std::vector<std::string> allowed) {
-  return {path, place, std::move(help), "", {}, std::move(allowed)};
+constexpr Key integer(Text path, Member member, Text help, Text allowed) {
+  return {.kind = Kind::integer, .path = path, .member = member, .help = help, .allowed = allowed};
 }
 
 // `offered`: the words that the key may take, in the order of help; empty for all of the enumeration.
-Key word(Text path, Place place, std::string help, Text offered = "", Text law = "") {
-  const Text words = offered.empty() ? std::get<WordWay>(place).words : offered;
-  return {path, place, std::move(help), "", {}, split(words, ", "), "", false, law};
+constexpr Key word(Text path, Member member, Text help, Text offered = "", Text law = "") {
+  return {Kind::word, path, member, help, "", {}, offered.empty() ? member.words : offered, "", law};
 }
 
-// Formulas of a vector's two components. `variables`: what they may use.
-Key formulas(Text path, Place place, const char* unit, std::vector<std::string> variables, std::string help) {
-  return {path, place, std::move(help), unit, {}, std::move(variables)};
+constexpr Key text(Text path, Member member, Text help) {
+  return {Kind::text, path, member, help};
 }
 
-Key fine_end(Text path, Place place, Text end) {
-  return number(path, place, "m", finite,
-                fmt::format("With far_cell_m, for a path that turns: {} at which the fine cells around it end. Left "
-                            "out: 10 cells from the initial fracture and its straight way.",
-                            end));
+// `write`: what to type.
+constexpr Key list(Text path, Member member, Text help, Text write, Text unit = "") {
+  return {Kind::list, path, member, help, unit, {}, "", write};
 }
 
-Key required(Key key) {
+// A formula, or those of a vector's two components. `variables`: what they may use.
+constexpr Key formula(Text path, Member member, Text unit, Text variables, Text help) {
+  return {Kind::formula, path, member, help, unit, {}, variables};
+}
+
+constexpr Key required(Key key) {
   key.required = true;
   return key;
 }
 
-std::vector<Key> heading_and_domain_keys() {
-  return {
-      other("title", at<&Scene::title>, "What the scene shows, in a line."),
-      other("resolved_from.scene", at<&Scene::name>,
-            "Name of the file that a resolved scene was made from; written by a run."),
-      other("resolved_from.variant", at<&Scene::variant>, "Variant that was chosen then; written by a run."),
-      required(number("domain.width_m", at<&Scene::domain, &Domain::width_m>, "m", positive,
-                      "Width of the block; the origin is its lower left corner.")),
-      required(number("domain.height_m", at<&Scene::domain, &Domain::height_m>, "m", positive, "Height of the block.",
-                      "y is counted upwards from the block's lower edge.")),
-      number("domain.beyond_m", at<&Scene::domain, &Domain::beyond_m>, "m", not_negative,
-             "How far the rock goes on beyond the block's edges, but not below a symmetry line, in cells that grow by "
-             "at most 1.5 each; what is said of the edges holds where the rock ends. 20 times the block stands for a "
-             "rock without end."),
-      word("domain.bottom", at<&Scene::domain, &Domain::bottom>,
-           "Lower edge: mirror line, or loaded by the in-situ traction.", "symmetry, traction"),
-      word("domain.sides", at<&Scene::domain, &Domain::sides>,
-           "Both sides: no further normal displacement once the in-situ state is on, or the in-situ traction.",
-           "fixed, traction"),
-      word("domain.top", at<&Scene::domain, &Domain::top>, "Upper edge, as for the sides.", "traction, fixed"),
-      number("in_situ.vertical_Pa", at<&Scene::in_situ, &InSitu::vertical_Pa>, "Pa", finite,
-             "Vertical stress before the fracture is loaded, positive in compression."),
-      number("in_situ.horizontal_Pa", at<&Scene::in_situ, &InSitu::horizontal_Pa>, "Pa", finite,
-             "Horizontal stress, positive in compression."),
-      word("in_situ.initialise", at<&Scene::in_situ, &InSitu::initialise>,
-           "The two stresses everywhere, or the static state of the bonded stack under them as edge tractions."),
-      formulas("body.acceleration_m_s2", at<&Scene::body, &Body::acceleration_m_s2>, "m/s^2", {"X", "Y", "t"},
-               "Body force per mass beyond what the in-situ state balances, [\"x component\", \"y component\"]: "
-               "formulas of the place X, Y (m) where a particle starts and the time t (s). Left out: none."),
-      formulas("initial.velocity_m_s", at<&Scene::initial, &Initial::velocity_m_s>, "m/s", {"X", "Y"},
-               "Velocity at time 0, explicit only: formulas as for body. Left out: at rest."),
-  };
-}
+// A layer's rock is found by its name when all names are known.
+constexpr Member layer_rock{nowhere<std::string>.read, [](Scene& scene, std::size_t k) {
+                              return text_of(scene, scene.rocks[scene.strata.layers[k].rock].name);
+                            }};
 
-std::vector<Key> rock_and_interface_keys() {
-  return {
-      required(number("rock.NAME.youngs_modulus_Pa", at<&Scene::rocks, &Rock::youngs_modulus_Pa>, "Pa", positive,
-                      "Young's modulus.")),
-      number("rock.NAME.poisson_ratio", at<&Scene::rocks, &Rock::poisson_ratio>, "", {0.0, 0.5, false, true},
-             "Poisson's ratio.", "In plane strain the stiffness is infinite at 0.5; 0.49 is nearly incompressible."),
-      number("rock.NAME.density_kg_m3", at<&Scene::rocks, &Rock::density_kg_m3>, "kg/m^3", positive, "Density."),
-      number("rock.NAME.toughness_Pa_sqrt_m", at<&Scene::rocks, &Rock::toughness_Pa_sqrt_m>, "Pa sqrt(m)", not_negative,
-             "Fracture toughness K_Ic; with 0 a fracture grows while J > 0."),
-      required(word("interface.NAME.law", at<&Scene::laws, &InterfaceLaw::kind>,
-                    "How the interface passes load; the interface named perfect needs no table.",
-                    "friction, weak, soft, perfect")),
-      number("interface.NAME.coefficient", at<&Scene::laws, &InterfaceLaw::coefficient>, "", not_negative,
-             "Coulomb coefficient.", "", "friction"),
-      number("interface.NAME.shear_strength_Pa", at<&Scene::laws, &InterfaceLaw::shear_strength_Pa>, "Pa", positive,
-             "Shear strength Sc; the interface fails for good where (S/Sc)^2 + (N/Nc)^2 reaches 1, N in tension only.",
-             "For an interface without strength use law = \"friction\".", "weak"),
-      number("interface.NAME.tensile_strength_Pa", at<&Scene::laws, &InterfaceLaw::tensile_strength_Pa>, "Pa", positive,
-             "Tensile strength Nc.", "For an interface without strength use law = \"friction\".", "weak"),
-      number("interface.NAME.residual_friction", at<&Scene::laws, &InterfaceLaw::residual_friction>, "", not_negative,
-             "Coulomb coefficient where it has failed.", "", "weak"),
-      number("interface.NAME.failure_length_m", at<&Scene::laws, &InterfaceLaw::failure_length_m>, "m", positive,
-             "Length of bonded interface over which the mean traction decides whether it fails or slips; by default "
-             "fracture.increment_m, without a fracture numerics.cell_m.",
-             "", "weak or friction"),
-      number("interface.NAME.normal_stiffness_Pa_m", at<&Scene::laws, &InterfaceLaw::normal_stiffness_Pa_m>, "Pa/m",
-             not_negative, "Normal traction by opening, D_n.", "", "soft"),
-      number("interface.NAME.shear_stiffness_Pa_m", at<&Scene::laws, &InterfaceLaw::shear_stiffness_Pa_m>, "Pa/m",
-             not_negative, "Shear traction by slip, D_t.", "", "soft"),
-      word("interface.NAME.compression", at<&Scene::laws, &InterfaceLaw::compression>,
-           "In compression: the faces meet, or the spring acts there too.", "", "soft"),
-      word("strata.along", at<&Scene::strata, &Strata::along>, "Layers stacked upwards, or from left to right.",
-           "y, x"),
-      required(other("strata.layers", at<&Scene::strata, &Strata::layers>,
-                     "The layers in that order: [{rock, thickness_m}, ..., {rock}].")),
-      required(other("strata.layers[].rock", Way<std::string>{}, "Name of a [rock.NAME] table.")),
-      number("strata.layers[].thickness_m", Way<double>{}, "m", positive,
-             "Thickness; the last layer may leave it out and takes what remains.",
-             "Layers are stacked upwards from the block's lower edge (along = \"x\": from its left)."),
-      other("strata.interfaces", at<&Scene::strata, &Strata::interfaces>,
-            "A name between each two layers, [interface.NAME] or perfect; each on a grid line or at mid-cell. Left "
-            "out: all perfect."),
-  };
-}
+// Layers end on grid lines or at mid-cell and are put back there when read, so a thickness needs no digits of
+// round-off. Until then the end of the layer holds its thickness.
+constexpr Member layer_thickness{
+    at<&Scene::strata, &Strata::layers, &Layer::to_m>.read, [](Scene& scene, std::size_t k) {
+      const Layer& layer = scene.strata.layers[k];
+      const double thickness = layer.to_m - layer.from_m;
+      const double rounded = std::strtod(fmt::format("{:.9g}", thickness).c_str(), nullptr);
+      const bool is_round = std::abs(rounded - thickness) < 1e-7 * scene.numerics.cell_m;
+      const bool is_last = k + 1 == scene.strata.layers.size();
+      return is_last ? std::string() : number_text(is_round ? rounded : thickness);
+    }};
 
-std::vector<Key> fracture_and_fluid_keys() {
-  return {
-      required(other("fracture.path_m", at<&Scene::fracture, &Fracture::path_m>,
-                     "Points of the initial fracture, [[x, y], ...]; one end on the symmetry line, or neither.", "m")),
-      word("fracture.growth", at<&Scene::fracture, &Fracture::growth>,
-           "Grow where J reaches J_c of the rock ahead, or never; energy: by the energy released over a finite "
-           "increment everywhere, as crossing does near interfaces.",
-           "J, none, energy"),
-      number("fracture.increment_m", at<&Scene::fracture, &Fracture::increment_m>, "m", positive,
-             "Length of a growth step.", "For no growth use growth = \"none\"."),
-      word("fracture.direction", at<&Scene::fracture, &Fracture::direction>,
-           "Ahead, or normal to the largest hoop stress by K_I and K_II."),
-      number("fracture.turn_share", at<&Scene::fracture, &Fracture::turn_share>, "1", {0.05, 1.0, false, false},
-             "Most of the kink of max_hoop that one increment turns by; less where it has fewer than 3 cells."),
-      word("fracture.crossing", at<&Scene::fracture, &Fracture::crossing>,
-           "The criterion where an interface is near the tip: J, or the energy released over crossing_increment_m and, "
-           "past an interface whose faces are apart, K."),
-      number("fracture.crossing_increment_m", at<&Scene::fracture, &Fracture::crossing_increment_m>, "m", positive,
-             "Length over which the energy of crossing is released; by default increment_m."),
-      word("fracture.order", at<&Scene::fracture, &Fracture::order>,
-           "What goes first where an interface fails and a tip grows at one load: interfaces, until nothing more "
-           "fails, or whichever is further beyond its strength (without inertia)."),
-      word("fracture.faces", at<&Scene::fracture, &Fracture::faces>,
-           "Where the fracture closes its faces meet, or they pass through each other as rock does not: to see what "
-           "contact is worth."),
-      word("fluid.law", at<&Scene::fluid, &Fluid::law>,
-           "Pressure diffusion along the fracture by eq. (3), the inlet's pressure everywhere in it, or lubrication "
-           "that conserves mass.",
-           "paper, uniform, reynolds"),
-      number("fluid.bulk_modulus_Pa", at<&Scene::fluid, &Fluid::bulk_modulus_Pa>, "Pa", positive, "Bulk modulus M."),
-      number("fluid.viscosity_Pa_s", at<&Scene::fluid, &Fluid::viscosity_Pa_s>, "Pa s", positive, "Dynamic viscosity.",
-             "For a fluid without viscosity use law = \"uniform\"."),
-      number("fluid.minimum_opening_m", at<&Scene::fluid, &Fluid::minimum_opening_m>, "m", not_negative,
-             "Least opening in the permeability w^2/12: what closed faces conduct."),
-      number("fluid.inlet.start_Pa", at<&Scene::fluid, &Fluid::start_Pa>, "Pa", not_negative,
-             "Inlet pressure at time 0, and of the initial fracture.", "Fluid pressure is positive in compression."),
-      number("fluid.inlet.rate_Pa_s", at<&Scene::fluid, &Fluid::rate_Pa_s>, "Pa/s", finite,
-             "Rise of the inlet pressure."),
-      number("fluid.inlet.rate_m2_s", at<&Scene::fluid, &Fluid::rate_m2_s>, "m^2/s", positive,
-             "Fluid fed into the whole fracture per metre out of plane, instead of a pressure; with symmetry at the "
-             "bottom the modelled half gets half of it."),
-      word("fluid.new_point", at<&Scene::fluid, &Fluid::new_point>,
-           "Pressure of a new fracture point: 0, or the former tip's."),
-      word("fluid.time_rule", at<&Scene::fluid, &Fluid::time_rule>, "Time integration of the flow."),
-      number("fluid.cavitation_Pa", at<&Scene::fluid, &Fluid::cavitation_Pa>, "Pa", not_negative,
-             "Absolute lower bound of the fluid pressure under law = \"reynolds\"."),
-  };
-}
-
-std::vector<Key> numerics_keys() {
-  return {
-      word("numerics.mechanics", at<&Scene::numerics, &Numerics::mechanics>,
-           "How the rock is solved: with inertia, or without."),
-      required(number("numerics.cell_m", at<&Scene::numerics, &Numerics::cell_m>, "m", positive,
-                      "Side of a square cell; divides width and height of the block.")),
-      number("numerics.far_cell_m", at<&Scene::numerics, &Numerics::far_cell_m>, "m", positive,
-             "Side of the cells far away: cells are of cell_m within 10 of them around the initial fracture and its "
-             "straight way up to stop.tip_y_m, and within 4 of them around interfaces and borders of rocks elsewhere; "
-             "then coarser by at most 1.2 a cell. Left out: uniform."),
-      fine_end("numerics.fine_left_m", at<&Scene::numerics, &Numerics::fine_left_m>, "lowest x"),
-      fine_end("numerics.fine_right_m", at<&Scene::numerics, &Numerics::fine_right_m>, "largest x"),
-      fine_end("numerics.fine_bottom_m", at<&Scene::numerics, &Numerics::fine_bottom_m>, "lowest y"),
-      fine_end("numerics.fine_top_m", at<&Scene::numerics, &Numerics::fine_top_m>, "largest y"),
-      integer("numerics.particles_per_cell", at<&Scene::numerics, &Numerics::particles_per_cell>,
-              "Particles in each cell, a square of them.", {"4", "9", "16"}),
-      word("numerics.shape", at<&Scene::numerics, &Numerics::shape>,
-           "Shape functions: quadratic B-spline, linear, or generalised interpolation (uGIMP)."),
-      word("numerics.transfer", at<&Scene::numerics, &Numerics::transfer>,
-           "Velocity from the grid back to particles. Under kinematics = \"total\" nodes keep their velocities: "
-           "nothing is transferred, and all choices are the same."),
-      word("numerics.kinematics", at<&Scene::numerics, &Numerics::kinematics>,
-           "Particles move and weights are computed again, or all stays in its reference place between growth events."),
-      word("numerics.kernels", at<&Scene::numerics, &Numerics::kernels>,
-           "How an explicit step is computed: by its fast loops, or by plain ones over particles to check them "
-           "against; results differ by round-off."),
-      number("numerics.courant", at<&Scene::numerics, &Numerics::courant>, "", {0.0, 2.0, true, false},
-             "Time step as c_P dt / cell_m.",
-             "Steps are stable up to 0.65 to 1.2 by shape and transfer, uGIMP beside loaded edges up to 0.48; a run "
-             "that becomes unstable ends and says so."),
-      number("numerics.damping_1_s", at<&Scene::numerics, &Numerics::damping_1_s>, "1/s", not_negative,
-             "Damping of velocity: a = f/m - damping v."),
-      integer("numerics.tip_steps", at<&Scene::numerics, &Numerics::tip_steps>,
-              "Explicit only: steps from one look at the tips, by which they may grow, to the next. A P wave takes "
-              "2/courant steps from the tip to half of a ring of 4 cells; J and K of every row of the history are of "
-              "its own time.",
-              {"1", "2", "3", "4", "5", "6", "7", "8"}),
-      number(
-          "numerics.ring_cells", at<&Scene::numerics, &Numerics::ring_cells>, "cells", {2.5, 8.0, false, false},
-          "Outer radius of the widest of three rings around a tip, by which J and K are measured; edges, interfaces "
-          "and the other tip may leave less.",
-          "A smaller ring holds little but the tip's own error, a larger one leaves the fine cells of a graded grid."),
-      number("numerics.flow_change", at<&Scene::numerics, &Numerics::flow_change>, "", {0.0, 1.0, true, false},
-             "Quasi-static only: change of the nearest event's margin (1: the event) aimed at in a step of a flow that "
-             "takes time; steps that change it by twice as much are tried again with half the length."),
-      number("numerics.flow_error", at<&Scene::numerics, &Numerics::flow_error>, "", {0.0, 1.0, true, false},
-             "Quasi-static, error aimed at in a step of the flow: under fluid.law = \"reynolds\" of the largest "
-             "opening, under \"paper\" half of what the mean of the openings at both ends would have changed of any "
-             "pressure, over the largest net one. Steps with four times as much are tried again with half the length."),
-  };
-}
-
-std::vector<Key> run_keys() {
-  return {
-      number("stop.tip_y_m", at<&Scene::stop, &Stop::tip_y_m>, "m", positive, "Ends the run when a tip is as high.",
-             "y is counted upwards from the block's lower edge."),
-      number("stop.inlet_Pa", at<&Scene::stop, &Stop::inlet_Pa>, "Pa", finite,
-             "Ends the run when the inlet pressure is as high."),
-      number("stop.time_s", at<&Scene::stop, &Stop::time_s>, "s", not_negative,
-             "Ends the run at this time; 0, quasi-static only: one equilibrium at the start pressure."),
-      number("output.fields_every_s", at<&Scene::output, &Output::fields_every_s>, "s", positive,
-             "Time between stored fields; by default 1/50 of the run, or where no time or pressure ends it 0.02 s, "
-             "from 0.2 s on a "
-             "tenth of the time so far."),
-      required(other("claim[].id", Way<std::string>{}, "Name of the claim; further keys are the harness's.")),
-      required(other("claim[].text", Way<std::string>{}, "The claim in words.")),
-      required(other("claim[].observable", Way<std::string>{}, "What of a run it is judged by.")),
-  };
-}
+constexpr Key keys[] = {
+    text("title", at<&Scene::title>, "What the scene shows, in a line."),
+    text("resolved_from.scene", at<&Scene::name>,
+         "Name of the file that a resolved scene was made from; written by a run."),
+    text("resolved_from.variant", at<&Scene::variant>, "Variant that was chosen then; written by a run."),
+    required(number("domain.width_m", at<&Scene::domain, &Domain::width_m>, "m", positive,
+                    "Width of the block; the origin is its lower left corner.")),
+    required(number("domain.height_m", at<&Scene::domain, &Domain::height_m>, "m", positive, "Height of the block.",
+                    "y is counted upwards from the block's lower edge.")),
+    number("domain.beyond_m", at<&Scene::domain, &Domain::beyond_m>, "m", not_negative,
+           "How far the rock goes on beyond the block's edges, but not below a symmetry line, in cells that grow by "
+           "at most 1.5 each; what is said of the edges holds where the rock ends. 20 times the block stands for a "
+           "rock without end."),
+    word("domain.bottom", at<&Scene::domain, &Domain::bottom>,
+         "Lower edge: mirror line, or loaded by the in-situ traction.", "symmetry, traction"),
+    word("domain.sides", at<&Scene::domain, &Domain::sides>,
+         "Both sides: no further normal displacement once the in-situ state is on, or the in-situ traction.",
+         "fixed, traction"),
+    word("domain.top", at<&Scene::domain, &Domain::top>, "Upper edge, as for the sides.", "traction, fixed"),
+    number("in_situ.vertical_Pa", at<&Scene::in_situ, &InSitu::vertical_Pa>, "Pa", finite,
+           "Vertical stress before the fracture is loaded, positive in compression."),
+    number("in_situ.horizontal_Pa", at<&Scene::in_situ, &InSitu::horizontal_Pa>, "Pa", finite,
+           "Horizontal stress, positive in compression."),
+    word("in_situ.initialise", at<&Scene::in_situ, &InSitu::initialise>,
+         "The two stresses everywhere, or the static state of the bonded stack under them as edge tractions."),
+    formula("body.acceleration_m_s2", at<&Scene::body, &Body::acceleration_m_s2>, "m/s^2", "X, Y, t",
+            "Body force per mass beyond what the in-situ state balances, [\"x component\", \"y component\"]: "
+            "formulas of the place X, Y (m) where a particle starts and the time t (s). Left out: none."),
+    formula("initial.velocity_m_s", at<&Scene::initial, &Initial::velocity_m_s>, "m/s", "X, Y",
+            "Velocity at time 0, explicit only: formulas as for body. Left out: at rest."),
+    required(number("rock.NAME.youngs_modulus_Pa", at<&Scene::rocks, &Rock::youngs_modulus_Pa>, "Pa", positive,
+                    "Young's modulus.")),
+    number("rock.NAME.poisson_ratio", at<&Scene::rocks, &Rock::poisson_ratio>, "", {0.0, 0.5, false, true},
+           "Poisson's ratio.", "In plane strain the stiffness is infinite at 0.5; 0.49 is nearly incompressible."),
+    number("rock.NAME.density_kg_m3", at<&Scene::rocks, &Rock::density_kg_m3>, "kg/m^3", positive, "Density."),
+    number("rock.NAME.toughness_Pa_sqrt_m", at<&Scene::rocks, &Rock::toughness_Pa_sqrt_m>, "Pa sqrt(m)", not_negative,
+           "Fracture toughness K_Ic; with 0 a fracture grows while J > 0."),
+    required(word("interface.NAME.law", at<&Scene::laws, &InterfaceLaw::kind>,
+                  "How the interface passes load; the interface named perfect needs no table.",
+                  "friction, weak, soft, perfect")),
+    number("interface.NAME.coefficient", at<&Scene::laws, &InterfaceLaw::coefficient>, "", not_negative,
+           "Coulomb coefficient.", "", "friction"),
+    number("interface.NAME.shear_strength_Pa", at<&Scene::laws, &InterfaceLaw::shear_strength_Pa>, "Pa", positive,
+           "Shear strength Sc; the interface fails for good where (S/Sc)^2 + (N/Nc)^2 reaches 1, N in tension only.",
+           "For an interface without strength use law = \"friction\".", "weak"),
+    number("interface.NAME.tensile_strength_Pa", at<&Scene::laws, &InterfaceLaw::tensile_strength_Pa>, "Pa", positive,
+           "Tensile strength Nc.", "For an interface without strength use law = \"friction\".", "weak"),
+    number("interface.NAME.residual_friction", at<&Scene::laws, &InterfaceLaw::residual_friction>, "", not_negative,
+           "Coulomb coefficient where it has failed.", "", "weak"),
+    number("interface.NAME.failure_length_m", at<&Scene::laws, &InterfaceLaw::failure_length_m>, "m", positive,
+           "Length of bonded interface over which the mean traction decides whether it fails or slips; by default "
+           "fracture.increment_m, without a fracture numerics.cell_m.",
+           "", "weak or friction"),
+    number("interface.NAME.normal_stiffness_Pa_m", at<&Scene::laws, &InterfaceLaw::normal_stiffness_Pa_m>, "Pa/m",
+           not_negative, "Normal traction by opening, D_n.", "", "soft"),
+    number("interface.NAME.shear_stiffness_Pa_m", at<&Scene::laws, &InterfaceLaw::shear_stiffness_Pa_m>, "Pa/m",
+           not_negative, "Shear traction by slip, D_t.", "", "soft"),
+    word("interface.NAME.compression", at<&Scene::laws, &InterfaceLaw::compression>,
+         "In compression: the faces meet, or the spring acts there too.", "", "soft"),
+    word("strata.along", at<&Scene::strata, &Strata::along>, "Layers stacked upwards, or from left to right.", "y, x"),
+    required(list("strata.layers", at<&Scene::strata, &Strata::layers>,
+                  "The layers in that order: [{rock, thickness_m}, ..., {rock}].",
+                  "Write [{rock = \"NAME\", thickness_m = 10}, ..., {rock = \"NAME\"}].")),
+    required(text("strata.layers[].rock", layer_rock, "Name of a [rock.NAME] table.")),
+    number("strata.layers[].thickness_m", layer_thickness, "m", positive,
+           "Thickness; the last layer may leave it out and takes what remains.",
+           "Layers are stacked upwards from the block's lower edge (along = \"x\": from its left)."),
+    list("strata.interfaces", at<&Scene::strata, &Strata::interfaces>,
+         "A name between each two layers, [interface.NAME] or perfect; each on a grid line or at mid-cell. Left "
+         "out: all perfect.",
+         "Write [\"NAME\", ...]."),
+    required(list("fracture.path_m", at<&Scene::fracture, &Fracture::path_m>,
+                  "Points of the initial fracture, [[x, y], ...]; one end on the symmetry line, or neither.",
+                  "Write [[x, y], [x, y]] with decimal points: a scene has one fracture.", "m")),
+    word("fracture.growth", at<&Scene::fracture, &Fracture::growth>,
+         "Grow where J reaches J_c of the rock ahead, or never; energy: by the energy released over a finite "
+         "increment everywhere, as crossing does near interfaces.",
+         "J, none, energy"),
+    number("fracture.increment_m", at<&Scene::fracture, &Fracture::increment_m>, "m", positive,
+           "Length of a growth step.", "For no growth use growth = \"none\"."),
+    word("fracture.direction", at<&Scene::fracture, &Fracture::direction>,
+         "Ahead, or normal to the largest hoop stress by K_I and K_II."),
+    number("fracture.turn_share", at<&Scene::fracture, &Fracture::turn_share>, "1", {0.05, 1.0, false, false},
+           "Most of the kink of max_hoop that one increment turns by; less where it has fewer than 3 cells."),
+    word("fracture.crossing", at<&Scene::fracture, &Fracture::crossing>,
+         "The criterion where an interface is near the tip: J, or the energy released over crossing_increment_m and, "
+         "past an interface whose faces are apart, K."),
+    number("fracture.crossing_increment_m", at<&Scene::fracture, &Fracture::crossing_increment_m>, "m", positive,
+           "Length over which the energy of crossing is released; by default increment_m."),
+    word("fracture.order", at<&Scene::fracture, &Fracture::order>,
+         "What goes first where an interface fails and a tip grows at one load: interfaces, until nothing more "
+         "fails, or whichever is further beyond its strength (without inertia)."),
+    word("fracture.faces", at<&Scene::fracture, &Fracture::faces>,
+         "Where the fracture closes its faces meet, or they pass through each other as rock does not: to see what "
+         "contact is worth."),
+    word("fluid.law", at<&Scene::fluid, &Fluid::law>,
+         "Pressure diffusion along the fracture by eq. (3), the inlet's pressure everywhere in it, or lubrication "
+         "that conserves mass.",
+         "paper, uniform, reynolds"),
+    number("fluid.bulk_modulus_Pa", at<&Scene::fluid, &Fluid::bulk_modulus_Pa>, "Pa", positive, "Bulk modulus M."),
+    number("fluid.viscosity_Pa_s", at<&Scene::fluid, &Fluid::viscosity_Pa_s>, "Pa s", positive, "Dynamic viscosity.",
+           "For a fluid without viscosity use law = \"uniform\"."),
+    number("fluid.minimum_opening_m", at<&Scene::fluid, &Fluid::minimum_opening_m>, "m", not_negative,
+           "Least opening in the permeability w^2/12: what closed faces conduct."),
+    number("fluid.inlet.start_Pa", at<&Scene::fluid, &Fluid::start_Pa>, "Pa", not_negative,
+           "Inlet pressure at time 0, and of the initial fracture.", "Fluid pressure is positive in compression."),
+    number("fluid.inlet.rate_Pa_s", at<&Scene::fluid, &Fluid::rate_Pa_s>, "Pa/s", finite,
+           "Rise of the inlet pressure."),
+    number("fluid.inlet.rate_m2_s", at<&Scene::fluid, &Fluid::rate_m2_s>, "m^2/s", positive,
+           "Fluid fed into the whole fracture per metre out of plane, instead of a pressure; with symmetry at the "
+           "bottom the modelled half gets half of it."),
+    word("fluid.new_point", at<&Scene::fluid, &Fluid::new_point>,
+         "Pressure of a new fracture point: 0, or the former tip's."),
+    word("fluid.time_rule", at<&Scene::fluid, &Fluid::time_rule>, "Time integration of the flow."),
+    number("fluid.cavitation_Pa", at<&Scene::fluid, &Fluid::cavitation_Pa>, "Pa", not_negative,
+           "Absolute lower bound of the fluid pressure under law = \"reynolds\"."),
+    word("numerics.mechanics", at<&Scene::numerics, &Numerics::mechanics>,
+         "How the rock is solved: with inertia, or without."),
+    required(number("numerics.cell_m", at<&Scene::numerics, &Numerics::cell_m>, "m", positive,
+                    "Side of a square cell; divides width and height of the block.")),
+    number("numerics.far_cell_m", at<&Scene::numerics, &Numerics::far_cell_m>, "m", positive,
+           "Side of the cells far away: cells are of cell_m within 10 of them around the initial fracture and its "
+           "straight way up to stop.tip_y_m, and within 4 of them around interfaces and borders of rocks elsewhere; "
+           "then coarser by at most 1.2 a cell. Left out: uniform."),
+    number("numerics.fine_left_m", at<&Scene::numerics, &Numerics::fine_left_m>, "m", finite,
+           "With far_cell_m, for a path that turns: lowest x at which the fine cells around it end. Left out: 10 cells "
+           "from the initial fracture and its straight way."),
+    number("numerics.fine_right_m", at<&Scene::numerics, &Numerics::fine_right_m>, "m", finite,
+           "With far_cell_m, for a path that turns: largest x at which the fine cells around it end. Left out: 10 "
+           "cells from the initial fracture and its straight way."),
+    number("numerics.fine_bottom_m", at<&Scene::numerics, &Numerics::fine_bottom_m>, "m", finite,
+           "With far_cell_m, for a path that turns: lowest y at which the fine cells around it end. Left out: 10 cells "
+           "from the initial fracture and its straight way."),
+    number("numerics.fine_top_m", at<&Scene::numerics, &Numerics::fine_top_m>, "m", finite,
+           "With far_cell_m, for a path that turns: largest y at which the fine cells around it end. Left out: 10 "
+           "cells from the initial fracture and its straight way."),
+    integer("numerics.particles_per_cell", at<&Scene::numerics, &Numerics::particles_per_cell>,
+            "Particles in each cell, a square of them.", "4, 9, 16"),
+    word("numerics.shape", at<&Scene::numerics, &Numerics::shape>,
+         "Shape functions: quadratic B-spline, linear, or generalised interpolation (uGIMP)."),
+    word("numerics.transfer", at<&Scene::numerics, &Numerics::transfer>,
+         "Velocity from the grid back to particles. Under kinematics = \"total\" nodes keep their velocities: "
+         "nothing is transferred, and all choices are the same."),
+    word("numerics.kinematics", at<&Scene::numerics, &Numerics::kinematics>,
+         "Particles move and weights are computed again, or all stays in its reference place between growth events."),
+    word("numerics.kernels", at<&Scene::numerics, &Numerics::kernels>,
+         "How an explicit step is computed: by its fast loops, or by plain ones over particles to check them "
+         "against; results differ by round-off."),
+    number("numerics.courant", at<&Scene::numerics, &Numerics::courant>, "", {0.0, 2.0, true, false},
+           "Time step as c_P dt / cell_m.",
+           "Steps are stable up to 0.65 to 1.2 by shape and transfer, uGIMP beside loaded edges up to 0.48; a run "
+           "that becomes unstable ends and says so."),
+    number("numerics.damping_1_s", at<&Scene::numerics, &Numerics::damping_1_s>, "1/s", not_negative,
+           "Damping of velocity: a = f/m - damping v."),
+    integer("numerics.tip_steps", at<&Scene::numerics, &Numerics::tip_steps>,
+            "Explicit only: steps from one look at the tips, by which they may grow, to the next. A P wave takes "
+            "2/courant steps from the tip to half of a ring of 4 cells; J and K of every row of the history are of "
+            "its own time.",
+            "1, 2, 3, 4, 5, 6, 7, 8"),
+    number("numerics.ring_cells", at<&Scene::numerics, &Numerics::ring_cells>, "cells", {2.5, 8.0, false, false},
+           "Outer radius of the widest of three rings around a tip, by which J and K are measured; edges, interfaces "
+           "and the other tip may leave less.",
+           "A smaller ring holds little but the tip's own error, a larger one leaves the fine cells of a graded grid."),
+    number("numerics.flow_change", at<&Scene::numerics, &Numerics::flow_change>, "", {0.0, 1.0, true, false},
+           "Quasi-static only: change of the nearest event's margin (1: the event) aimed at in a step of a flow that "
+           "takes time; steps that change it by twice as much are tried again with half the length."),
+    number("numerics.flow_error", at<&Scene::numerics, &Numerics::flow_error>, "", {0.0, 1.0, true, false},
+           "Quasi-static, error aimed at in a step of the flow: under fluid.law = \"reynolds\" of the largest "
+           "opening, under \"paper\" half of what the mean of the openings at both ends would have changed of any "
+           "pressure, over the largest net one. Steps with four times as much are tried again with half the length."),
+    number("stop.tip_y_m", at<&Scene::stop, &Stop::tip_y_m>, "m", positive, "Ends the run when a tip is as high.",
+           "y is counted upwards from the block's lower edge."),
+    number("stop.inlet_Pa", at<&Scene::stop, &Stop::inlet_Pa>, "Pa", finite,
+           "Ends the run when the inlet pressure is as high."),
+    number("stop.time_s", at<&Scene::stop, &Stop::time_s>, "s", not_negative,
+           "Ends the run at this time; 0, quasi-static only: one equilibrium at the start pressure."),
+    number("output.fields_every_s", at<&Scene::output, &Output::fields_every_s>, "s", positive,
+           "Time between stored fields; by default 1/50 of the run, or where no time or pressure ends it 0.02 s, "
+           "from 0.2 s on a tenth of the time so far."),
+    required(text("claim[].id", nowhere<std::string>, "Name of the claim; further keys are the harness's.")),
+    required(text("claim[].text", nowhere<std::string>, "The claim in words.")),
+    required(text("claim[].observable", nowhere<std::string>, "What of a run it is judged by.")),
+};
 
 }  // namespace
 
-const std::vector<Key>& scene_keys() {
-  static const std::vector<Key> keys = [] {
-    std::vector<Key> all;
-    for (auto list :
-         {heading_and_domain_keys, rock_and_interface_keys, fracture_and_fluid_keys, numerics_keys, run_keys})
-      for (Key& key : list()) all.push_back(std::move(key));
-    return all;
-  }();
+std::span<const Key> scene_keys() {
   return keys;
 }
 

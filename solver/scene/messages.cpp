@@ -1,10 +1,13 @@
 #include "scene/messages.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <set>
 #include <tuple>
+#include <utility>
 
 namespace strata {
 namespace {
@@ -28,24 +31,6 @@ std::string with_visible_controls(std::string_view text) {
     out += code < 0x20 || code == 0x7f ? fmt::format("\\u{:04X}", code) : std::string(1, c);
   }
   return out;
-}
-
-// Every message is of one line that a screen holds, however long the keys and values in it are.
-std::string bounded(std::string_view text) {
-  constexpr std::size_t longest_word = 100, longest_text = 1000;
-  constexpr std::string_view marks = ".,:;";  // behind a word
-  std::string out;
-  while (!text.empty()) {
-    const std::string_view word = text.substr(0, text.find(' '));
-    const std::size_t end = word.find_last_not_of(marks) + 1;
-    out += shortened(word.substr(0, end), longest_word);
-    out += word.substr(end);
-    text.remove_prefix(word.size());
-    const std::size_t next = std::min(text.find_first_not_of(' '), text.size());
-    out += text.substr(0, next);
-    text.remove_prefix(next);
-  }
-  return shortened(with_visible_controls(out), longest_text);
 }
 
 }  // namespace
@@ -96,15 +81,15 @@ std::string shortened(std::string_view text, std::size_t longest) {
   return fmt::format("{}...{} ({} characters)", text.substr(0, head), text.substr(tail), letters);
 }
 
-std::string_view trimmed(std::string_view text, std::string_view also_behind) {
+std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r");
   if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r" + std::string(also_behind)) + 1 - first);
+  return text.substr(first, text.find_last_not_of(" \t\r") + 1 - first);
 }
 
-bool is_plain_name(std::string_view name) {
-  return !name.empty() && std::ranges::all_of(name, [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+bool is_plain_name(std::string_view name, std::string_view also) {
+  return !name.empty() && std::ranges::all_of(name, [&](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || also.find(c) != also.npos;
   });
 }
 
@@ -124,17 +109,17 @@ std::string number_text(double value) {
   return text;
 }
 
-std::vector<std::string> as_lines(const Faults& faults) {
-  std::vector<Fault> sorted = faults.list;
-  std::ranges::stable_sort(sorted, [](const Fault& a, const Fault& b) {
-    const bool a_set = a.where.line == 0, b_set = b.where.line == 0;  // what the command line gave comes last
-    return std::tie(a_set, a.where.line, a.where.column) < std::tie(b_set, b.where.line, b.where.column);
+std::vector<std::string> as_lines(std::vector<Fault> faults) {
+  std::ranges::stable_sort(faults, {}, [](const Fault& f) {
+    return std::tuple(f.where.line == 0, f.where.line, f.where.column);  // what the command line gave comes last
   });
   std::vector<std::string> lines;
   std::set<std::string> seen;
-  for (const Fault& fault : sorted) {
-    const bool from_file = fault.where.rank < 2;  // whose name is needed whole
-    std::string line = (from_file ? fault.where.text : bounded(fault.where.text)) + ": " + bounded(fault.text);
+  for (const auto& [where, text] : faults) {
+    const std::string place = where.line == 0 ? "" : fmt::format(":{}:{}", where.line, where.column);
+    const std::size_t longest = where.rank < 2 ? where.source.npos : 200;  // a file's name is needed whole
+    const std::string source = shortened(with_visible_controls(where.source), longest);
+    std::string line = source + place + ": " + shortened(with_visible_controls(text), 1000);
     if (seen.insert(line).second) lines.push_back(std::move(line));
   }
   return lines;

@@ -5,109 +5,170 @@
 #include <algorithm>
 #include <fstream>
 #include <memory>
+#include <set>
 #include <sstream>
 #include <utility>
 
 #include "scene/derived.hpp"
-#include "scene/entries.hpp"
-#include "scene/scene_checks.hpp"
-#include "scene/syntax.hpp"
+#include "scene/reading.hpp"
 
 namespace strata {
 namespace {
 
-// A file's text, or why there is none.
-struct FileText {
-  std::string text;
-  std::string error;
+// A file's text; why there is none goes to `errors`.
+std::string text_of_file(const std::filesystem::path& file, std::vector<std::string>& errors) {
+  std::error_code code;
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  const char* error = !std::filesystem::exists(file, code)        ? "there is no such file. Check the path."
+                      : std::filesystem::is_directory(file, code) ? "this is a folder. Give the path of a scene file."
+                      : !in                                       ? "the file cannot be read. Check its permissions."
+                                                                  : nullptr;
+  if (error != nullptr) {
+    errors.push_back(shortened(file.string(), 1000) + ": " + error);
+    return {};
+  }
+  text << in.rdbuf();
+  return text.str();
+}
+
+// The parser goes from each name of a key into the next, and would run out of stack.
+void refuse_deep_keys(std::string_view text) {
+  constexpr int most_dots = 1000;  // of several 10,000 that it takes
+  toml::source_position at{1, 1};
+  int dots = 0;
+  for (const char c : text) {
+    if (std::string_view("\n[]{},=#").find(c) != std::string_view::npos) dots = 0;
+    if (c == '\n') ++at.line;
+    if (c == '.' && ++dots > most_dots)
+      throw toml::parse_error("a key of more than a thousand names", {at, at, nullptr});
+  }
+}
+
+toml::table parse(std::string_view text) {
+  refuse_deep_keys(text);
+  return toml::parse(text);
+}
+
+struct Parsed {
+  toml::table table;
+  std::set<unsigned> mended;  // lines that are no TOML, with nan for the value, so that the rest could be read
+  bool whole = true;          // whether all lines could be read so
 };
 
-FileText file_text(const std::filesystem::path& file) {
-  const std::string name = shortened(file.string(), 1000);
-  std::error_code code;
-  if (!std::filesystem::exists(file, code)) return {"", name + ": there is no such file. Check the path."};
-  if (std::filesystem::is_directory(file, code))
-    return {"", name + ": this is a folder. Give the path of a scene file."};
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return {"", name + ": the file cannot be read. Check its permissions."};
-  std::ostringstream text;
-  text << in.rdbuf();
-  return {text.str(), ""};
+// A line "key = what is no TOML" as TOML; nothing where it is another, or does not end what it begins.
+std::optional<std::string> mended(std::string_view line) {
+  const std::string_view key = trimmed(line.substr(0, line.find('=')));
+  const auto count = [&](char c) { return std::ranges::count(line, c); };
+  if (key.size() == line.size() || !is_plain_name(key, ".") || count('[') != count(']') || count('{') != count('}'))
+    return std::nullopt;
+  return fmt::format("{} = nan", key);
+}
+
+Parsed parse_toml(std::string_view text, const Where& source, std::vector<Fault>& faults) {
+  constexpr std::size_t most_lines = 50;  // each asks for the text to be parsed anew
+  Parsed parsed;
+  std::vector<std::string> lines = split(text, "\n");
+  while (true) {
+    try {
+      parsed.table = parse(fmt::format("{}", fmt::join(lines, "\n")));
+      return parsed;
+    } catch (const toml::parse_error& error) {
+      const unsigned number = error.source().begin.line;
+      lines.resize(std::max<std::size_t>(lines.size(), number));  // the end of the text is behind its last line
+      std::string& line = lines[number - 1];
+      parsed.whole = parsed.mended.insert(number).second;  // else what is wrong with the line begins above
+      if (!parsed.whole) return parsed;
+      faults.push_back({where_of(source, error.source()),
+                        fmt::format("this is not TOML: {}: {}. Write key = value: text in quotes, lists in [ ], "
+                                    "numbers with a decimal point and no unit, which stands in the key.",
+                                    shortened(trimmed(line), 60), error.description())});
+      const auto as_toml = mended(line);
+      parsed.whole = as_toml && parsed.mended.size() < most_lines;
+      if (!parsed.whole) return parsed;
+      line = *as_toml;
+    }
+  }
 }
 
 struct Variant {
   std::string name;
   Where where;
-  Entries entries;
+  const toml::table* table;
 };
 
-bool is_folder_name(std::string_view name) {
-  constexpr std::size_t longest = 100;  // systems take 255
-  return !name.empty() && name.size() <= longest && name[0] != '.' && std::ranges::all_of(name, [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
-           std::string_view("_-.+").find(c) != std::string_view::npos;
-  });
-}
-
-// All variants of the scene in the order of the file; what is wrong with them, chosen or not, goes to `faults`.
-std::vector<Variant> read_variants(const toml::table& root, const std::string& file_name, Faults& faults) {
+// All variants of the scene in the order of the file.
+std::vector<Variant> variants_of(const toml::table& root, const std::string& file_name, std::vector<Fault>& faults) {
   std::vector<Variant> variants;
-  const Origin origin{file_name, 1};
+  const Where source{file_name, 1};
   const toml::node* node = root.get("variants");
   if (node == nullptr) return variants;
   if (!node->is_table()) {
-    faults.add(where_of(origin, node->source()), "variants is not a table. Write [variants.NAME] above each.");
+    faults.push_back({where_of(source, node->source()), "variants is not a table. Write [variants.NAME] above each."});
     return variants;
   }
-  for (const auto& [name, value] : *node->as_table()) {
-    Variant variant{std::string(name.str()), where_of(origin, name.source()), {}};
-    if (!is_folder_name(variant.name)) {
-      faults.add(variant.where, fmt::format("variants.\"{}\": a variant names a folder, so it is made of letters, "
-                                            "digits, _ - + and a dot that is not the first, at most 100 of them.",
-                                            variant.name));
+  constexpr std::size_t longest = 100;  // of a folder's name systems take 255
+  for (const auto& [key, value] : *node->as_table()) {
+    const std::string name(key.str());
+    const Where where = where_of(source, key.source());
+    if (!is_plain_name(name, ".+") || name[0] == '.' || name.size() > longest) {
+      faults.push_back({where, fmt::format("variants.\"{}\": a variant names a folder, so it is made of letters, "
+                                           "digits, _ - + and a dot that is not the first, at most {} of them.",
+                                           name, longest)});
     } else if (!value.is_table()) {
-      faults.add(variant.where,
-                 fmt::format("variants.{} = {} is not a table. Write [variants.{}] and below it the keys it replaces.",
-                             variant.name, as_typed(value), variant.name));
+      faults.push_back({where, fmt::format("variants.{0} = {1} is not a table. Write [variants.{0}] and below it the "
+                                           "keys it replaces.",
+                                           name, as_typed(value))});
     } else {
-      flatten(*value.as_table(), "", origin, variant.entries, faults);
-      variants.push_back(std::move(variant));
+      variants.push_back({name, where, value.as_table()});
     }
   }
   std::ranges::stable_sort(variants, {}, [](const Variant& v) { return std::pair(v.where.line, v.where.column); });
   return variants;
 }
 
-// Reads one "key.path=value" into `entries`; the parsed value is put into `tables`, which must live as long.
-void read_setting(const std::string& setting, std::vector<std::unique_ptr<toml::table>>& tables, Entries& entries,
-                  Faults& faults) {
-  const Origin origin{"--set " + setting, 2};
-  const Where where{origin.name, 0, 0, 2};
+// The chosen variant replaces keys of the scene; what is wrong with the others is a fault too.
+void take_variants(Reading& reading, const std::vector<Variant>& variants, const std::string& chosen,
+                   const std::string& file_name) {
+  const Reading scene = reading;
+  std::vector<std::string> names;
+  for (const auto& [name, where, table] : variants) {
+    names.push_back(name);
+    Reading other = scene;
+    other.faults.clear();
+    take_table(name == chosen ? reading : other, *table, "", where);
+    reading.faults.insert(reading.faults.end(), other.faults.begin(), other.faults.end());
+  }
+  if (chosen.empty() || std::ranges::find(names, chosen) != names.end()) return;
+  reading.fault({file_name}, "there is no variant {}. It has {}.{}", chosen,
+                names.empty() ? "no variants" : fmt::format("{}", fmt::join(names, ", ")), did_you_mean(chosen, names));
+}
+
+// Takes up one "key.path=value"; the table that holds the value must live as long as the reading.
+std::unique_ptr<toml::table> take_setting(Reading& reading, const std::string& setting) {
+  const Where where{"--set " + setting, 2};
+  auto table = std::make_unique<toml::table>();
   const std::size_t equals = setting.find('=');
   const std::string path(trimmed(std::string_view(setting).substr(0, equals)));
   if (equals == std::string::npos || path.empty()) {
-    faults.add(where, "this is not key.path=value.");
-    return;
+    reading.fault(where, "this is not key.path=value.");
+    return table;
   }
   const std::string value(trimmed(std::string_view(setting).substr(equals + 1)));
-  Faults of_syntax;
-  toml::table table = parse_toml("value = " + value, origin, of_syntax).table;
-  if (!of_syntax.list.empty() && is_plain_name(value)) {
-    table = toml::table{{"value", value}};
-  } else if (!of_syntax.list.empty() || table.size() != 1) {
-    std::string advice = advice_on_value(value, find_key(path));
-    for (const Fault& fault : of_syntax.list) {
-      const std::size_t end = fault.text.find("this is not TOML. ");
-      if (advice.empty() && end != std::string::npos) advice = ' ' + fault.text.substr(end == 0 ? 18 : 0);
-    }
-    if (advice.empty() || advice.find("Text stands in quotes") != std::string::npos)
-      advice = " Text in a list or with spaces needs quotes: '[\"weak\"]'.";
-    faults.add(where, fmt::format("{} is neither TOML nor a bare word.{}",
-                                  value.empty() ? "an empty value" : shortened(value, 60), advice));
-    return;
+  try {
+    *table = parse("value = " + value);
+  } catch (const toml::parse_error&) {
+    if (is_plain_name(value)) table->insert("value", value);
   }
-  tables.push_back(std::make_unique<toml::table>(std::move(table)));
-  flatten_value(path, *tables.back()->get("value"), where, origin, entries, faults);
+  if (table->size() == 1) {
+    take_value(reading, path, *table->get("value"), where);
+  } else {
+    reading.fault(where,
+                  "{} is neither TOML nor a bare word. Text in a list or with spaces needs quotes, '[\"weak\"]'; a "
+                  "number has a decimal point and no unit, which stands in the key.",
+                  value.empty() ? "an empty value" : shortened(value, 60));
+  }
+  return table;
 }
 
 // The [[claim]] tables as they will stand in the resolved scene.
@@ -128,49 +189,29 @@ void start_at_symmetry_line(Scene& scene) {
   if (path_m.back()[1] == 0.0 && path_m.front()[1] != 0.0) std::ranges::reverse(path_m);
 }
 
-void lay_variant(const std::string& name, const std::vector<Variant>& variants, const std::string& file_name,
-                 Entries& entries, Faults& faults) {
-  if (name.empty()) return;
-  const auto chosen = std::ranges::find(variants, name, &Variant::name);
-  if (chosen != variants.end()) {
-    lay_over(entries, chosen->entries);
-    return;
-  }
-  std::vector<std::string> names;
-  names.reserve(variants.size());
-  for (const Variant& variant : variants) names.push_back(variant.name);
-  const std::string known = names.empty() ? "It has no variants." : fmt::format("It has {}.", fmt::join(names, ", "));
-  faults.add({file_name}, fmt::format("there is no variant {}. {}{}", name, known, did_you_mean(name, names)));
-}
-
 }  // namespace
 
 ReadResult read_scene_text(std::string_view text, const std::string& file_name, const std::string& variant,
                            const std::vector<std::string>& set) {
-  const Origin origin{file_name, 0};
-  Faults of_syntax;
-  const Parsed parsed = parse_toml(text, origin, of_syntax);
+  const Where source{file_name};
+  std::vector<Fault> of_syntax;
+  const Parsed parsed = parse_toml(text, source, of_syntax);
   if (!parsed.whole) return {std::nullopt, as_lines(of_syntax)};
-  Faults faults;
-  Entries entries;
-  entries.at[""].where = {file_name + ":1:1", 1, 1, 0};
-  flatten(parsed.table, "", origin, entries, faults);
-  if (const toml::node* claims = parsed.table.get("claim")) check_claims(*claims, origin, faults);
-  lay_variant(variant, read_variants(parsed.table, file_name, faults), file_name, entries, faults);
-  std::vector<std::unique_ptr<toml::table>> tables;
-  for (const std::string& setting : set) {
-    Entries above;
-    read_setting(setting, tables, above, faults);
-    lay_over(entries, above);
-  }
-  Scene scene = build_scene(entries, faults);
+  Reading reading;
+  reading.entries[""].where = {file_name, 0, 1, 1};
+  take_table(reading, parsed.table, "", source);
+  take_variants(reading, variants_of(parsed.table, file_name, reading.faults), variant, file_name);
+  std::vector<std::unique_ptr<toml::table>> settings;
+  for (const std::string& setting : set) settings.push_back(take_setting(reading, setting));
+  build_scene(reading);
+  Scene& scene = reading.scene;
   if (scene.name.empty()) scene.name = std::filesystem::path(file_name).stem().string();
   if (!variant.empty()) scene.variant = variant;
-  check_scene({scene, entries, faults});
+  check_scene(reading);
   // Of a line that is no TOML enough has been said.
-  std::erase_if(faults.list, [&](const Fault& fault) { return parsed.mended.contains(fault.where.line); });
-  faults.list.insert(faults.list.end(), of_syntax.list.begin(), of_syntax.list.end());
-  if (!faults.list.empty()) return {std::nullopt, as_lines(faults)};
+  std::erase_if(reading.faults, [&](const Fault& fault) { return parsed.mended.contains(fault.where.line); });
+  reading.faults.insert(reading.faults.end(), of_syntax.begin(), of_syntax.end());
+  if (!reading.faults.empty()) return {std::nullopt, as_lines(reading.faults)};
   start_at_symmetry_line(scene);
   scene.resolved_toml = resolved_toml(scene, claims_text(parsed.table));
   return {std::move(scene), {}};
@@ -178,24 +219,24 @@ ReadResult read_scene_text(std::string_view text, const std::string& file_name, 
 
 ReadResult read_scene(const std::filesystem::path& file, const std::string& variant,
                       const std::vector<std::string>& set) {
-  const FileText read = file_text(file);
-  if (!read.error.empty()) return {std::nullopt, {read.error}};
-  return read_scene_text(read.text, file.string(), variant, set);
+  ReadResult result;
+  const std::string text = text_of_file(file, result.errors);
+  return result.errors.empty() ? read_scene_text(text, file.string(), variant, set) : result;
 }
 
 VariantList list_variants_text(std::string_view text, const std::string& file_name) {
-  Faults faults;
-  const Parsed parsed = parse_toml(text, {file_name, 0}, faults);
-  if (!faults.list.empty()) return {{}, as_lines(faults)};
+  std::vector<Fault> faults;
+  const Parsed parsed = parse_toml(text, {file_name}, faults);
+  if (!faults.empty()) return {{}, as_lines(faults)};
   VariantList list;
-  for (const Variant& variant : read_variants(parsed.table, file_name, faults)) list.names.push_back(variant.name);
+  for (const Variant& variant : variants_of(parsed.table, file_name, faults)) list.names.push_back(variant.name);
   return list;
 }
 
 VariantList list_variants(const std::filesystem::path& file) {
-  const FileText read = file_text(file);
-  if (!read.error.empty()) return {{}, {read.error}};
-  return list_variants_text(read.text, file.string());
+  VariantList list;
+  const std::string text = text_of_file(file, list.errors);
+  return list.errors.empty() ? list_variants_text(text, file.string()) : list;
 }
 
 ReadResult read_scene_that_fits(const std::filesystem::path& file, const std::string& variant,

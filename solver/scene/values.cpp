@@ -1,240 +1,174 @@
-// Is a value one that its key may take, and what a scene holds for it: by the type of the member that the key leads to.
+// Values of keys: from TOML to the member that a key leads to, and back.
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <sstream>
 
-#include "scene/entries.hpp"
 #include "scene/formula.hpp"
-#include "scene/syntax.hpp"
+#include "scene/reading.hpp"
 
 namespace strata {
 namespace {
 
-// A value, or an element of one, and the path that messages have for it.
-struct Value {
-  std::string path;
-  const Key& key;
-  const toml::node& node;
-  const Origin& origin;
-  Where where;
-  Faults& faults;
-
-  std::string typed() const { return path + " = " + as_typed(node); }
-
-  bool refuse(const std::string& text) const {
-    faults.add(where, typed() + text);
-    return false;
-  }
-
-  Value element(std::size_t k, const toml::node& element) const {
-    return {fmt::format("{}[{}]", path, k), key, element, origin, where_of(origin, element.source()), faults};
-  }
-
-  // Whether all elements of the list pass.
-  template <class Check>
-  bool all(const Check& check) const {
-    bool sound = true;
-    const toml::array& list = *node.as_array();
-    for (std::size_t k = 0; k < list.size(); ++k) sound = check(element(k, list[k])) && sound;
-    return sound;
-  }
-};
-
-bool check_number(const Value& v, const Bounds& bounds) {
-  if (!v.node.is_number()) {
-    const auto* text = v.node.as_string();
-    const auto typed = text != nullptr ? advice_on_number(text->get(), &v.key.unit) : std::nullopt;
-    const std::string usual = text != nullptr ? " Write a number without quotes." : " Write a number.";
-    return v.refuse(fmt::format(" is not a number.{}{}", typed.value_or(usual),
-                                v.path.starts_with("in_situ.") ? note_on_table(v.path) : ""));
-  }
-  const double number = as_number(v.node);
-  if (!std::isfinite(number)) return v.refuse(" is not finite. Write a finite number.");
-  if (bounds.contain(number)) return true;
-  return v.refuse(fmt::format(" is outside {}.{}{}", to_text(bounds), v.key.advice.empty() ? "" : " ", v.key.advice));
+bool refuse(const Value& v, std::string_view text) {
+  v.faults.push_back({v.where, fmt::format("{} = {} is {}", v.path, as_typed(v.node), text)});
+  return false;
 }
 
-bool check_text(const Value& v) {
-  return v.node.is_string() || v.refuse(" is not text. Put it in quotes.");
+bool refuse_list(const Value& v, std::string_view is_not) {
+  return refuse(v, fmt::format("not {}. {}", is_not, v.key.advice));
 }
 
-bool check_integer(const Value& v) {
-  const auto* integer = v.node.as_integer();
-  const auto& allowed = v.key.allowed;
-  if (integer != nullptr && std::ranges::find(allowed, std::to_string(integer->get())) != allowed.end()) return true;
-  return v.refuse(fmt::format(" is not allowed. Use one of {}.", fmt::join(allowed, ", ")));
+// The list that a value is, if it has `size` elements.
+const toml::array* list_of(const Value& v, std::size_t size) {
+  const toml::array* list = v.node.as_array();
+  return list != nullptr && list->size() == size ? list : nullptr;
 }
 
-bool check_word(const Value& v) {
-  const auto& allowed = v.key.allowed;
-  const auto* text = v.node.as_string();
-  if (text != nullptr && std::ranges::find(allowed, text->get()) != allowed.end()) return true;
-  return v.refuse(fmt::format(" is not {}. Use one of \"{}\".{}", text == nullptr ? "a word" : "allowed",
-                              fmt::join(allowed, "\", \""), text == nullptr ? "" : did_you_mean(text->get(), allowed)));
-}
-
-bool check_layer(const Value& v, bool is_last) {
-  const toml::table* layer = v.node.as_table();
-  if (layer == nullptr) return v.refuse(" is not a layer. Write {rock = \"NAME\", thickness_m = 10}.");
+// Whether all elements of a list pass.
+bool all(const Value& v, const auto& check) {
   bool sound = true;
-  const auto refuse = [&](const Where& where, const std::string& text) {
-    v.faults.add(where, text);
-    sound = false;
-  };
-  for (const auto& [name, value] : *layer) {
-    const std::string text(name.str()), path = v.path + '.' + text;
-    const Where where = where_of(v.origin, name.source());
-    const Key* key = find_key("strata.layers[]." + text);
-    if (key == nullptr) {
-      refuse(where, fmt::format("unknown key {}. A layer has rock and thickness_m.{}{}", path,
-                                did_you_mean(text, names_in_table("strata.layers[]")), advice_on_absent_key(path)));
-    } else {
-      sound = check_value(path, {key, &value, v.origin, where}, v.faults) && sound;
-    }
+  for (std::size_t k = 0; k < v.node.as_array()->size(); ++k) {
+    const toml::node& node = (*v.node.as_array())[k];
+    const Value element{fmt::format("{}[{}]", v.path, k), v.key, node, where_of(v.where, node.source()), v.faults};
+    sound = check(element, k) && sound;
   }
-  if (!layer->contains("rock")) refuse(v.where, v.path + " has no rock. Name a [rock.NAME] table.");
-  if (!is_last && !layer->contains("thickness_m"))
-    refuse(v.where, v.path + " has no thickness_m. Only the last layer may leave it out.");
   return sound;
 }
 
-bool check_layers(const Value& v) {
-  const toml::array* layers = v.node.as_array();
-  if (layers == nullptr || layers->empty()) {
-    return v.refuse(" is not a list of layers. Write [{rock = \"NAME\", thickness_m = 10}, ..., {rock = \"NAME\"}].");
+bool read_number(const Value& v, const Bounds& bounds, double& member) {
+  if (!v.node.is_number()) {
+    const std::string unit = v.key.unit.empty() ? "." : fmt::format(", in {}: the unit stands in the key.", v.key.unit);
+    return refuse(v, "not a number. Write a number without quotes" + unit);
   }
-  return v.all([&](const Value& layer) { return check_layer(layer, &layer.node == &layers->back()); });
+  member = as_number(v.node);
+  if (!std::isfinite(member)) return refuse(v, "not finite. Write a finite number.");
+  const char* space = v.key.advice.empty() ? "" : " ";
+  return bounds.contain(member) || refuse(v, fmt::format("outside {}.{}{}", to_text(bounds), space, v.key.advice));
 }
-
-bool check_names(const Value& v) {
-  if (!v.node.is_array()) return v.refuse(" is not a list of names. Write [\"NAME\", ...].");
-  return v.all([](const Value& name) {
-    if (name.node.is_string()) return true;
-    const bool table = name.node.is_table();
-    return name.refuse(std::string(" is not a name. Write \"NAME\".") +
-                       (table ? " In this version an interface has one law from edge to edge." : ""));
-  });
-}
-
-bool check_point(const Value& v) {
-  const toml::array* point = v.node.as_array();
-  if (point == nullptr || point->size() != 2) {
-    const bool longer = point != nullptr && point->size() > 2;
-    return v.refuse(std::string(" is not a point. Write [x, y]") +
-                    (longer ? ": two numbers, whose decimal sign is a point." : "."));
-  }
-  return v.all([&](Value coordinate) {
-    coordinate.where = v.where;
-    return check_number(coordinate, {});  // inside the block: checked where the block is known
-  });
-}
-
-bool check_points(const Value& v) {
-  const std::string write = " Write [[x, y], [x, y]].";
-  const toml::array* points = v.node.as_array();
-  if (points == nullptr) return v.refuse(" is not a list of points." + write);
-  const auto lines = std::ranges::count_if(*points, [](const toml::node& node) {
-    const toml::array* line = node.as_array();
-    return line != nullptr && !line->empty() && line->front().is_array();
-  });
-  if (lines > 1) {
-    return v.refuse(
-        fmt::format(" has {} lines of points, but a scene has one fracture. Write one line, [[x, y], [x, y]].", lines));
-  }
-  if (lines == 1) return v.refuse(" has brackets too many. Write one line of points, [[x, y], [x, y]].");
-  if (!points->empty() && points->is_homogeneous() && points->front().is_number())
-    return v.refuse(" has no brackets around its points." + write);
-  if (points->size() < 2) return v.refuse(" has fewer than 2 points." + write);
-  return v.all(check_point);
-}
-
-bool check_formulas(const Value& v) {
-  const toml::array* both = v.node.as_array();
-  if (both == nullptr || both->size() != 2)
-    return v.refuse(" is not a pair of formulas. Write [\"x component\", \"y component\"].");
-  return v.all([](const Value& formula) {
-    if (formula.node.is_number()) return check_number(formula, {});
-    if (!formula.node.is_string()) return formula.refuse(" is not a formula. Put it in quotes.");
-    const auto wrong = fault_in_formula(formula.node.as_string()->get(), formula.key.allowed);
-    return !wrong || formula.refuse(": " + *wrong);
-  });
-}
-
-// A check for each type of member.
-struct Check {
-  const Value& v;
-  bool operator()(Way<double>) const { return check_number(v, v.key.bounds); }
-  bool operator()(Way<std::optional<double>>) const { return check_number(v, v.key.bounds); }
-  bool operator()(Way<int>) const { return check_integer(v); }
-  bool operator()(const WordWay&) const { return check_word(v); }
-  bool operator()(Way<std::string>) const { return check_text(v); }
-  bool operator()(Way<std::optional<Formulas>>) const { return check_formulas(v); }
-  bool operator()(Way<std::vector<Layer>>) const { return check_layers(v); }
-  bool operator()(Way<std::vector<InterfacePlace>>) const { return check_names(v); }
-  bool operator()(Way<Path>) const { return check_points(v); }
-};
 
 // A number stands for the formula that is it.
-std::string formula_text(const toml::node& node) {
-  return node.is_string() ? node.as_string()->get() : number_text(as_number(node));
+bool read_formula(const Value& v, std::string& member) {
+  if (v.node.is_number()) {
+    double number = 0.0;
+    const bool sound = read_number(v, {}, number);
+    member = number_text(number);
+    return sound;
+  }
+  if (!v.node.is_string()) return refuse(v, "not a formula. Put it in quotes.");
+  member = v.node.as_string()->get();
+  const auto wrong = fault_in_formula(member, split(v.key.allowed, ", "));
+  return !wrong || refuse(v, "not a formula: " + *wrong);
 }
 
-// And what is written.
-struct Apply {
-  const Given& given;
-  std::size_t index;
-  Scene& scene;
-  void operator()(Way<double> at) const { at(scene, index) = as_number(*given.value); }
-  void operator()(Way<std::optional<double>> at) const { at(scene, index) = as_number(*given.value); }
-  void operator()(Way<int> at) const { at(scene, index) = static_cast<int>(given.value->as_integer()->get()); }
-  void operator()(const WordWay& at) const {
-    const auto words = split(at.words, ", ");
-    const auto word = std::ranges::find(words, given.value->as_string()->get());
-    at.set(scene, index, static_cast<int>(word - words.begin()));
-  }
-  void operator()(Way<std::string> at) const { at(scene, index) = given.value->as_string()->get(); }
-  void operator()(Way<std::optional<Formulas>> at) const {
-    const toml::array& both = *given.value->as_array();
-    at(scene, index) = Formulas{formula_text(both[0]), formula_text(both[1])};
-  }
-  void operator()(Way<Path> at) const {
-    for (const toml::node& node : *given.value->as_array()) {
-      const toml::array& point = *node.as_array();
-      at(scene, index).push_back({as_number(point[0]), as_number(point[1])});
-    }
-  }
-  void operator()(Way<std::vector<Layer>>) const {}
-  void operator()(Way<std::vector<InterfacePlace>>) const {}
-};
+std::string list_text(Scene& scene, const auto& values) {
+  std::vector<std::string> texts;
+  for (const auto& value : values) texts.push_back(text_of(scene, value));
+  return fmt::format("[{}]", fmt::join(texts, ", "));
+}
 
 }  // namespace
 
-bool check_value(const std::string& path, const Given& given, Faults& faults) {
-  return std::visit(Check{{path, *given.key, *given.value, given.origin, given.where, faults}}, given.key->place);
+double as_number(const toml::node& number) {
+  return number.is_integer() ? static_cast<double>(number.as_integer()->get()) : number.as_floating_point()->get();
 }
 
-void apply_value(const Given& given, std::size_t index, Scene& scene) {
-  if (given.sound) std::visit(Apply{given, index, scene}, given.key->place);
+bool read(const Value& v, double& member) {
+  return read_number(v, v.key.bounds, member);
 }
 
-void check_claims(const toml::node& claims, const Origin& origin, Faults& faults) {
-  const toml::array* list = claims.as_array();
-  if (list == nullptr || !list->is_homogeneous(toml::node_type::table)) {
-    faults.add(where_of(origin, claims.source()), "claim is not a list of tables. Write [[claim]] above each.");
-    return;
+bool read(const Value& v, int& member) {
+  const auto* integer = v.node.as_integer();
+  const auto allowed = split(v.key.allowed, ", ");
+  if (integer == nullptr || std::ranges::find(allowed, std::to_string(integer->get())) == allowed.end())
+    return refuse(v, fmt::format("not allowed. Use one of {}.", v.key.allowed));
+  member = static_cast<int>(integer->get());
+  return true;
+}
+
+bool read_word(const Value& v, std::string_view words, int& member) {
+  const auto allowed = split(v.key.allowed, ", "), all_words = split(words, ", ");
+  const auto* text = v.node.as_string();
+  if (text == nullptr || std::ranges::find(allowed, text->get()) == allowed.end()) {
+    return refuse(v,
+                  fmt::format("not {}. Use one of \"{}\".{}", text == nullptr ? "a word" : "allowed",
+                              fmt::join(allowed, "\", \""), text == nullptr ? "" : did_you_mean(text->get(), allowed)));
   }
-  for (std::size_t k = 0; k < list->size(); ++k) {
-    const toml::table& claim = *(*list)[k].as_table();
-    for (const std::string& name : names_in_table("claim[]")) {
-      const auto found = claim.find(name);
-      if (found == claim.end()) {
-        faults.add(where_of(origin, claim.source()), "claim[{}] has no {}.", k, name);
-      } else {
-        check_value(fmt::format("claim[{}].{}", k, name),
-                    {find_key("claim[]." + name), &found->second, origin, where_of(origin, found->first.source())},
-                    faults);
-      }
-    }
-  }
+  member = static_cast<int>(std::ranges::find(all_words, text->get()) - all_words.begin());
+  return true;
+}
+
+bool read(const Value& v, std::string& member) {
+  if (v.key.kind == Key::Kind::formula) return read_formula(v, member);
+  if (!v.node.is_string()) return refuse(v, "not text. Put it in quotes.");
+  member = v.node.as_string()->get();
+  return true;
+}
+
+bool read(const Value& v, Formulas& member) {
+  if (list_of(v, 2) == nullptr) return refuse(v, "not a pair of formulas. Write [\"x component\", \"y component\"].");
+  return all(v, [&](const Value& formula, std::size_t k) { return read(formula, member[k]); });
+}
+
+bool read(const Value& v, Path& member) {
+  const toml::array* pairs = v.node.as_array();
+  if (pairs == nullptr || pairs->size() < 2) return refuse_list(v, "a list of at least two points");
+  member.resize(pairs->size());
+  return all(v, [&](const Value& pair, std::size_t k) {
+    const toml::array* both = list_of(pair, 2);
+    if (both == nullptr || both->front().is_array()) return refuse_list(pair, "a pair of numbers");
+    return all(pair, [&](const Value& x, std::size_t axis) { return read_number(x, {}, member[k][axis]); });
+  });
+}
+
+bool read(const Value& v, std::vector<Layer>& member) {
+  const toml::array* tables = v.node.as_array();
+  if (tables == nullptr || tables->empty()) return refuse_list(v, "a list of tables");
+  member.assign(tables->size(), {});
+  return all(v, [](const Value& layer, std::size_t) { return layer.node.is_table() || refuse_list(layer, "a table"); });
+}
+
+bool read(const Value& v, std::vector<InterfacePlace>& member) {
+  if (!v.node.is_array()) return refuse_list(v, "a list of names");
+  member.assign(v.node.as_array()->size(), {});
+  return all(v, [](const Value& name, std::size_t) { return name.node.is_string() || refuse_list(name, "a name"); });
+}
+
+std::string text_of(Scene&, double member) {
+  return number_text(member);
+}
+
+std::string text_of(Scene&, int member) {
+  return std::to_string(member);
+}
+
+std::string text_of(Scene&, const std::string& member) {
+  std::ostringstream out;
+  out << toml::toml_formatter{toml::value<std::string>(member), toml::format_flags::allow_unicode_strings};
+  return out.str();
+}
+
+std::string text_of(Scene& scene, const Formulas& member) {
+  return list_text(scene, member);
+}
+
+std::string text_of(Scene& scene, const Path& member) {
+  std::vector<std::string> points;
+  for (const auto& point : member) points.push_back(list_text(scene, point));
+  return fmt::format("[{}]", fmt::join(points, ", "));
+}
+
+std::string text_of(Scene& scene, const std::vector<InterfacePlace>& member) {
+  std::vector<std::string> names;
+  for (const InterfacePlace& place : member) names.push_back(scene.laws[place.law].name);
+  return list_text(scene, names);
+}
+
+std::string text_of(Scene& scene, const std::vector<Layer>& member) {
+  std::string text = "[\n";
+  for (std::size_t k = 0; k < member.size(); ++k)
+    text += fmt::format("  {{{}}},\n", fmt::join(lines_of("strata.layers[].", scene, k), ", "));
+  return text + "]";
 }
 
 }  // namespace strata

@@ -97,9 +97,10 @@ TEST_CASE("Formulas of a scene are read, numbers among them, and resolved") {
 TEST_CASE("Faults of formulas are scene errors with their places, all in one pass") {
   const std::string text =
       errors(block("[body]\nacceleration_m_s2 = [\"sin(x)\", \"Y +\"]\n[initial]\nvelocity_m_s = [\"t\", true]\n"));
-  CHECK_THAT(text, Catch::Contains(":22: body.acceleration_m_s2[0] = \"sin(x)\": there is no x at character 5"));
-  CHECK_THAT(text, Catch::Contains("body.acceleration_m_s2[1] = \"Y +\": "));
-  CHECK_THAT(text, Catch::Contains("initial.velocity_m_s[0] = \"t\": there is no t at character 1"));
+  CHECK_THAT(text, Catch::Contains(
+                       ":22: body.acceleration_m_s2[0] = \"sin(x)\" is not a formula: there is no x at character 5"));
+  CHECK_THAT(text, Catch::Contains("body.acceleration_m_s2[1] = \"Y +\" is not a formula: "));
+  CHECK_THAT(text, Catch::Contains("initial.velocity_m_s[0] = \"t\" is not a formula: there is no t at character 1"));
   CHECK_THAT(text, Catch::Contains("initial.velocity_m_s[1] = true is not a formula. Put it in quotes."));
   CHECK_THAT(errors(block("[body]\nacceleration_m_s2 = \"X\"\n")), Catch::Contains("is not a pair of formulas"));
   CHECK_THAT(errors(block("[body]\nacceleration_m_s2 = [\"X\"]\n")), Catch::Contains("is not a pair of formulas"));

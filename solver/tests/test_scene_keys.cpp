@@ -12,34 +12,37 @@
 
 using namespace strata;
 
-TEST_CASE("Every key is declared once, has help, and leads somewhere or says why not") {
+TEST_CASE("Every key is declared once, has help, and says what it takes") {
   std::set<std::string_view> paths;
   for (const Key& key : scene_keys()) {
     CAPTURE(key.path);
     CHECK(paths.insert(key.path).second);
     CHECK_FALSE(key.help.empty());
-    if (key.is_number()) CHECK(key.bounds.low < key.bounds.high);
-    if (key.is<WordWay>() || key.is<Way<int>>()) CHECK_FALSE(key.allowed.empty());
-    const bool leads = std::visit(
-        [](const auto& way) {
-          if constexpr (std::is_same_v<decltype(way), const WordWay&>) return way.get != nullptr;
-          if constexpr (!std::is_same_v<decltype(way), const WordWay&>) return way != nullptr;
-        },
-        key.place);
-    CHECK(leads != key.in_list());
+    CHECK(key.bounds.low < key.bounds.high);
+    const bool chooses = key.kind == Key::Kind::word || key.kind == Key::Kind::integer;
+    if (chooses || key.kind == Key::Kind::formula) CHECK_FALSE(key.allowed.empty());
+    if (key.kind == Key::Kind::list) CHECK_FALSE(key.advice.empty());
+    CHECK((key.member.read != nullptr && key.member.text != nullptr));
   }
 }
+
+namespace {
+
+bool among(const std::string& word, std::string_view words) {
+  const auto all = split(words, ", ");
+  return std::ranges::find(all, word) != all.end();
+}
+
+}  // namespace
 
 TEST_CASE("Every default is one that its key allows") {
   for (const Key& key : scene_keys()) {
     const std::string text = default_text(key);
     CAPTURE(key.path, text);
     if (text.empty()) continue;
-    if (key.is_number()) CHECK(key.bounds.contain(std::stod(text)));
-    if (key.is<Way<int>>()) CHECK(std::ranges::find(key.allowed, text) != key.allowed.end());
-    if (key.is<WordWay>()) {
-      CHECK(std::ranges::find(key.allowed, text.substr(1, text.size() - 2)) != key.allowed.end());
-    }
+    if (key.kind == Key::Kind::number) CHECK(key.bounds.contain(std::stod(text)));
+    if (key.kind == Key::Kind::integer) CHECK(among(text, key.allowed));
+    if (key.kind == Key::Kind::word) CHECK(among(text.substr(1, text.size() - 2), key.allowed));
   }
 }
 
@@ -53,11 +56,10 @@ TEST_CASE("Bounds are open or closed at each end by itself") {
 // Requires each key's words to be among those of its enumeration, so that what is typed is what is set.
 TEST_CASE("Words that are offered are those of the member") {
   for (const Key& key : scene_keys()) {
-    const auto* way = std::get_if<WordWay>(&key.place);
-    if (way == nullptr) continue;
-    const auto words = split(way->words, ", ");
     CAPTURE(key.path);
-    for (const std::string& word : key.allowed) CHECK(std::ranges::find(words, word) != words.end());
+    CHECK((key.kind == Key::Kind::word) == !key.member.words.empty());
+    if (key.kind != Key::Kind::word) continue;
+    for (const std::string& word : split(key.allowed, ", ")) CHECK(among(word, key.member.words));
   }
   CHECK(word_of(Fluid::TimeRule::backward_euler) == "backward-euler");
   CHECK(word_of(Numerics::Mechanics::explicit_dynamics) == "explicit");
@@ -73,10 +75,14 @@ TEST_CASE("Defaults are those of the scene") {
 
 TEST_CASE("A path finds its key with any name in the place of NAME") {
   CHECK(find_key("rock.stiff.poisson_ratio")->path == "rock.NAME.poisson_ratio");
+  CHECK(find_key("strata.layers[12].rock")->path == "strata.layers[].rock");
   CHECK(find_key("rock.stiff") == nullptr);
   CHECK(find_key("rock.stiff.poisson") == nullptr);
   CHECK(is_key_table("rock.stiff"));
   CHECK(is_key_table("fluid.inlet"));
+  CHECK(is_key_table("strata.layers[0]"));
+  CHECK_FALSE(is_key_table("strata.layers"));
+  CHECK_FALSE(is_key_table("rock.a[0]"));
   CHECK_FALSE(is_key_table("fluid.law"));
   CHECK_FALSE(is_key_table("fluids"));
 }

@@ -73,7 +73,7 @@ TEST_CASE("Sums of thicknesses land on the grid without round-off") {
 TEST_CASE("The last thickness may be given if it adds up") {
   CHECK(good(with(layered, "{rock = \"soft\"}", "{rock = \"soft\", thickness_m = 70}")).strata.layers[1].to_m == 80.0);
   CHECK_THAT(errors(with(layered, "{rock = \"soft\"}", "{rock = \"soft\", thickness_m = 71}")),
-             Catch::Contains("scene.toml:17:47: strata.layers add up to 81.0 m, but the block has 80.0 m."));
+             Catch::Contains("scene.toml:17:47: strata.layers add up to 81 m, but the block has 80 m."));
 }
 
 TEST_CASE("Integers are numbers, whatever the size; other types are not") {

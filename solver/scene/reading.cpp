@@ -1,0 +1,122 @@
+#include "scene/reading.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+namespace strata {
+namespace {
+
+// Whether a name in rock.NAME or interface.NAME may be used.
+bool check_table_name(Reading& reading, const std::string& path, const Where& where) {
+  const std::vector<std::string> segments = split(path, ".");
+  if (segments.size() < 2 || (segments[0] != "rock" && segments[0] != "interface")) return true;
+  constexpr std::size_t longest = 64;  // so that it can be read in messages and figures
+  if (!is_plain_name(segments[1]) || segments[1].size() > longest) {
+    reading.fault(where, "{}: a name is made of letters, digits, _ and -, at most {} of them.", path, longest);
+  } else if (segments[0] == "interface" && segments[1] == "perfect") {
+    reading.fault(where, "interface.perfect: the name perfect is taken; a perfect interface needs no table.");
+  } else {
+    return true;
+  }
+  return false;
+}
+
+// Elements of a list have each a place; those that are tables give keys of their own.
+void take_elements(Reading& reading, const std::string& path, const toml::array& list, const Where& source) {
+  std::erase_if(reading.entries, [&](const auto& entry) { return entry.first.starts_with(path + '['); });
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const std::string element = fmt::format("{}[{}]", path, k);
+    const Where where = where_of(source, list[k].source());
+    reading.entries[element] = {nullptr, &list[k], where};
+    if (const toml::table* table = list[k].as_table(); table != nullptr && is_key_table(element))
+      take_table(reading, *table, element, where);
+  }
+}
+
+// A table or a list of tables, or where there should be one.
+void take_inner_table(Reading& reading, const std::string& path, const toml::node& value, const Where& where) {
+  reading.entries.try_emplace(path, Given{nullptr, nullptr, where});  // it was given, if not well
+  const bool is_list = value.is_array_of_tables();
+  if (!is_key_table(path)) {
+    if (is_list) return take_elements(reading, path, *value.as_array(), where);
+    return reading.fault(where, "{0} is not a list of tables. Write [[{0}]] above each.", path);
+  }
+  if (!value.is_table()) {
+    const std::string kind = path.substr(0, path.find('.'));
+    const bool named = kind != path && (kind == "rock" || kind == "interface");
+    reading.fault(
+        where, "{} = {} is not a table. {}.", path, as_typed(value),
+        named ? fmt::format("Give each {0} a name: [{0}.NAME]", kind)
+              : fmt::format("Write [{}] once; it has the keys {}", path, fmt::join(names_in_table(path), ", ")));
+  }
+  const toml::table* table = is_list ? value.as_array()->front().as_table() : value.as_table();
+  if (table != nullptr) take_table(reading, *table, path, where);
+}
+
+}  // namespace
+
+const Where& Reading::where(std::string_view path) const {
+  auto found = entries.find(path);
+  while (found == entries.end()) {
+    const std::size_t end = path.find_last_of(".[");
+    path = end == path.npos ? "" : path.substr(0, end);
+    found = entries.find(path);
+  }
+  return found->second.where;
+}
+
+bool Reading::is_sound(std::string_view path) const {
+  for (auto at = entries.lower_bound(path); at != entries.end() && at->first.starts_with(path); ++at) {
+    const bool within = at->first.size() == path.size() || at->first[path.size()] == '[';
+    if (within && !at->second.sound) return false;
+  }
+  return true;
+}
+
+std::string as_typed(const toml::node& value) {
+  if (const auto* number = value.as_floating_point()) return number_text(number->get());
+  std::ostringstream out;
+  out << toml::toml_formatter{value, toml::format_flags::allow_unicode_strings};
+  std::string text = out.str();
+  std::ranges::replace(text, '\n', ' ');
+  constexpr std::size_t longest = 60;  // what fits in a line beside the rest of a message
+  return shortened(text, longest);
+}
+
+void take_value(Reading& reading, const std::string& path, const toml::node& value, const Where& where) {
+  if (!check_table_name(reading, path, where)) return;
+  if (where.rank > 0 && (path.starts_with("variants") || path.starts_with("claim"))) {
+    reading.fault(where, "{}: a variant and --set may replace keys of the scene, not claims or variants.", path);
+    return;
+  }
+  const Key* key = find_key(path);
+  const bool is_table = is_key_table(path) || is_key_table(path + "[]");
+  const bool is_there = reading.given(path.substr(0, path.rfind(']') + 1));  // the element of a list that it names
+  if (key == nullptr && path.starts_with("claim[")) return;                  // the harness's
+  if (!is_there || (key == nullptr && !is_table)) return reading.fault(where, "{}", unknown_key_message(path));
+  if (key == nullptr) return take_inner_table(reading, path, value, where);
+  const auto earlier = reading.entries.find(path);
+  if (earlier != reading.entries.end() && where.rank == 1 && earlier->second.where.rank == 1) {
+    reading.fault(where, "{} is given twice; first at line {}. Remove one.", path, earlier->second.where.line);
+    return;
+  }
+  Scene any = scene_of_one();
+  const bool sound = key->member.read({path, *key, value, where, reading.faults}, any, 0);
+  reading.entries[path] = {key, &value, where, sound};
+  if (value.is_array()) take_elements(reading, path, *value.as_array(), where);
+}
+
+void take_table(Reading& reading, const toml::table& table, const std::string& prefix, const Where& source) {
+  for (const auto& [key, value] : table) {
+    const std::string name(key.str()), path = prefix.empty() ? name : prefix + '.' + name;
+    const Where where = where_of(source, key.source());
+    if (source.rank == 0 && path == "variants") continue;
+    if (source.rank == 0 && name.find_first_of(".[") != name.npos) {
+      reading.fault(where, "unknown key \"{}\". Outside [variants] write a path without quotes.", name);
+    } else {
+      take_value(reading, path, value, where);
+    }
+  }
+}
+
+}  // namespace strata
