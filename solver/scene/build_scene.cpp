@@ -8,17 +8,6 @@
 namespace strata {
 namespace {
 
-constexpr std::string_view rocks = "rock.", laws = "interface.";  // the tables that have names
-
-// The second segment of every path that starts with `table`, in alphabetical order; with rank 0 of the scene itself.
-std::vector<std::string> names_of(const Reading& reading, std::string_view table, int most_rank = 2) {
-  std::set<std::string> names;
-  for (const auto& [path, given] : reading.entries) {
-    if (path.starts_with(table) && given.where.rank <= most_rank) names.insert(split(path, ".")[1]);
-  }
-  return {names.begin(), names.end()};
-}
-
 template <class Element>
 std::size_t index_in(const std::vector<Element>& elements, const std::string& name) {
   return static_cast<std::size_t>(std::ranges::find(elements, name, &Element::name) - elements.begin());
@@ -40,8 +29,8 @@ bool is_of_law(Reading& reading, const std::string& path, const Given& given) {
 
 // The rock, law or element of a list that a path leads into, by its index.
 std::size_t index_of(const Scene& scene, const std::string& path) {
-  if (path.starts_with(rocks)) return index_in(scene.rocks, split(path, ".")[1]);
-  if (path.starts_with(laws)) return index_in(scene.laws, split(path, ".")[1]);
+  if (path.starts_with("rock.")) return index_in(scene.rocks, split(path, ".")[1]);
+  if (path.starts_with("interface.")) return index_in(scene.laws, split(path, ".")[1]);
   const std::size_t bracket = path.find('[');
   return bracket == path.npos ? 0 : std::stoul(path.substr(bracket + 1));
 }
@@ -49,12 +38,15 @@ std::size_t index_of(const Scene& scene, const std::string& path) {
 // Writes each sound value to its member of the scene.
 void apply(Reading& reading) {
   Scene& scene = reading.scene;
-  if (reading.given("fracture") || !names_of(reading, "fracture.").empty()) scene.fracture.emplace();
-  for (const std::string& name : names_of(reading, rocks)) scene.rocks.emplace_back().name = name;
+  if (reading.given("fracture")) scene.fracture.emplace();
   scene.laws.emplace_back();
-  for (const std::string& name : names_of(reading, laws)) scene.laws.emplace_back().name = name;
   for (const auto& [path, given] : reading.entries) {
-    if (given.key == nullptr || (path.starts_with(laws) && !is_of_law(reading, path, given))) continue;
+    const std::string name = path.substr(path.find('.') + 1);
+    if (pattern_of(path) == "rock.NAME") scene.rocks.emplace_back().name = name;
+    if (pattern_of(path) == "interface.NAME") scene.laws.emplace_back().name = name;
+  }
+  for (const auto& [path, given] : reading.entries) {
+    if (given.key == nullptr || (path.starts_with("interface.") && !is_of_law(reading, path, given))) continue;
     if (!given.sound || !reading.sound(path.substr(0, path.find('[')))) continue;  // nor in a list that has no use
     given.key->member.read({path, *given.key, *given.value, given.where, reading.faults}, scene, index_of(scene, path));
   }
@@ -80,21 +72,21 @@ void choose_inlet(Reading& reading) {
 // Keys that must be there: those of every scene, of each rock, interface and element of a list, and of a fracture if
 // there is one.
 void check_required(Reading& reading) {
-  std::set<std::string> tables;  // that were given, or that something was given in
-  for (const auto& [path, given] : reading.entries) {
-    for (std::size_t end = path.size(); end != 0 && end != path.npos; end = path.rfind('.', end - 1))
-      tables.insert(path.substr(0, end));
-  }
   const auto none = [&](const auto&... paths) { return !(reading.given(paths) || ...); };
+  const auto require = [&](const Key& key, const std::string& table) {
+    const std::string path = fmt::format("{}.{}", table, key.name());
+    if (none(path))
+      reading.refuse(path, "{} is missing. {}", path,
+                     key.in_list() ? key.help : fmt::format("Give it in [{}].", table));
+  };
   const bool fracture = reading.scene.fracture.has_value();
   for (const Key& key : scene_keys()) {
-    if (!key.required || (key.path.starts_with("fracture.") && !fracture)) continue;
     const std::string table(key.path.substr(0, key.path.rfind('.')));
-    const bool one = table.find("NAME") == table.npos && !key.in_list();
-    for (const std::string& in : one ? std::set{table} : tables) {
-      const std::string path = fmt::format("{}.{}", in, key.name());
-      if (!fits(in, table) || !none(path) || !reading.sound(in.substr(0, in.find('[')))) continue;
-      reading.refuse(path, "{} is missing. {}", path, key.in_list() ? key.help : fmt::format("Give it in [{}].", in));
+    if (!key.required || (table == "fracture" && !fracture)) continue;
+    if (table.find("NAME") == table.npos && !key.in_list()) require(key, table);
+    for (const auto& [path, given] : reading.entries) {
+      const bool is_table = given.value == nullptr || given.value->is_table();  // not "stiff" among layers
+      if (is_table && path != table && pattern_of(path) == table) require(key, path);
     }
   }
   if (reading.scene.rocks.empty()) reading.refuse("rock", "there is no rock. Give a table [rock.NAME].");
@@ -117,7 +109,7 @@ std::size_t find_named(Reading& reading, const std::vector<Element>& elements, c
   if (found < elements.size()) return found;
   std::vector<std::string> names;
   for (const Element& element : elements) names.push_back(element.name);
-  reading.refuse(path, "{} = \"{}\": there is no [{}{}]. There is {}.{}", path, name, table, name,
+  reading.refuse(path, "{} = \"{}\": there is no [{}.{}]. There is {}.{}", path, name, table, name,
                  names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", ")), did_you_mean(name, names));
   return 0;
 }
@@ -156,7 +148,7 @@ void build_strata(Reading& reading) {
   auto& [along, layers, interfaces] = scene.strata;
   for (std::size_t k = 0; k < layers.size(); ++k) {
     const std::string path = fmt::format("strata.layers[{}]", k);
-    layers[k].rock = find_named(reading, scene.rocks, path + ".rock", rocks);
+    layers[k].rock = find_named(reading, scene.rocks, path + ".rock", "rock");
     if (k + 1 == layers.size() || reading.given(path + ".thickness_m")) continue;
     reading.refuse(path, "{}.thickness_m is missing. Only the last layer may leave it out.", path);
     reading.entries[path].sound = false;
@@ -167,7 +159,7 @@ void build_strata(Reading& reading) {
 
   const std::size_t between = layers.empty() ? 0 : layers.size() - 1, named = interfaces.size();
   for (std::size_t k = 0; k < named; ++k)
-    interfaces[k].law = find_named(reading, scene.laws, fmt::format("strata.interfaces[{}]", k), laws);
+    interfaces[k].law = find_named(reading, scene.laws, fmt::format("strata.interfaces[{}]", k), "interface");
   if (reading.usable("strata.interfaces") && !layers.empty() && named != between) {
     reading.refuse("strata.interfaces", "strata.interfaces has {} {} for {} layers. Give one between each two: {}.",
                    named, named == 1 ? "name" : "names", layers.size(), between);
@@ -189,18 +181,18 @@ void place_path(Scene& scene) {
 void check_new_names(Reading& reading) {
   const Scene& scene = reading.scene;
   std::set<std::string> used;
-  for (const Layer& layer : scene.strata.layers) {
-    if (!scene.rocks.empty()) used.insert("rock." + scene.rocks[layer.rock].name);
-  }
+  if (!scene.rocks.empty())
+    for (const Layer& layer : scene.strata.layers) used.insert("rock." + scene.rocks[layer.rock].name);
   for (const InterfacePlace& place : scene.strata.interfaces) used.insert("interface." + scene.laws[place.law].name);
-  for (const std::string_view kind : {rocks, laws}) {
-    const std::vector<std::string> in_scene = names_of(reading, kind, 0);
+  for (const char* names : {"rock.NAME", "interface.NAME"}) {
+    std::vector<std::string> in_scene;
     for (const auto& [path, given] : reading.entries) {
-      if (!path.starts_with(kind) || given.key == nullptr || given.where.rank == 0) continue;
-      const std::string table = path.substr(0, path.rfind('.')), name = table.substr(kind.size());
-      if (used.contains(table) || std::ranges::find(in_scene, name) != in_scene.end()) continue;
-      reading.fault(given.where, "{}: there is no [{}] in the scene, and no layer uses it.{}", path, table,
-                    did_you_mean(name, in_scene));
+      if (given.where.rank == 0 && pattern_of(path) == names) in_scene.push_back(path.substr(path.find('.') + 1));
+    }
+    for (const auto& [path, given] : reading.entries) {
+      if (given.where.rank == 0 || pattern_of(path) != names || used.contains(path)) continue;
+      reading.refuse(path, "there is no [{}] in the scene, and no layer uses it.{}", path,
+                     did_you_mean(path.substr(path.find('.') + 1), in_scene));
     }
   }
 }

@@ -45,15 +45,11 @@ struct Growth {
 // Spans that fill `length` m, from the fine ones on.
 std::vector<double> growing_spans(const Growth& growth, double length) {
   const double round_off = 1e-9 * growth.h;
-  int m = 1;  // the fewest spans: doubled until they suffice, then as many less as can be
-  while (growth.sum(m, growth.most) < length - round_off) m *= 2;
-  for (int less = m / 2; less > 0; less /= 2) {
-    if (growth.sum(m - less, growth.most) >= length - round_off) m -= less;
-  }
+  int m = 1;  // the fewest spans
+  while (growth.sum(m, growth.most) < length - round_off) ++m;
   double low = 1.0, high = growth.most;
-  while (high - low > 2e-16 * high) {
+  for (int halving = 0; halving < 60; ++halving) {  // to the last digit
     const double q = 0.5 * (low + high);
-    if (q <= low || q >= high) break;
     (growth.sum(m, q) < length ? low : high) = q;
   }
   std::vector<double> spans;

@@ -1,6 +1,7 @@
 // Which cells a graded grid has (numerics.far_cell_m): fine ones, of cell_m, where the scene needs them, and between
 // and beyond them cells that grow by at most 1.2 from one to the next, up to far_cell_m; and cells that grow without
 // bound over the rock beyond the block (domain.beyond_m). Columns and rows are chosen each for themselves.
+// Nothing here throws but std::bad_alloc.
 #pragma once
 
 #include <array>
@@ -28,13 +29,13 @@ struct GrowthWay {
 };
 
 /// The ways of all tips that may grow, each in the direction of its end of the path: up to stop.tip_y_m, or else to the
-/// block's edge; a tip that does not go up goes as far as the one that does. Throws nothing.
+/// block's edge; a tip that does not go up goes as far as the one that does.
 std::vector<GrowthWay> ways_of_growth(const Scene& scene);
 
 /// Stretches along x (axis 0) or y (1) on which all cells are of cell_m: around the fracture and the straight way of
 /// its tips, which ends at stop.tip_y_m or else at the block's edge (or up to where the scene says,
 /// numerics.fine_left_m and its like), and around the places where rocks or interfaces meet. In order, cut at the
-/// block's edges, none touching the next. Throws nothing.
+/// block's edges, none touching the next.
 std::vector<Stretch> fine_stretches(const Scene& scene, int axis);
 
 // What an axis of a graded grid is to have (m).
@@ -51,16 +52,16 @@ struct Grading {
 ///   end with the half of a cell of h that reaches over the edge, and from the last of them, s_m, there follow
 ///   s_k = s_m r^(k-m), k = m + 1, ... to the end of the rock, the last one counted half,
 ///   s_k = min(h q^min(k, m+1-k), far), k = 1 ... m between two fine stretches,
-/// each with the fewest spans for which some q <= 1.2, r <= 1.5 makes them fill it, and this q or r. Throws nothing.
+/// each with the fewest spans for which some q <= 1.2, r <= 1.5 makes them fill it, and this q or r.
 std::vector<double> graded_knots(const Grading& axis);
 
-/// Knots along x (axis 0) or y (1) of a scene's grid; none where it is uniform. Throws nothing.
+/// Knots along x (axis 0) or y (1) of a scene's grid; none where it is uniform.
 std::vector<double> scene_knots(const Scene& scene, int axis);
 
 /// Whether scene and grid are mirror-symmetric about the vertical through the fracture, and stay so: layers stacked
 /// upwards, a straight vertical fracture in the middle of the block, columns that are their own mirror image, sides
 /// held, no body force. (With loaded sides parts may slide antisymmetrically, which half a block would not see.) Makes
-/// no grid. Throws nothing.
+/// no grid.
 bool mirror_symmetric(const Scene& scene);
 
 }  // namespace strata

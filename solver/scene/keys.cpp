@@ -8,26 +8,6 @@
 namespace strata {
 namespace {
 
-// Whether the names of a path are the first ones of a pattern.
-bool begins(const std::vector<std::string>& path, const std::vector<std::string>& pattern) {
-  return path.size() <= pattern.size() &&
-         std::equal(path.begin(), path.end(), pattern.begin(), [](auto& name, auto& of) {
-           const std::size_t bracket = name.find('[');
-           const std::string any = bracket == name.npos ? "NAME" : name.substr(0, bracket) + "[]";
-           return of == any || of == name;
-         });
-}
-
-std::vector<std::string> names_in(std::string_view path) {
-  return path.empty() ? std::vector<std::string>() : split(path, ".");
-}
-
-// Whether `path` is one of the tables that hold a key.
-bool holds(std::string_view path, const Key& key) {
-  const auto names = names_in(path), pattern = names_in(key.path);
-  return names.size() < pattern.size() && begins(names, pattern);
-}
-
 std::string allowed_text(const Key& key) {
   if (key.kind == Key::Kind::number) return to_text(key.bounds);
   if (key.kind == Key::Kind::list) return "list";
@@ -46,26 +26,28 @@ Scene scene_of_one() {
   return scene;
 }
 
-bool fits(std::string_view path, std::string_view pattern) {
-  const auto names = names_in(path), of = names_in(pattern);
-  return names.size() == of.size() && begins(names, of);
+std::string pattern_of(std::string_view path) {
+  std::vector<std::string> names = split(path, ".");
+  for (std::string& name : names) {
+    if (const std::size_t bracket = name.find('['); bracket != name.npos) name = name.substr(0, bracket) + "[]";
+  }
+  const bool named = names.size() > 1 && (names[0] == "rock" || names[0] == "interface") && is_plain_name(names[1]);
+  if (named) names[1] = "NAME";
+  return fmt::format("{}", fmt::join(names, "."));
 }
 
 const Key* find_key(std::string_view path) {
-  const auto key = std::ranges::find_if(scene_keys(), [&](const Key& k) { return fits(path, k.path); });
+  const auto key = std::ranges::find(scene_keys(), pattern_of(path), &Key::path);
   return key == scene_keys().end() ? nullptr : &*key;
 }
 
-bool is_key_table(std::string_view path) {
-  return std::ranges::any_of(scene_keys(), [&](const Key& key) { return holds(path, key); });
-}
-
 std::vector<std::string> names_in_table(std::string_view path) {
+  const std::string table = path.empty() ? "" : pattern_of(path) + '.';
   std::vector<std::string> names;
   for (const Key& key : scene_keys()) {
-    if (!holds(path, key)) continue;
-    const std::string segment = names_in(key.path)[names_in(path).size()], name = segment.substr(0, segment.find('['));
-    if (name != "NAME" && std::ranges::find(names, name) == names.end()) names.push_back(name);
+    if (!key.path.starts_with(table)) continue;
+    const std::string name(key.path.substr(table.size(), key.path.find_first_of(".[", table.size()) - table.size()));
+    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
   }
   if (path.empty()) names.emplace_back("variants");
   return names;

@@ -143,16 +143,15 @@ std::span<const Key> scene_keys();
 /// A scene with one element of each list, into which all keys lead.
 Scene scene_of_one();
 
-/// Whether a path ("rock.stiff") is one of a pattern ("rock.NAME"), in which NAME is any name and [] any element.
-bool fits(std::string_view path, std::string_view pattern);
+/// A path as the keys have it: "rock.NAME.poisson_ratio" of "rock.stiff.poisson_ratio", "strata.layers[].rock" of
+/// "strata.layers[1].rock".
+std::string pattern_of(std::string_view path);
 
-/// The key of which `path` is an instance ("rock.stiff.poisson_ratio", "strata.layers[1].rock"), or nullptr.
+/// The key of which `path` is an instance, or nullptr.
 const Key* find_key(std::string_view path);
 
-/// Whether `path` is a table that holds keys ("rock", "rock.stiff", "fluid.inlet", "strata.layers[1]").
-bool is_key_table(std::string_view path);
-
-/// The names that may stand in the table `path` ("" for the top level); NAME is not among them.
+/// The names that may stand in the table `path` ("" for the top level, NAME for any name); none where it is no table of
+/// keys.
 std::vector<std::string> names_in_table(std::string_view path);
 
 /// What is wrong with the unknown key `path`, with the nearest known one: "unknown key fluid.viscosty_Pa_s. Did you

@@ -21,6 +21,10 @@ bool check_table_name(Reading& reading, const std::string& path, const Where& wh
   return false;
 }
 
+bool is_key_table(const std::string& path) {
+  return !names_in_table(path).empty();
+}
+
 // Elements of a list have each a place; those that are tables give keys of their own.
 void take_elements(Reading& reading, const std::string& path, const toml::array& list, const Where& source) {
   std::erase_if(reading.entries, [&](const auto& entry) { return entry.first.starts_with(path + '['); });
@@ -65,7 +69,7 @@ const Where& Reading::where(std::string_view path) const {
   return found->second.where;
 }
 
-bool Reading::is_sound(std::string_view path) const {
+bool Reading::sound(std::string_view path) const {
   for (auto at = entries.lower_bound(path); at != entries.end() && at->first.starts_with(path); ++at) {
     const bool within = at->first.size() == path.size() || at->first[path.size()] == '[';
     if (within && !at->second.sound) return false;
@@ -100,6 +104,8 @@ void take_value(Reading& reading, const std::string& path, const toml::node& val
     reading.fault(where, "{} is given twice; first at line {}. Remove one.", path, earlier->second.where.line);
     return;
   }
+  for (std::size_t dot = path.find('.'); dot != path.npos; dot = path.find('.', dot + 1))  // --set names no tables
+    reading.entries.try_emplace(path.substr(0, dot), Given{nullptr, nullptr, where});
   Scene any = scene_of_one();
   const bool sound = key->member.read({path, *key, value, where, reading.faults}, any, 0);
   reading.entries[path] = {key, &value, where, sound};

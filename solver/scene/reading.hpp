@@ -27,10 +27,10 @@ inline Where where_of(const Where& source, const toml::source_region& region) {
   return {source.source, source.rank, region.begin.line, region.begin.column};
 }
 
-// What was given for a key; of tables and of elements of lists only the place.
+// What was given for a key, or a table or an element of a list that keys were given in.
 struct Given {
   const Key* key = nullptr;
-  const toml::node* value = nullptr;  // belongs to the parsed table, which must live as long
+  const toml::node* value = nullptr;  // belongs to the parsed table, which must live as long; of tables none
   Where where;
   bool sound = true;  // of the right type and within bounds
 };
@@ -43,10 +43,10 @@ struct Reading {
   std::vector<Fault> faults;
 
   bool given(std::string_view path) const { return entries.contains(path); }
-  // Whether what was given for the paths, if anything, is of use; of a list all that is in it.
-  bool sound(const auto&... paths) const { return (is_sound(paths) && ...); }
+  // Whether what was given for the path, if anything, is of use; of a list all that is in it.
+  bool sound(std::string_view path) const;
   // Whether the keys were given, each with a value of use.
-  bool usable(const auto&... paths) const { return ((given(paths) && is_sound(paths)) && ...); }
+  bool usable(const auto&... paths) const { return ((given(paths) && sound(paths)) && ...); }
   // Where the path was given, or else the innermost table or list that would hold it.
   const Where& where(std::string_view path) const;
 
@@ -65,9 +65,6 @@ struct Reading {
     if (!applies || !usable(path)) return;
     refuse(path, "{} = {} {}", path, as_typed(*entries.find(path)->second.value), fmt::format(text, values...));
   }
-
- private:
-  bool is_sound(std::string_view path) const;
 };
 
 // A value, or an element of one, and the path that messages have for it.
@@ -79,11 +76,8 @@ struct Value {
   std::vector<Fault>& faults;
 };
 
-/// The double that a number is, of whatever type.
-double as_number(const toml::node& number);
-
 /// Takes up every known key in `table` with a value of its own; unknown, repeated and unsound ones are faults. Later
-/// ranks replace what earlier ones gave. At the top level of a scene variants and claims are left out. prefix: path of
+/// ranks replace what earlier ones gave. At the top level of a scene variants are left out. prefix: path of
 /// the table, "" for the top level.
 void take_table(Reading& reading, const toml::table& table, const std::string& prefix, const Where& source);
 

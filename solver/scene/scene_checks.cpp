@@ -88,30 +88,6 @@ std::string fault_of_point(const Scene& scene, const Point& point, bool is_end) 
   return y <= 0.0 && !is_end ? "on the symmetry line, but only an end may be there." : "";
 }
 
-void check_shape(Reading& reading) {
-  const auto& path_m = reading.scene.fracture->path_m;
-  const Domain& domain = reading.scene.domain;
-  const double tolerance_m = 1e-9 * std::max(domain.width_m, domain.height_m);
-  bool distinct = true;
-  for (std::size_t k = 0; k + 1 < path_m.size(); ++k) {
-    if (std::hypot(path_m[k + 1][0] - path_m[k][0], path_m[k + 1][1] - path_m[k][1]) > tolerance_m) continue;
-    distinct = false;
-    reading.refuse(fmt::format("fracture.path_m[{}]", k + 1),
-                   "fracture.path_m: the point {} is repeated. Remove it: a segment has a length.", path_m[k]);
-  }
-  if (!distinct) return;
-  if (const auto contact = self_contact(path_m, tolerance_m)) {
-    reading.refuse("fracture.path_m",
-                   "fracture.path_m meets itself: the segments from {} and from {} cross, touch or double back.",
-                   path_m[contact->first], path_m[contact->second]);
-  }
-  if (path_m.front()[1] == 0.0 && path_m.back()[1] == 0.0 && domain.bottom == Edge::symmetry) {
-    reading.refuse("fracture.path_m",
-                   "fracture.path_m has both ends on the symmetry line; one may be there. A fracture that cuts out a "
-                   "piece of rock has no tip.");
-  }
-}
-
 // A straight piece of fracture along an axis may not lie on particles, nor on an interface that has a law.
 void check_lie(Reading& reading) {
   const Scene& scene = reading.scene;
@@ -141,21 +117,41 @@ void check_lie(Reading& reading) {
 }
 
 void check_fracture(Reading& reading, bool cells_sound) {
-  if (!reading.usable("fracture.path_m", "domain.width_m", "domain.height_m") || !reading.sound("domain.bottom"))
+  if (!reading.scene.fracture || !reading.usable("fracture.path_m", "domain.width_m", "domain.height_m") ||
+      !reading.sound("domain.bottom"))
     return;
   const auto& path_m = reading.scene.fracture->path_m;
+  const Domain& domain = reading.scene.domain;
+  const double tolerance_m = 1e-9 * std::max(domain.width_m, domain.height_m);
+  bool distinct = true;
   for (std::size_t k = 0; k < path_m.size(); ++k) {
-    const std::string fault = fault_of_point(reading.scene, path_m[k], k == 0 || k + 1 == path_m.size());
-    if (fault.empty()) continue;
-    reading.refuse(fmt::format("fracture.path_m[{}]", k), "fracture.path_m: the point {} is {}", path_m[k], fault);
+    const Point& before = path_m[k == 0 ? path_m.size() - 1 : k - 1];
+    const bool repeated = k > 0 && std::hypot(path_m[k][0] - before[0], path_m[k][1] - before[1]) <= tolerance_m;
+    distinct = distinct && !repeated;
+    const std::string fault = repeated ? "repeated. Remove it: a segment has a length."
+                                       : fault_of_point(reading.scene, path_m[k], k == 0 || k + 1 == path_m.size());
+    if (!fault.empty())
+      reading.refuse(fmt::format("fracture.path_m[{}]", k), "fracture.path_m: the point {} is {}", path_m[k], fault);
   }
-  check_shape(reading);
+  if (const auto contact = distinct ? self_contact(path_m, tolerance_m) : std::nullopt) {
+    reading.refuse("fracture.path_m",
+                   "fracture.path_m meets itself: the segments from {} and from {} cross, touch or double back.",
+                   path_m[contact->first], path_m[contact->second]);
+  }
+  if (distinct && path_m.front()[1] == 0.0 && path_m.back()[1] == 0.0 && domain.bottom == Edge::symmetry) {
+    reading.refuse("fracture.path_m",
+                   "fracture.path_m has both ends on the symmetry line; one may be there. A fracture that cuts out a "
+                   "piece of rock has no tip.");
+  }
   if (cells_sound) check_lie(reading);
 }
 
 // Stops that have no meaning, or that the start has passed already.
 void check_stop_values(Reading& reading) {
   const Scene& scene = reading.scene;
+  for (const char* path : {"stop.tip_y_m", "stop.inlet_Pa"})
+    reading.refuse_if(!scene.fracture, path, "cannot be reached: the scene has no [fracture]. Use stop.time_s.");
+  if (!scene.fracture) return;
   const double height_m = scene.domain.height_m, tip_y_m = scene.stop.tip_y_m.value_or(0.0);
   reading.refuse_if(reading.usable("domain.height_m") && tip_y_m >= height_m, "stop.tip_y_m",
                     "is not below the top of the block at {} m. {}", height_m, upwards(height_m));
@@ -173,7 +169,9 @@ void check_stop_values(Reading& reading) {
 // Whether one of the stops given is sure to be reached: a fracture under a pressure that does not rise may stay; one
 // that is fed at a rate grows, or takes ever more pressure where it may not.
 void check_end(Reading& reading) {
-  if (!reading.sound("fluid.inlet.rate_Pa_s", "fluid.inlet.rate_m2_s", "fracture.growth")) return;
+  if (!reading.scene.fracture) return;
+  for (const char* path : {"fluid.inlet.rate_Pa_s", "fluid.inlet.rate_m2_s", "fracture.growth"})
+    if (!reading.sound(path)) return;
   const bool fed = reading.scene.fluid.rate_m2_s.has_value();
   if (!fed && !reading.given("fluid.inlet.start_Pa") && !reading.given("fluid.inlet.rate_Pa_s")) return;
   const bool by_inlet = reading.given("stop.inlet_Pa"), by_tip = reading.given("stop.tip_y_m");
@@ -187,14 +185,6 @@ void check_end(Reading& reading) {
                  rises ? "the fracture does not grow (fracture.growth = \"none\")"
                  : fed ? "the pressure of a fracture fed at a rate falls as it grows"
                        : still);
-}
-
-void check_stop(Reading& reading) {
-  const bool fracture = reading.scene.fracture.has_value();
-  if (fracture) check_stop_values(reading);
-  if (fracture) check_end(reading);
-  for (const char* path : {"stop.tip_y_m", "stop.inlet_Pa"})
-    reading.refuse_if(!fracture, path, "cannot be reached: the scene has no [fracture]. Use stop.time_s.");
 }
 
 // What one of the two mechanics cannot do.
@@ -308,8 +298,9 @@ void check_scene(Reading& reading) {
   const bool layers_sound =
       reading.usable("strata.layers", along_y ? "domain.height_m" : "domain.width_m") && reading.sound("strata.along");
   if (cells_sound && layers_sound) check_interfaces(reading);
-  if (reading.scene.fracture) check_fracture(reading, cells_sound);
-  check_stop(reading);
+  check_fracture(reading, cells_sound);
+  check_stop_values(reading);
+  check_end(reading);
   check_mechanics(reading);
   check_grading(reading);
   check_fine_ends(reading);

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <deque>
 #include <fstream>
-#include <memory>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -32,9 +32,8 @@ std::string text_of_file(const std::filesystem::path& file, std::vector<std::str
   return text.str();
 }
 
-// The parser goes from each name of a key into the next, and would run out of stack.
-void refuse_deep_keys(std::string_view text) {
-  constexpr int most_dots = 1000;  // of several 10,000 that it takes
+toml::table parse(std::string_view text) {
+  constexpr int most_dots = 1000;  // the parser goes from a key's name into the next, and overflows at several 10,000
   toml::source_position at{1, 1};
   int dots = 0;
   for (const char c : text) {
@@ -43,10 +42,6 @@ void refuse_deep_keys(std::string_view text) {
     if (c == '.' && ++dots > most_dots)
       throw toml::parse_error("a key of more than a thousand names", {at, at, nullptr});
   }
-}
-
-toml::table parse(std::string_view text) {
-  refuse_deep_keys(text);
   return toml::parse(text);
 }
 
@@ -69,26 +64,26 @@ Parsed parse_toml(std::string_view text, const Where& source, std::vector<Fault>
   constexpr std::size_t most_lines = 50;  // each asks for the text to be parsed anew
   Parsed parsed;
   std::vector<std::string> lines = split(text, "\n");
-  while (true) {
+  while (parsed.whole) {
     try {
       parsed.table = parse(fmt::format("{}", fmt::join(lines, "\n")));
-      return parsed;
+      break;
     } catch (const toml::parse_error& error) {
       const unsigned number = error.source().begin.line;
       lines.resize(std::max<std::size_t>(lines.size(), number));  // the end of the text is behind its last line
       std::string& line = lines[number - 1];
-      parsed.whole = parsed.mended.insert(number).second;  // else what is wrong with the line begins above
-      if (!parsed.whole) return parsed;
+      const auto as_toml = mended(line);
+      const bool is_new = parsed.mended.insert(number).second;  // else what is wrong with the line begins above
+      parsed.whole = is_new && as_toml && parsed.mended.size() < most_lines;
+      if (!is_new) break;
       faults.push_back({where_of(source, error.source()),
                         fmt::format("this is not TOML: {}: {}. Write key = value: text in quotes, lists in [ ], "
                                     "numbers with a decimal point and no unit, which stands in the key.",
                                     shortened(trimmed(line), 60), error.description())});
-      const auto as_toml = mended(line);
-      parsed.whole = as_toml && parsed.mended.size() < most_lines;
-      if (!parsed.whole) return parsed;
-      line = *as_toml;
+      line = as_toml.value_or("");
     }
   }
+  return parsed;
 }
 
 struct Variant {
@@ -144,31 +139,23 @@ void take_variants(Reading& reading, const std::vector<Variant>& variants, const
                 names.empty() ? "no variants" : fmt::format("{}", fmt::join(names, ", ")), did_you_mean(chosen, names));
 }
 
-// Takes up one "key.path=value"; the table that holds the value must live as long as the reading.
-std::unique_ptr<toml::table> take_setting(Reading& reading, const std::string& setting) {
+// Takes up one "key.path=value"; the table that will hold the value must live as long as the reading.
+void take_setting(Reading& reading, const std::string& setting, toml::table& table) {
   const Where where{"--set " + setting, 2};
-  auto table = std::make_unique<toml::table>();
   const std::size_t equals = setting.find('=');
   const std::string path(trimmed(std::string_view(setting).substr(0, equals)));
-  if (equals == std::string::npos || path.empty()) {
-    reading.fault(where, "this is not key.path=value.");
-    return table;
-  }
+  if (equals == std::string::npos || path.empty()) return reading.fault(where, "this is not key.path=value.");
   const std::string value(trimmed(std::string_view(setting).substr(equals + 1)));
   try {
-    *table = parse("value = " + value);
+    table = parse("value = " + value);
   } catch (const toml::parse_error&) {
-    if (is_plain_name(value)) table->insert("value", value);
+    if (is_plain_name(value)) table.insert("value", value);
   }
-  if (table->size() == 1) {
-    take_value(reading, path, *table->get("value"), where);
-  } else {
-    reading.fault(where,
-                  "{} is neither TOML nor a bare word. Text in a list or with spaces needs quotes, '[\"weak\"]'; a "
-                  "number has a decimal point and no unit, which stands in the key.",
-                  value.empty() ? "an empty value" : shortened(value, 60));
-  }
-  return table;
+  if (table.size() == 1) return take_value(reading, path, *table.get("value"), where);
+  reading.fault(where,
+                "{} is neither TOML nor a bare word. Text in a list or with spaces needs quotes, '[\"weak\"]'; a "
+                "number has a decimal point and no unit, which stands in the key.",
+                value.empty() ? "an empty value" : shortened(value, 60));
 }
 
 // The [[claim]] tables as they will stand in the resolved scene.
@@ -201,8 +188,8 @@ ReadResult read_scene_text(std::string_view text, const std::string& file_name, 
   reading.entries[""].where = {file_name, 0, 1, 1};
   take_table(reading, parsed.table, "", source);
   take_variants(reading, variants_of(parsed.table, file_name, reading.faults), variant, file_name);
-  std::vector<std::unique_ptr<toml::table>> settings;
-  for (const std::string& setting : set) settings.push_back(take_setting(reading, setting));
+  std::deque<toml::table> settings;
+  for (const std::string& setting : set) take_setting(reading, setting, settings.emplace_back());
   build_scene(reading);
   Scene& scene = reading.scene;
   if (scene.name.empty()) scene.name = std::filesystem::path(file_name).stem().string();

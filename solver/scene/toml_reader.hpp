@@ -1,4 +1,5 @@
 // Reads a scene from TOML. Every mistake in it is reported, in one pass, with its place and what to do.
+// Nothing here throws but std::bad_alloc.
 #pragma once
 
 #include <filesystem>
@@ -23,20 +24,19 @@ struct VariantList {
   std::vector<std::string> errors;
 };
 
-/// Reads a scene file and applies a variant, then settings. variant: name of one of its variants, "" for none;
-/// set: texts "key.path=value" whose value is TOML or a bare word, the later ones above the earlier.
-/// Throws nothing but std::bad_alloc.
+/// Reads a scene file and applies a variant, then settings. variant: name of one of its variants, "" for none; set:
+/// texts "key.path=value" whose value is TOML or a bare word, the later ones above the earlier.
 ReadResult read_scene(const std::filesystem::path& file, const std::string& variant,
                       const std::vector<std::string>& set);
 
-/// The same from text. file_name: what messages call it. Throws nothing but std::bad_alloc.
+/// The same from text. file_name: what messages call it.
 ReadResult read_scene_text(std::string_view text, const std::string& file_name, const std::string& variant,
                            const std::vector<std::string>& set);
 
-/// The variants of a scene file; of the rest only the syntax is looked at. Throws nothing but std::bad_alloc.
+/// The variants of a scene file; of the rest only the syntax is looked at.
 VariantList list_variants(const std::filesystem::path& file);
 
-/// The same from text. file_name: what messages call it. Throws nothing but std::bad_alloc.
+/// The same from text. file_name: what messages call it.
 VariantList list_variants_text(std::string_view text, const std::string& file_name);
 
 /// As read_scene(), and an error where the machine has not the memory that a run of the scene would take.
@@ -44,7 +44,7 @@ ReadResult read_scene_that_fits(const std::filesystem::path& file, const std::st
                                 const std::vector<std::string>& set);
 
 /// All that is wrong with scene files, as lines: of each the scene itself and all its variants; what only a variant is
-/// guilty of ends in "[variant NAME]". files: paths. Throws nothing but std::bad_alloc.
+/// guilty of ends in "[variant NAME]". files: paths.
 std::vector<std::string> check(const std::vector<std::string>& files);
 
 }  // namespace strata

@@ -41,7 +41,7 @@ bool read_number(const Value& v, const Bounds& bounds, double& member) {
     const std::string unit = v.key.unit.empty() ? "." : fmt::format(", in {}: the unit stands in the key.", v.key.unit);
     return refuse(v, "not a number. Write a number without quotes" + unit);
   }
-  member = as_number(v.node);
+  member = v.node.is_integer() ? static_cast<double>(v.node.as_integer()->get()) : v.node.as_floating_point()->get();
   if (!std::isfinite(member)) return refuse(v, "not finite. Write a finite number.");
   const char* space = v.key.advice.empty() ? "" : " ";
   return bounds.contain(member) || refuse(v, fmt::format("outside {}.{}{}", to_text(bounds), space, v.key.advice));
@@ -68,10 +68,6 @@ std::string list_text(Scene& scene, const auto& values) {
 }
 
 }  // namespace
-
-double as_number(const toml::node& number) {
-  return number.is_integer() ? static_cast<double>(number.as_integer()->get()) : number.as_floating_point()->get();
-}
 
 bool read(const Value& v, double& member) {
   return read_number(v, v.key.bounds, member);

@@ -78,13 +78,12 @@ TEST_CASE("A path finds its key with any name in the place of NAME") {
   CHECK(find_key("strata.layers[12].rock")->path == "strata.layers[].rock");
   CHECK(find_key("rock.stiff") == nullptr);
   CHECK(find_key("rock.stiff.poisson") == nullptr);
-  CHECK(is_key_table("rock.stiff"));
-  CHECK(is_key_table("fluid.inlet"));
-  CHECK(is_key_table("strata.layers[0]"));
-  CHECK_FALSE(is_key_table("strata.layers"));
-  CHECK_FALSE(is_key_table("rock.a[0]"));
-  CHECK_FALSE(is_key_table("fluid.law"));
-  CHECK_FALSE(is_key_table("fluids"));
+  CHECK(find_key("rock.a[0].poisson_ratio") == nullptr);
+  CHECK(names_in_table("fluid.inlet") == std::vector<std::string>{"start_Pa", "rate_Pa_s", "rate_m2_s"});
+  CHECK(names_in_table("strata.layers[0]") == std::vector<std::string>{"rock", "thickness_m"});
+  CHECK(names_in_table("rock.stiff").size() == 4);
+  CHECK(names_in_table("rock") == std::vector<std::string>{"NAME"});
+  for (const char* path : {"strata.layers", "rock.a[0]", "fluid.law", "fluids"}) CHECK(names_in_table(path).empty());
 }
 
 TEST_CASE("Edit distance by hand") {

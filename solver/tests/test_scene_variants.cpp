@@ -91,6 +91,34 @@ TEST_CASE("The value of --set is TOML, a bare word a string") {
   CHECK_THAT(errors(layered, "", {"variants.a.title=x"}), Catch::Contains("may replace keys of the scene"));
 }
 
+TEST_CASE("A variant and --set may replace a key of an element of a list that is there") {
+  CHECK(good(layered, "", {"strata.layers[0].thickness_m=20"}).strata.interfaces[0].at_m == 20.0);
+  const std::string text = layered + "[variants.thick]\n\"strata.layers[0].thickness_m\" = 30\n";
+  CHECK(good(text, "thick").strata.interfaces[0].at_m == 30.0);
+  const std::string both = "strata.layers=[{rock = \"soft\", thickness_m = 5}, {rock = \"soft\"}]";
+  CHECK(good(text, "thick", {both}).strata.interfaces[0].at_m == 5.0);
+  CHECK_THAT(errors(layered, "", {"strata.layers[2].thickness_m=20"}),
+             Catch::StartsWith("--set strata.layers[2].thickness_m=20: unknown key strata.layers[2].thickness_m."));
+  CHECK_THAT(errors(layered, "", {"strata.interfaces[0]=perfect"}),
+             Catch::Contains("unknown key strata.interfaces[0]"));
+  CHECK_THAT(errors(layered, "", {"claim[0].id=x"}), Catch::Contains("not claims or variants"));
+}
+
+TEST_CASE("All mistakes in a list of tables are told at once, and none twice") {
+  const std::string text =
+      with(layered, "{rock = \"stiff\", thickness_m = 10}", "{rock = \"stiff\", thickness_m = -1}, {rok = \"a\"}, 3");
+  const ReadResult result = read(text + "[[claim]]\nid = 3\nobservable = \"o\"\n");
+  REQUIRE(result.errors.size() == 6);
+  CHECK_THAT(result.errors[0], Catch::StartsWith("scene.toml:17:28: strata.layers[0].thickness_m = -1 is outside"));
+  CHECK_THAT(result.errors[1], Catch::StartsWith("scene.toml:17:47: strata.layers[1].rock is missing."));
+  CHECK_THAT(result.errors[2],
+             Catch::StartsWith("scene.toml:17:48: unknown key strata.layers[1].rok. Did you mean rock?"));
+  CHECK_THAT(result.errors[3],
+             Catch::StartsWith("scene.toml:17:60: strata.layers[2] = 3 is not a table. Write [{rock"));
+  CHECK_THAT(result.errors[4], Catch::StartsWith("scene.toml:27:1: claim[0].text is missing."));
+  CHECK_THAT(result.errors[5], Catch::StartsWith("scene.toml:28:1: claim[0].id = 3 is not text."));
+}
+
 TEST_CASE("Errors of --set name it in the place of a line, and come after those of the file") {
   const std::string text = errors(with(layered, "width_m = 80", "width_m = -80"), "", {"numerics.courant=3"});
   CHECK_THAT(text, Catch::StartsWith("scene.toml:3:1: "));
