@@ -19,9 +19,7 @@ double cross(const Point& o, const Point& a, const Point& b) {
 }
 
 double distance_to_segment(const Point& p, const Point& a, const Point& b) {
-  const double dx = b[0] - a[0];
-  const double dy = b[1] - a[1];
-  const double length2 = dx * dx + dy * dy;
+  const double dx = b[0] - a[0], dy = b[1] - a[1], length2 = dx * dx + dy * dy;
   const double along = length2 > 0.0 ? ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / length2 : 0.0;
   const double t = std::clamp(along, 0.0, 1.0);
   return std::hypot(p[0] - a[0] - t * dx, p[1] - a[1] - t * dy);
@@ -77,10 +75,10 @@ double parted_cells(const Scene& scene) {
 // Whether equilibria decide about growth somewhere: an interface that does something may come near a tip.
 bool weighs_growth(const Scene& scene) {
   if (!scene.fracture || scene.fracture->growth == Fracture::Growth::none) return false;
-  bool any = false;
-  for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) any = any || scene.changes_at(k);
-  return scene.fracture->growth == Fracture::Growth::energy ||
-         (any && scene.fracture->crossing == Fracture::Crossing::energy);
+  bool weighs = scene.fracture->growth == Fracture::Growth::energy;
+  for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k)
+    weighs = weighs || (scene.changes_at(k) && scene.fracture->crossing == Fracture::Crossing::energy);
+  return weighs;
 }
 
 }  // namespace
@@ -117,12 +115,9 @@ std::vector<Point> legs_between_interfaces(const Scene& scene, const Point& from
     const double share = (place.at_m - from[axis]) / (to[axis] - from[axis]);
     if (share > on_it && share < 1.0 - on_it) shares.push_back(share);
   }
-  std::sort(shares.begin(), shares.end());
+  std::ranges::sort(shares);
   std::vector<Point> ends;
-  for (const double share : shares) {
-    Point& end = ends.emplace_back();
-    for (std::size_t k = 0; k < 2; ++k) end[k] = from[k] + share * (to[k] - from[k]);
-  }
+  for (const double s : shares) ends.push_back({from[0] + s * (to[0] - from[0]), from[1] + s * (to[1] - from[1])});
   ends.push_back(to);
   return ends;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace strata {
 namespace {
@@ -45,7 +46,7 @@ struct Growth {
 // Spans that fill `length` m, from the fine ones on.
 std::vector<double> growing_spans(const Growth& growth, double length) {
   const double round_off = 1e-9 * growth.h;
-  int m = 1;  // the fewest spans
+  int m = std::max(1, static_cast<int>(length / growth.far));  // the fewest spans
   while (growth.sum(m, growth.most) < length - round_off) ++m;
   double low = 1.0, high = growth.most;
   for (int halving = 0; halving < 60; ++halving) {  // to the last digit
@@ -116,16 +117,13 @@ bool mirrored_columns(const Scene& scene) {
 std::vector<GrowthWay> ways_of_growth(const Scene& scene) {
   if (!scene.fracture || scene.fracture->growth == Fracture::Growth::none) return {};
   const auto& path = scene.fracture->path_m;
-  struct Ray {
-    Point tip, d;
-  };
-  std::vector<Ray> rays{{path.back(), direction(path[path.size() - 2], path.back())}};
+  std::vector<std::pair<Point, Point>> rays{{path.back(), direction(path[path.size() - 2], path.back())}};
   const bool from_symmetry = scene.domain.bottom == Edge::symmetry && path.front()[1] == 0.0;
-  if (!from_symmetry) rays.push_back({path.front(), direction(path[1], path.front())});
+  if (!from_symmetry) rays.emplace_back(path.front(), direction(path[1], path.front()));
   double longest = std::numeric_limits<double>::infinity();
-  for (const Ray& ray : rays) {
-    if (!scene.stop.tip_y_m || ray.d[1] <= 0.0) continue;
-    longest = std::min(longest, std::max(0.0, (*scene.stop.tip_y_m - ray.tip[1]) / ray.d[1]));
+  for (const auto& [tip, d] : rays) {
+    if (scene.stop.tip_y_m && d[1] > 0.0)
+      longest = std::min(longest, std::max(0.0, (*scene.stop.tip_y_m - tip[1]) / d[1]));
   }
   std::vector<GrowthWay> ways;
   for (const auto& [tip, d] : rays) {

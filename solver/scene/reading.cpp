@@ -8,17 +8,15 @@ namespace {
 
 // Whether a name in rock.NAME or interface.NAME may be used.
 bool check_table_name(Reading& reading, const std::string& path, const Where& where) {
-  const std::vector<std::string> segments = split(path, ".");
-  if (segments.size() < 2 || (segments[0] != "rock" && segments[0] != "interface")) return true;
+  const std::vector<std::string> names = split(path, ".");
+  if (names.size() < 2 || (names[0] != "rock" && names[0] != "interface")) return true;
   constexpr std::size_t longest = 64;  // so that it can be read in messages and figures
-  if (!is_plain_name(segments[1]) || segments[1].size() > longest) {
+  const bool plain = is_plain_name(names[1]) && names[1].size() <= longest,
+             taken = names[0] == "interface" && names[1] == "perfect";
+  if (!plain)
     reading.fault(where, "{}: a name is made of letters, digits, _ and -, at most {} of them.", path, longest);
-  } else if (segments[0] == "interface" && segments[1] == "perfect") {
-    reading.fault(where, "interface.perfect: the name perfect is taken; a perfect interface needs no table.");
-  } else {
-    return true;
-  }
-  return false;
+  if (taken) reading.fault(where, "interface.perfect: the name perfect is taken; a perfect interface needs no table.");
+  return plain && !taken;
 }
 
 bool is_key_table(const std::string& path) {

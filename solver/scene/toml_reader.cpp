@@ -160,12 +160,10 @@ void take_setting(Reading& reading, const std::string& setting, toml::table& tab
 
 // The [[claim]] tables as they will stand in the resolved scene.
 std::string claims_text(const toml::table& root) {
-  const toml::node* claims = root.get("claim");
-  if (claims == nullptr) return {};
   toml::table table;
-  table.insert("claim", *claims->as_array());
+  if (const toml::node* claims = root.get("claim")) table.insert("claim", *claims->as_array());
   std::ostringstream out;
-  out << toml::toml_formatter{table, toml::format_flags::allow_unicode_strings};
+  if (!table.empty()) out << toml::toml_formatter{table, toml::format_flags::allow_unicode_strings};
   return out.str();
 }
 
