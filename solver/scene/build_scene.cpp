@@ -47,7 +47,7 @@ void apply(Reading& reading) {
   }
   for (const auto& [path, given] : reading.entries) {
     if (given.key == nullptr || (path.starts_with("interface.") && !is_of_law(reading, path, given))) continue;
-    if (!given.sound || !reading.sound(path.substr(0, path.find('[')))) continue;  // nor in a list that has no use
+    if (!reading.sound(path.substr(0, path.find('[')))) continue;  // nor what is in a list of no use
     given.key->member.read({path, *given.key, *given.value, given.where, reading.faults}, scene, index_of(scene, path));
   }
 }

@@ -130,7 +130,6 @@ void take_variants(Reading& reading, const std::vector<Variant>& variants, const
   for (const auto& [name, where, table] : variants) {
     names.push_back(name);
     Reading other = scene;
-    other.faults.clear();
     take_table(name == chosen ? reading : other, *table, "", where);
     reading.faults.insert(reading.faults.end(), other.faults.begin(), other.faults.end());
   }
