@@ -1,7 +1,6 @@
 // Values of keys: from TOML to the member that a key leads to, and back.
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <sstream>
 
 #include "scene/formula.hpp"
