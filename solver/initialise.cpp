@@ -20,6 +20,7 @@ namespace {
 Particles make_particles(const Scene& scene, const Rocks& rocks, const Grid& grid) {
   const std::vector<GridPoint> columns = points_along_x(grid, points_across(scene));
   Particles p;
+  std::vector<Vec2> places;
   for (const GridPoint& y : points_along_y(grid, points_across(scene))) {
     for (const GridPoint& x : columns) {
       const std::size_t rock = rock_at(scene, {x.at, y.at});
@@ -30,10 +31,11 @@ Particles make_particles(const Scene& scene, const Rocks& rocks, const Grid& gri
       p.half_x.push_back(0.5 * x.length), p.half_y.push_back(0.5 * y.length);
       p.rock.push_back(static_cast<std::uint8_t>(rock));
       p.sides.push_back(0);
-      p.in_situ.push_back({-scene.in_situ.horizontal_Pa, -scene.in_situ.vertical_Pa, 0.0});
       p.id.push_back(p.next_id++);
+      places.emplace_back(x.at, y.at);
     }
   }
+  p.in_situ = prescribed_stress(scene, places);
   return p;
 }
 

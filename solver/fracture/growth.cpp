@@ -142,16 +142,18 @@ Value mean_around(const Particles& p, const Vec2& x, const Vec2& reach, Value su
   return (1.0 / weights) * sum;
 }
 
-// In-situ stress at a place: that of the particles of its rock around it, which is exact where it is uniform.
+// In-situ stress at a place: that of the particles of its rock and layer around it, which is exact where it is uniform.
 Stress in_situ_at(const Scene& scene, const State& state, const Vec2& x) {
-  if (scene.in_situ.initialise == InSitu::Initialise::uniform)
-    return {-scene.in_situ.horizontal_Pa, -scene.in_situ.vertical_Pa, 0.0};
+  if (scene.in_situ.initialise == InSitu::Initialise::uniform) return prescribed_stress(scene, {x})[0];
   const Particles& p = state.particles;
   const Grid& g = state.grid;
   const Vec2 spans{g.span_x(std::clamp(g.column_at(x.x()), 0, g.nx)), g.span_y(std::clamp(g.row_at(x.y()), 0, g.ny))};
-  const std::size_t rock = rock_at(scene, x);
+  const auto& layers = scene.strata.layers;
+  const auto layer_of = [&](double at_x, double at_y) -> const Layer& { return layers[layer_at(scene, {at_x, at_y})]; };
+  const Layer& own = layer_of(x.x(), x.y());
   return mean_around(
-      p, x, spans, Stress{}, [&](std::size_t q) { return p.rock[q] == rock; },
+      p, x, spans, Stress{},
+      [&](std::size_t q) { return p.rock[q] == own.rock && layer_of(p.x[q], p.y[q]).has_stress_of(own); },
       [&](std::size_t q) { return p.in_situ[q]; });
 }
 

@@ -67,16 +67,16 @@ ColumnWeights column_weights(const Scene& scene, const Grid& g, const Band& band
   return out;
 }
 
-// Force of the rock on the - side on the columns from -1 on, beyond that of the stress that balances the edges.
+// Force of the rock on the - side on the columns from -1 on, beyond that of the prescribed stress, which is in balance.
 Eigen::MatrixX2d forces_from_below(const Scene& scene, const State& state, const Surface& surface, const Band& band,
-                                   const Stress& even, Eigen::Index columns) {
+                                   const std::vector<Stress>& prescribed, Eigen::Index columns) {
   Eigen::MatrixX2d forces = Eigen::MatrixX2d::Zero(columns, 2);
   const Particles& p = state.particles;
   for (std::size_t q = 0; q < p.size(); ++q) {
     if ((p.sides[q] & surface.mask()) != 0) continue;
     const ColumnWeights w = column_weights(scene, state.grid, band, {p.x[q], p.y[q]}, p.half(q));
     for (std::size_t a = 0; a < 3; ++a)
-      forces.row(w.column[a] + 1) -= (p.in_situ[q] + -1.0 * even).on(p.V[q] * w.grad[a]).transpose();
+      forces.row(w.column[a] + 1) -= (p.in_situ[q] + -1.0 * prescribed[q]).on(p.V[q] * w.grad[a]).transpose();
   }
   return forces;
 }
@@ -436,7 +436,10 @@ void let_go(const Columns& columns, const Bonds& bonds, State& state) {
 }
 
 void hand_over_in_situ(const Scene& scene, State& state) {
-  const Stress even{-scene.in_situ.horizontal_Pa, -scene.in_situ.vertical_Pa, 0.0};
+  const Particles& p = state.particles;
+  std::vector<Vec2> places;
+  for (std::size_t q = 0; q < p.size(); ++q) places.emplace_back(p.x[q], p.y[q]);
+  const std::vector<Stress> prescribed = prescribed_stress(scene, places);
   for (Surface& surface : state.surfaces) {
     const InterfaceLaw& law = scene.laws[surface.law];
     if (surface.kind != Surface::Kind::interface || law.takes_all_compression()) continue;
@@ -460,10 +463,10 @@ void hand_over_in_situ(const Scene& scene, State& state) {
     if (factor.info() != Eigen::Success)
       throw NumericalFailure(
           "the loaded in-situ state cannot be handed to an interface: its columns are not told apart");
-    const Eigen::MatrixX2d t = factor.solve(forces_from_below(scene, state, surface, band, even, columns));
+    const Eigen::MatrixX2d t = factor.solve(forces_from_below(scene, state, surface, band, prescribed, columns));
     for (std::size_t q = 0; q < surface.points.size(); ++q) {
       SurfacePoint& s = surface.points[q];
-      s.in_situ = -even.on(s.n);
+      s.in_situ = -prescribed_stress(scene, {s.x})[0].on(s.n);
       for (std::size_t a = 0; a < 3; ++a) s.in_situ += at[q].Phi[a] * t.row(at[q].column[a] + 1).transpose();
     }
   }

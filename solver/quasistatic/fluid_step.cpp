@@ -136,12 +136,12 @@ void fill_fracture(const Scene& scene, State& state, QuasistaticModel& model) {
   if (!state.has_fracture || scene.fluid.law != Fluid::Law::reynolds) return;
   auto& points = state.fracture().points;
   double P = scene.fluid.start_Pa;
-  // A thousandth below the closing stress, so that contact holds every face: at it all are between open and closed, and
-  // Newton's method may go round in circles. Rough faces hold as much less than they would at it.
+  // A thousandth below the least closing stress, so that contact holds every face: at it all are between open and
+  // closed, and Newton's method may go round in circles. Rough faces hold as much less than they would at it.
   constexpr double held = 1e-3;
   if (scene.fluid.rate_m2_s) {
-    const double closing = points[std::min(state.fluid.inlet, points.size() - 1)].closing_stress();
-    P = closing - held * std::abs(closing);
+    const auto least = std::ranges::min_element(points, {}, &SurfacePoint::closing_stress);
+    P = least->closing_stress() - held * std::abs(least->closing_stress());
   }
   const RockResponse rock =
       rock_of(scene, state.time, state, model)(Eigen::VectorXd::Constant(static_cast<Eigen::Index>(points.size()), P));

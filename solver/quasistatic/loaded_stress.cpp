@@ -52,13 +52,13 @@ void load_in_situ(const Scene& scene, const Rocks& rocks, State& state) {
   const IntactBody body(loaded, rocks, state, false);  // the loads are in balance: what it holds costs no reaction
   state.masters = body.masters();
   Eigen::VectorXd f = Eigen::VectorXd::Zero(body.unknowns());
+  const double horizontal = scene.in_situ.horizontal_Pa.number, vertical = scene.in_situ.vertical_Pa.number;
   const Stretch x = scene.domain.along_x(), y = scene.domain.along_y();
   const Vec2 corners[4] = {{x.from, y.from}, {x.to, y.from}, {x.to, y.to}, {x.from, y.to}};
-  load_edge(loaded, state, corners[0], corners[3], {scene.in_situ.horizontal_Pa, 0.0}, f);
-  load_edge(loaded, state, corners[1], corners[2], {-scene.in_situ.horizontal_Pa, 0.0}, f);
-  load_edge(loaded, state, corners[3], corners[2], {0.0, -scene.in_situ.vertical_Pa}, f);
-  if (scene.domain.bottom == Edge::traction)
-    load_edge(loaded, state, corners[0], corners[1], {0.0, scene.in_situ.vertical_Pa}, f);
+  load_edge(loaded, state, corners[0], corners[3], {horizontal, 0.0}, f);
+  load_edge(loaded, state, corners[1], corners[2], {-horizontal, 0.0}, f);
+  load_edge(loaded, state, corners[3], corners[2], {0.0, -vertical}, f);
+  if (scene.domain.bottom == Edge::traction) load_edge(loaded, state, corners[0], corners[1], {0.0, vertical}, f);
   const Eigen::VectorXd u = body.factor().solve(f);
   Particles& p = state.particles;
   for (const Bin& bin : state.bins) {
@@ -72,7 +72,8 @@ void load_in_situ(const Scene& scene, const Rocks& rocks, State& state) {
           e[component][0] += value * g.N_x[n], e[component][1] += value * g.N_y[n];
         }
       }
-      p.in_situ[q] = stress_of(rocks[p.rock[q]], e[0][0], e[0][1], e[1][0], e[1][1]);
+      p.in_situ[q] =
+          p.in_situ[q] + -1.0 * edges_stress(scene) + stress_of(rocks[p.rock[q]], e[0][0], e[0][1], e[1][0], e[1][1]);
     }
   }
 }

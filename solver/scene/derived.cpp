@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "scene/graded_cells.hpp"
+#include "scene/in_situ.hpp"
 
 namespace strata {
 namespace {
@@ -110,8 +111,11 @@ std::vector<Point> legs_between_interfaces(const Scene& scene, const Point& from
   const double on_it = 0.1 * scene.numerics.cell_m / std::hypot(to[0] - from[0], to[1] - from[1]);
   const std::size_t axis = scene.strata.along == Strata::Along::y ? 1 : 0;
   std::vector<double> shares;
-  for (const InterfacePlace& place : scene.strata.interfaces) {
-    if (scene.laws[place.law].kind == InterfaceLaw::Kind::perfect) continue;
+  const auto& layers = scene.strata.layers;
+  for (std::size_t k = 0; k + 1 < layers.size(); ++k) {
+    const InterfacePlace& place = scene.strata.interfaces[k];
+    const bool passes_all = scene.laws[place.law].kind == InterfaceLaw::Kind::perfect;
+    if (passes_all && layers[k].has_stress_of(layers[k + 1])) continue;
     const double share = (place.at_m - from[axis]) / (to[axis] - from[axis]);
     if (share > on_it && share < 1.0 - on_it) shares.push_back(share);
   }
@@ -120,6 +124,14 @@ std::vector<Point> legs_between_interfaces(const Scene& scene, const Point& from
   for (const double s : shares) ends.push_back({from[0] + s * (to[0] - from[0]), from[1] + s * (to[1] - from[1])});
   ends.push_back(to);
   return ends;
+}
+
+std::size_t layer_at(const Scene& scene, const Point& x) {
+  const auto& layers = scene.strata.layers;
+  const double along = scene.stacking(x[0], x[1]);
+  std::size_t k = 0;
+  while (k + 1 < layers.size() && along >= layers[k].to_m) ++k;
+  return k;
 }
 
 bool may_turn(const Scene& scene) {
@@ -158,8 +170,8 @@ std::vector<std::string> implausible(const Scene& scene) {
   }
   const InSitu& in_situ = scene.in_situ;
   constexpr const char* of_rock = "1e3, that of 4 cm of rock: is it in MPa? 3 MPa is 3e6";
-  least("in_situ.vertical_Pa", in_situ.vertical_Pa, 1e3, of_rock);
-  least("in_situ.horizontal_Pa", in_situ.horizontal_Pa, 1e3, of_rock);
+  least("in_situ.vertical_Pa", in_situ.vertical_Pa.number, 1e3, of_rock);
+  least("in_situ.horizontal_Pa", in_situ.horizontal_Pa.number, 1e3, of_rock);
   if (!scene.fracture) return out;
   const Fluid& fluid = scene.fluid;
   const double end_Pa = scene.stop.inlet_Pa.value_or(0.0);
@@ -169,7 +181,7 @@ std::vector<std::string> implausible(const Scene& scene) {
   if (fluid.law == Fluid::Law::uniform) return out;
   // The fluid's volume changes by P/M, and the laws of flow leave out the square of that: half of it at a tenth.
   least("fluid.bulk_modulus_Pa", fluid.bulk_modulus_Pa,
-        10.0 * std::max({fluid.start_Pa, end_Pa, std::abs(in_situ.vertical_Pa), std::abs(in_situ.horizontal_Pa)}),
+        10.0 * std::max({fluid.start_Pa, end_Pa, largest_in_situ(scene)}),
         "ten times the scene's pressures, which would change the fluid's volume by more than a tenth: is it in GPa? "
         "2.2 GPa is 2.2e9");
   // Hydrogen, the thinnest of gases, has 9e-6 Pa s.

@@ -24,9 +24,12 @@ double segment_distance(const Point& a0, const Point& a1, const Point& b0, const
 /// path_m: points in m, no two neighbours the same; tolerance_m: distance below which segments touch.
 std::optional<std::pair<std::size_t, std::size_t>> self_contact(const std::vector<Point>& path_m, double tolerance_m);
 
-/// The ends (m) of the legs of a straight line from one place to another (m) that interfaces with a law cut it into,
-/// the last of them `to`: no piece of a fracture lies on both sides of one.
+/// The ends (m) of the legs of a straight line from one place to another (m) that interfaces with a law and changes
+/// of the in-situ stress cut it into, the last of them `to`: no piece of a fracture lies on both sides of one.
 std::vector<Point> legs_between_interfaces(const Scene& scene, const Point& from, const Point& to);
+
+/// The layer in which a place (m) lies, counted from 0; the first and the last go on beyond the block.
+std::size_t layer_at(const Scene& scene, const Point& x);
 
 /// Whether a fracture's path may leave its straight line: it grows, and by the direction of the largest hoop stress.
 bool may_turn(const Scene& scene);

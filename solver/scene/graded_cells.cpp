@@ -210,7 +210,10 @@ std::vector<double> scene_knots(const Scene& scene, int axis) {
 
 bool mirror_symmetric(const Scene& scene) {
   if (!scene.fracture || scene.strata.along != Strata::Along::y) return false;
-  if (scene.body.acceleration_m_s2) return false;  // its formulas need not be symmetric
+  const InSitu& in_situ = scene.in_situ;
+  if (scene.body.acceleration_m_s2 || !in_situ.vertical_Pa.formula.empty())
+    return false;  // formulas need not be symmetric
+  if (in_situ.shear_Pa != 0.0) return false;
   if (scene.domain.sides != Edge::fixed || scene.fracture->direction != Fracture::Direction::straight) return false;
   const double middle = 0.5 * scene.domain.width_m;
   const bool upright = std::ranges::all_of(scene.fracture->path_m, [&](const Point& point) {

@@ -22,6 +22,13 @@ constexpr std::string_view words(Edge) {
 // where the key says so of the time t (s).
 using Formulas = std::array<std::string, 2>;
 
+// A quantity that may change with place: a number, or a formula (see formula.hpp) of X and Y (m).
+struct Field {
+  double number = 0.0;
+  std::string formula{};  // empty: the number everywhere
+  bool operator==(const Field&) const = default;
+};
+
 // A stretch along an axis (m).
 struct Stretch {
   double from = 0.0, to = 0.0;
@@ -48,8 +55,10 @@ struct Domain {
 struct InSitu {
   enum class Initialise { uniform, loaded };
   friend constexpr std::string_view words(Initialise) { return "uniform, loaded"; }
-  double vertical_Pa = 0.0;
-  double horizontal_Pa = 0.0;
+  Field vertical_Pa;  // see in_situ.hpp
+  Field horizontal_Pa;
+  double shear_Pa = 0.0;
+  bool weight = false;  // of the rock
   Initialise initialise = Initialise::uniform;
   bool operator==(const InSitu&) const = default;
 };
@@ -105,6 +114,11 @@ struct Layer {
   std::size_t rock = 0;  // index into Scene::rocks
   double from_m = 0.0;
   double to_m = 0.0;
+  std::optional<Field> horizontal_Pa{}, vertical_Pa{};  // absent: the scene's
+
+  bool has_stress_of(const Layer& other) const {
+    return horizontal_Pa == other.horizontal_Pa && vertical_Pa == other.vertical_Pa;
+  }
   bool operator==(const Layer&) const = default;
 };
 

@@ -1,5 +1,7 @@
 #include "state/elasticity.hpp"
 
+#include "scene/in_situ.hpp"
+
 namespace strata {
 
 namespace {
@@ -41,11 +43,19 @@ Rocks make_elasticities(const Scene& scene) {
 }
 
 std::size_t rock_at(const Scene& scene, const Vec2& x) {
-  const double along = scene.strata.along == Strata::Along::y ? x.y() : x.x();
-  for (const Layer& layer : scene.strata.layers) {
-    if (along < layer.to_m) return layer.rock;
-  }
-  return scene.strata.layers.back().rock;
+  return scene.strata.layers[layer_at(scene, {x.x(), x.y()})].rock;
+}
+
+std::vector<Stress> prescribed_stress(const Scene& scene, const std::vector<Vec2>& places) {
+  std::vector<Point> points;
+  for (const Vec2& x : places) points.push_back({x.x(), x.y()});
+  std::vector<Stress> out;
+  for (const InSituStress& s : in_situ_stress(scene, points)) out.push_back({-s.horizontal, -s.vertical, s.shear});
+  return out;
+}
+
+Stress edges_stress(const Scene& scene) {
+  return {-scene.in_situ.horizontal_Pa.number, -scene.in_situ.vertical_Pa.number, 0.0};
 }
 
 double strain_energy(const Rocks& rocks, const Particles& p) {

@@ -34,6 +34,13 @@ Rocks make_elasticities(const Scene& scene);
 /// Index of the rock of the layer at a place (m).
 std::size_t rock_at(const Scene& scene, const Vec2& x);
 
+/// In-situ stress (Pa) at places (m), scene/in_situ.hpp. Under initialise = "loaded" the elastic stress by edges' loads
+/// stands in place of edges_stress().
+std::vector<Stress> prescribed_stress(const Scene& scene, const std::vector<Vec2>& places);
+
+/// The uniform stress (Pa) that in_situ's numbers are. Throws nothing.
+Stress edges_stress(const Scene& scene);
+
 /// Strain energy of the change from the in-situ state, sum V_p sigma_p : e_p / 2 (J/m).
 double strain_energy(const Rocks& rocks, const Particles& particles);
 

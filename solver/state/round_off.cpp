@@ -4,13 +4,14 @@
 #include <cmath>
 #include <limits>
 
+#include "scene/in_situ.hpp"
 #include "state/elasticity.hpp"
 
 namespace strata {
 
 RoundOff round_off(const Scene& scene, const State& state) {
   constexpr double tiny = 1e-12;
-  double largest = std::max(std::abs(scene.in_situ.vertical_Pa), std::abs(scene.in_situ.horizontal_Pa));
+  double largest = largest_in_situ(scene);
   if (scene.fracture) largest = std::max({largest, std::abs(scene.fluid.start_Pa), std::abs(state.fluid.inlet_Pa)});
   double softest = std::numeric_limits<double>::infinity(), slowest = softest;
   for (const Elasticity& rock : make_elasticities(scene))
