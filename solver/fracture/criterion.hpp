@@ -12,7 +12,8 @@ namespace strata {
 ///   one ahead, nearer than the crossing increment: energy;
 ///   one behind whose faces are apart, nearer than rings need: K or, within three cells, where K is some per cent off
 ///   between unlike rocks, the slope of the energy;
-///   any other one nearer than the crossing increment: energy; else J. Throws nothing.
+///   any other one nearer than the crossing increment: energy; else J.
+/// In place of J, K where the in-situ stress jumps within the tip's rings. Throws nothing.
 Criterion criterion_of(const Scene& scene, const State& state, const Tip& tip);
 
 /// Coordinate of a place (m) along which layers are stacked. Throws nothing.

@@ -10,7 +10,7 @@
 namespace strata {
 namespace {
 
-using Fault = std::pair<std::string, std::string>;
+using KeyFault = std::pair<std::string, std::string>;
 
 struct Coordinates {
   std::vector<double> X, Y;
@@ -81,7 +81,7 @@ std::vector<Point> places_in(const Scene& scene, std::size_t k, std::size_t axis
 
 // The worst imbalance of a stress of layer k along an axis; nothing where round-off, or a thousandth of the rock's
 // weight for another g, explains it.
-std::optional<Fault> imbalance(const Scene& scene, std::size_t k, std::size_t axis, const Looked& of) {
+std::optional<KeyFault> imbalance(const Scene& scene, std::size_t k, std::size_t axis, const Looked& of) {
   const std::vector<Point> places = places_in(scene, k, axis);
   const std::vector<InSituStress> stress = in_situ_stress(scene, places);
   const double weight = axis == 1 && scene.in_situ.weight
@@ -92,9 +92,9 @@ std::optional<Fault> imbalance(const Scene& scene, std::size_t k, std::size_t ax
   for (std::size_t n = 0; n < places.size(); ++n) {
     const auto value = [&](std::size_t q) { return axis == 0 ? stress[q].horizontal : stress[q].vertical; };
     if (!std::isfinite(value(n)))
-      return Fault{of.key,
-                   fmt::format("{} is {} at X = {:.6g} m, Y = {:.6g} m. Give a formula that is finite in the block.",
-                               typed(of), value(n), places[n][0], places[n][1])};
+      return KeyFault{of.key,
+                      fmt::format("{} is {} at X = {:.6g} m, Y = {:.6g} m. Give a formula that is finite in the block.",
+                                  typed(of), value(n), places[n][0], places[n][1])};
     if (n == 0 || places[n][axis] <= places[n - 1][axis]) continue;
     const double distance = places[n][axis] - places[n - 1][axis], change = (value(n) - value(n - 1)) / distance;
     const double off = std::abs(change + weight) - 1e-3 * weight - 1e-9 * std::abs(value(n)) / distance;
@@ -103,14 +103,15 @@ std::optional<Fault> imbalance(const Scene& scene, std::size_t k, std::size_t ax
   if (worst == 0.0) return std::nullopt;
   const std::string place = fmt::format("{} changes by {:.6g} Pa/m along {} at X = {:.6g} m, Y = {:.6g} m", typed(of),
                                         slope, axis == 0 ? "X" : "Y", at[0], at[1]);
-  if (axis == 0) return Fault{of.key, place + ", which nothing balances. Let it depend on Y alone."};
+  if (axis == 0) return KeyFault{of.key, place + ", which nothing balances. Let it depend on Y alone."};
   if (!scene.in_situ.weight)
-    return Fault{of.key, place +
-                             ", which nothing balances. For the rock's weight give the stress at the block's top and "
-                             "in_situ.weight = true."};
-  return Fault{of.key,
-               fmt::format("{}, and the rock's weight asks for {:.6g}. Give the stress at the block's top as a number.",
-                           place, -weight)};
+    return KeyFault{of.key,
+                    place +
+                        ", which nothing balances. For the rock's weight give the stress at the block's top and "
+                        "in_situ.weight = true."};
+  return KeyFault{
+      of.key, fmt::format("{}, and the rock's weight asks for {:.6g}. Give the stress at the block's top as a number.",
+                          place, -weight)};
 }
 
 }  // namespace
@@ -158,8 +159,8 @@ double largest_in_situ(const Scene& scene) {
   return largest;
 }
 
-std::vector<Fault> in_situ_faults(const Scene& scene) {
-  std::vector<Fault> out;
+std::vector<KeyFault> in_situ_faults(const Scene& scene) {
+  std::vector<KeyFault> out;
   const InSitu& in_situ = scene.in_situ;
   const bool upwards = scene.strata.along == Strata::Along::y;
   const Looked horizontal{"in_situ.horizontal_Pa", in_situ.horizontal_Pa},
@@ -175,7 +176,7 @@ std::vector<Fault> in_situ_faults(const Scene& scene) {
                                      "or use initialise = \"uniform\".");
     }
   }
-  std::optional<Fault> general[2];
+  std::optional<KeyFault> general[2];
   for (std::size_t k = 0; k < scene.strata.layers.size(); ++k) {
     const Layer& layer = scene.strata.layers[k];
     const std::string path = fmt::format("strata.layers[{}].", k);

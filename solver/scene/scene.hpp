@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace strata {
@@ -24,8 +25,11 @@ using Formulas = std::array<std::string, 2>;
 
 // A quantity that may change with place: a number, or a formula (see formula.hpp) of X and Y (m).
 struct Field {
-  double number = 0.0;
+  double number;
   std::string formula{};  // empty: the number everywhere
+
+  Field(double number_everywhere = 0.0) : number(number_everywhere) {}
+  explicit Field(std::string of_place) : formula(std::move(of_place)) {}
   bool operator==(const Field&) const = default;
 };
 
@@ -57,9 +61,9 @@ struct InSitu {
   friend constexpr std::string_view words(Initialise) { return "uniform, loaded"; }
   Field vertical_Pa;  // see in_situ.hpp
   Field horizontal_Pa;
+  Initialise initialise = Initialise::uniform;
   double shear_Pa = 0.0;
   bool weight = false;  // of the rock
-  Initialise initialise = Initialise::uniform;
   bool operator==(const InSitu&) const = default;
 };
 
