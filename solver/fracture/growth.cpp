@@ -29,7 +29,8 @@ double increment_to_interface(const Scene& scene, const State& state, const Vec2
   double length = (times + sliver) * da;
   bool meets = false;
   for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
-    if (!scene.changes_at(k)) continue;
+    const Layer &before = scene.strata.layers[k], &beyond = scene.strata.layers[k + 1];
+    if (!scene.changes_at(k) && before.rock == beyond.rock && before.has_stress_of(beyond)) continue;
     const double rate = stacking(scene, direction);
     const double distance = scene.strata.interfaces[k].at_m - stacking(scene, tip);
     if (std::abs(rate) < 1e-6) continue;

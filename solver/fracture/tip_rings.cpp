@@ -76,8 +76,7 @@ void keep_off_interfaces(const Scene& scene, const State& state, const Vec2& at,
     if (!scene.changes_at(k)) continue;
     const double distance = std::abs(stacking(scene, at) - place.at_m);
     room.keep_off(distance);
-    if (scene.strata.layers[k].rock != scene.strata.layers[k + 1].rock)
-      room.note(distance, Obstacle::rock_border, trusted_cells_at_interface);
+    if (scene.stiffness_changes_at(k)) room.note(distance, Obstacle::rock_border, trusted_cells_at_interface);
   }
 }
 

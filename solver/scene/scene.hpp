@@ -254,10 +254,16 @@ struct Scene {
   Output output;
   std::string resolved_toml;  // the scene as text, every key with its value, variant and --set applied
 
-  // Whether anything changes at an interface: a law, or another rock beyond it.
+  // Whether rocks of unlike elastic constants meet at an interface.
+  bool stiffness_changes_at(std::size_t interface) const {
+    const Rock &before = rocks[strata.layers[interface].rock], &beyond = rocks[strata.layers[interface + 1].rock];
+    return before.youngs_modulus_Pa != beyond.youngs_modulus_Pa || before.poisson_ratio != beyond.poisson_ratio;
+  }
+
+  // Whether an interface is more than a border of toughness or in-situ stress: a law, or another stiffness beyond it.
   bool changes_at(std::size_t interface) const {
     return laws[strata.interfaces[interface].law].kind != InterfaceLaw::Kind::perfect ||
-           strata.layers[interface].rock != strata.layers[interface + 1].rock;
+           stiffness_changes_at(interface);
   }
 
   // Coordinate of a place (m) along which layers are stacked.
