@@ -63,14 +63,19 @@ void make_fracture(const Scene& scene, State& state) {
 
 // The points of an interface at `at` (m). Along a graded grid its legs are halves of spans, each with a point in its
 // middle where the particles stand too: what a law exerts then balances a uniform stress in the rock at every node.
-Surface make_interface(const Scene& scene, const Grid& grid, double at, int bit) {
+Surface make_interface(const Scene& scene, const Grid& grid, const InterfacePlace& place, int bit) {
   const bool along_x = scene.strata.along == Strata::Along::y;
   const std::vector<double>& knots = along_x ? grid.x_knots : grid.y_knots;
   const Stretch rock = along_x ? scene.domain.along_x() : scene.domain.along_y();
+  const double from = place.from_m.value_or(rock.from), to = place.to_m.value_or(rock.to);
   std::vector<Vec2> path;
-  const auto add = [&](double s) { path.push_back(along_x ? Vec2{s, at} : Vec2{at, s}); };
+  const auto add = [&](double s) {
+    s = std::clamp(s, from, to);
+    const Vec2 x = along_x ? Vec2{s, place.at_m} : Vec2{place.at_m, s};
+    if (path.empty() || (x - path.back()).norm() > 1e-6 * grid.h) path.push_back(x);
+  };
   if (knots.empty()) {
-    add(rock.from), add(rock.to);
+    add(from), add(to);
     return make_surface(Surface::Kind::interface, bit, path, surface_spacing(grid));
   }
   for (int k = 0; k <= (along_x ? grid.nx : grid.ny); ++k) {
@@ -83,11 +88,15 @@ Surface make_interface(const Scene& scene, const Grid& grid, double at, int bit)
 void make_interfaces(const Scene& scene, State& state) {
   for (const InterfacePlace& place : scene.strata.interfaces) {
     if (scene.laws[place.law].kind == InterfaceLaw::Kind::perfect) continue;
-    Surface surface = make_interface(scene, state.grid, place.at_m, static_cast<int>(state.surfaces.size()));
+    Surface surface = make_interface(scene, state.grid, place, static_cast<int>(state.surfaces.size()));
     surface.law = place.law;
     for (SurfacePoint& s : surface.points) {
       const bool along_x = scene.strata.along == Strata::Along::y;
-      s.column = along_x ? state.grid.column_at(s.x.x()) : state.grid.row_at(s.x.y());
+      const auto column_of = [&](double x) { return along_x ? state.grid.column_at(x) : state.grid.row_at(x); };
+      // An end stands on a grid line, whose node stays whole as that of a fracture's tip does.
+      const int low = place.from_m ? column_of(*place.from_m) + 1 : 0,
+                high = place.to_m ? column_of(*place.to_m) - 1 : state.grid.nodes();
+      s.column = std::clamp(column_of(along_x ? s.x.x() : s.x.y()), low, high);
       s.split = scene.laws[place.law].apart_at_start();
     }
     state.surfaces.push_back(surface);

@@ -30,13 +30,15 @@ double increment_to_interface(const Scene& scene, const State& state, const Vec2
   bool meets = false;
   for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
     const Layer &before = scene.strata.layers[k], &beyond = scene.strata.layers[k + 1];
-    if (!scene.changes_at(k) && before.rock == beyond.rock && before.has_stress_of(beyond)) continue;
     const double rate = stacking(scene, direction);
     const double distance = scene.strata.interfaces[k].at_m - stacking(scene, tip);
     if (std::abs(rate) < 1e-6) continue;
     const double to_it = distance / rate;
+    const Vec2 met = tip + to_it * direction;
+    const bool changes = scene.changes_at(k, met.x() + met.y() - stacking(scene, met));
+    if (!changes && before.rock == beyond.rock && before.has_stress_of(beyond)) continue;
     if (to_it <= 0.0 || to_it >= length) continue;
-    const bool apart = apart_at(scene, state, k, tip + to_it * direction);
+    const bool apart = apart_at(scene, state, k, met);
     if (to_it <= (apart ? ahead_cells * state.grid.h : sliver * da)) continue;
     length = to_it;
     meets = true;

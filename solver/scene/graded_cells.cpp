@@ -148,6 +148,13 @@ std::vector<Stretch> fine_stretches(const Scene& scene, int axis) {
     fine.push_back(
         {from.value_or((*low)[k] - fine_cells_at_fracture * h), to.value_or((*high)[k] + fine_cells_at_fracture * h)});
   }
+  const bool along_y = scene.strata.along == Strata::Along::y;
+  for (const InterfacePlace& place : scene.strata.interfaces) {
+    if (along_y != (axis == 0)) continue;
+    for (const auto& end : {place.from_m, place.to_m}) {
+      if (end) fine.push_back({*end - fine_cells_at_interface * h, *end + fine_cells_at_interface * h});
+    }
+  }
   const bool across = (scene.strata.along == Strata::Along::x) == (axis == 0);
   for (std::size_t n = 0; across && n < scene.strata.interfaces.size(); ++n) {
     if (!scene.changes_at(n)) continue;
@@ -219,7 +226,11 @@ bool mirror_symmetric(const Scene& scene) {
   const bool upright = std::ranges::all_of(scene.fracture->path_m, [&](const Point& point) {
     return std::abs(point[0] - middle) < 1e-9 * scene.numerics.cell_m;
   });
-  return upright && mirrored_columns(scene);
+  const bool mirrored = std::ranges::all_of(scene.strata.interfaces, [&](const InterfacePlace& place) {
+    const double off = place.from_m.value_or(0.0) + place.to_m.value_or(scene.domain.width_m) - scene.domain.width_m;
+    return place.from_m.has_value() == place.to_m.has_value() && std::abs(off) < 1e-9 * scene.numerics.cell_m;
+  });
+  return upright && mirrored && mirrored_columns(scene);
 }
 
 }  // namespace strata

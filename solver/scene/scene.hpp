@@ -128,8 +128,11 @@ struct Layer {
 
 // The interface between layer k and layer k + 1.
 struct InterfacePlace {
-  std::size_t law = 0;  // index into Scene::laws
-  double at_m = 0.0;    // position along the stacking axis
+  std::size_t law = 0;                     // index into Scene::laws
+  double at_m = 0.0;                       // position along the stacking axis
+  std::optional<double> from_m{}, to_m{};  // where the law holds along it; absent: from, to the block's edge
+
+  bool holds_at(double along) const { return along >= from_m.value_or(along) && along <= to_m.value_or(along); }
   bool operator==(const InterfacePlace&) const = default;
 };
 
@@ -264,6 +267,11 @@ struct Scene {
   bool changes_at(std::size_t interface) const {
     return laws[strata.interfaces[interface].law].kind != InterfaceLaw::Kind::perfect ||
            stiffness_changes_at(interface);
+  }
+
+  // The same at a place along it (m).
+  bool changes_at(std::size_t interface, double along) const {
+    return stiffness_changes_at(interface) || (changes_at(interface) && strata.interfaces[interface].holds_at(along));
   }
 
   // Coordinate of a place (m) along which layers are stacked.
