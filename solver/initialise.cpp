@@ -94,8 +94,9 @@ void make_interfaces(const Scene& scene, State& state) {
       const bool along_x = scene.strata.along == Strata::Along::y;
       const auto column_of = [&](double x) { return along_x ? state.grid.column_at(x) : state.grid.row_at(x); };
       // An end stands on a grid line, whose node stays whole as that of a fracture's tip does.
-      const int low = place.from_m ? column_of(*place.from_m) + 1 : 0,
-                high = place.to_m ? column_of(*place.to_m) - 1 : state.grid.nodes();
+      const Stretch rock = along_x ? scene.domain.along_x() : scene.domain.along_y();
+      const int low = place.from_m > rock.from ? column_of(*place.from_m) + 1 : 0,
+                high = place.to_m && *place.to_m < rock.to ? column_of(*place.to_m) - 1 : state.grid.nodes();
       s.column = std::clamp(column_of(along_x ? s.x.x() : s.x.y()), low, high);
       s.split = scene.laws[place.law].apart_at_start();
     }

@@ -158,8 +158,11 @@ void build_strata(Reading& reading) {
     place_layers(reading, upwards ? scene.domain.height_m : scene.domain.width_m);
 
   const std::size_t between = layers.empty() ? 0 : layers.size() - 1, named = interfaces.size();
-  for (std::size_t k = 0; k < named; ++k)
-    interfaces[k].law = find_named(reading, scene.laws, fmt::format("strata.interfaces[{}]", k), "interface");
+  for (std::size_t k = 0; k < named; ++k) {
+    const std::string path = fmt::format("strata.interfaces[{}]", k);
+    const bool is_table = reading.given(path) && reading.entries[path].value->is_table();
+    interfaces[k].law = find_named(reading, scene.laws, is_table ? path + ".name" : path, "interface");
+  }
   if (reading.usable("strata.interfaces") && !layers.empty() && named != between) {
     reading.refuse("strata.interfaces", "strata.interfaces has {} {} for {} layers. Give one between each two: {}.",
                    named, named == 1 ? "name" : "names", layers.size(), between);

@@ -42,6 +42,10 @@ constexpr Key formula(Text path, Member member, Text unit, Text variables, Text 
   return {Kind::formula, path, member, help, unit, {}, variables};
 }
 
+constexpr Key truth(Text path, Member member, Text help) {
+  return {.kind = Kind::word, .path = path, .member = member, .help = help, .allowed = "true, false"};
+}
+
 constexpr Key required(Key key) {
   key.required = true;
   return key;
@@ -51,6 +55,10 @@ constexpr Key required(Key key) {
 constexpr Member layer_rock{nowhere<std::string>.read, [](Scene& scene, std::size_t k) {
                               return text_of(scene, scene.rocks[scene.strata.layers[k].rock].name);
                             }};
+
+constexpr Member interface_name{nowhere<std::string>.read, [](Scene& scene, std::size_t k) {
+                                  return text_of(scene, scene.laws[scene.strata.interfaces[k].law].name);
+                                }};
 
 // Layers end on grid lines or at mid-cell and are put back there when read, so a thickness needs no digits of
 // round-off. Until then the end of the layer holds its thickness.
@@ -83,12 +91,18 @@ constexpr Key keys[] = {
          "Both sides: no further normal displacement once the in-situ state is on, or the in-situ traction.",
          "fixed, traction"),
     word("domain.top", at<&Scene::domain, &Domain::top>, "Upper edge, as for the sides.", "traction, fixed"),
-    number("in_situ.vertical_Pa", at<&Scene::in_situ, &InSitu::vertical_Pa>, "Pa", finite,
-           "Vertical stress before the fracture is loaded, positive in compression."),
-    number("in_situ.horizontal_Pa", at<&Scene::in_situ, &InSitu::horizontal_Pa>, "Pa", finite,
-           "Horizontal stress, positive in compression."),
+    formula("in_situ.vertical_Pa", at<&Scene::in_situ, &InSitu::vertical_Pa>, "Pa", "X, Y",
+            "Vertical stress before the fracture is loaded, positive in compression: a number, or a formula of X."),
+    formula("in_situ.horizontal_Pa", at<&Scene::in_situ, &InSitu::horizontal_Pa>, "Pa", "X, Y",
+            "Horizontal stress, positive in compression: a number, or a formula of Y."),
     word("in_situ.initialise", at<&Scene::in_situ, &InSitu::initialise>,
          "The two stresses everywhere, or the static state of the bonded stack under them as edge tractions."),
+    number("in_situ.shear_Pa", at<&Scene::in_situ, &InSitu::shear_Pa>, "Pa", finite,
+           "Shear stress sigma_xy everywhere: positive, it drags the face towards +x towards +y."),
+    truth(
+        "in_situ.weight", at<&Scene::in_situ, &InSitu::weight>,
+        "Whether the rock's weight acts: vertical_Pa is then the stress at the block's top, which grows by rho g below "
+        "(g = 9.80665 m/s^2), or a formula of Y that does so itself to 0.1 %."),
     formula("body.acceleration_m_s2", at<&Scene::body, &Body::acceleration_m_s2>, "m/s^2", "X, Y, t",
             "Body force per mass beyond what the in-situ state balances, [\"x component\", \"y component\"]: "
             "formulas of the place X, Y (m) where a particle starts and the time t (s). Left out: none."),
@@ -131,10 +145,20 @@ constexpr Key keys[] = {
     number("strata.layers[].thickness_m", layer_thickness, "m", positive,
            "Thickness; the last layer may leave it out and takes what remains.",
            "Layers are stacked upwards from the block's lower edge (along = \"x\": from its left)."),
+    formula("strata.layers[].horizontal_Pa", at<&Scene::strata, &Strata::layers, &Layer::horizontal_Pa>, "Pa", "X, Y",
+            "Horizontal stress of a layer stacked upwards; left out: in_situ.horizontal_Pa."),
+    formula("strata.layers[].vertical_Pa", at<&Scene::strata, &Strata::layers, &Layer::vertical_Pa>, "Pa", "X, Y",
+            "Vertical stress of a layer stacked from left to right; left out: in_situ.vertical_Pa."),
     list("strata.interfaces", at<&Scene::strata, &Strata::interfaces>,
-         "A name between each two layers, [interface.NAME] or perfect; each on a grid line or at mid-cell. Left "
-         "out: all perfect.",
-         "Write [\"NAME\", ...]."),
+         "A name between each two layers, [interface.NAME] or perfect, or {name, from_m, to_m}; each on a grid line or "
+         "at "
+         "mid-cell. Left out: all perfect.",
+         "Write [\"NAME\", ...], or {name = \"NAME\", from_m = 15, to_m = 65} for one that ends."),
+    required(text("strata.interfaces[].name", interface_name, "Name of an interface that ends.")),
+    number("strata.interfaces[].from_m", at<&Scene::strata, &Strata::interfaces, &InterfacePlace::from_m>, "m", finite,
+           "Where its law begins along it, on a grid line; left out: at the edge. Beyond its ends the rock is bonded."),
+    number("strata.interfaces[].to_m", at<&Scene::strata, &Strata::interfaces, &InterfacePlace::to_m>, "m", finite,
+           "Where its law ends."),
     required(list("fracture.path_m", at<&Scene::fracture, &Fracture::path_m>,
                   "Points of the initial fracture, [[x, y], ...]; one end on the symmetry line, or neither.",
                   "Write [[x, y], [x, y]] with decimal points: a scene has one fracture.", "m")),

@@ -22,6 +22,7 @@ Scene scene_of_one() {
   scene.rocks.emplace_back();
   scene.laws.emplace_back();
   scene.strata.layers.emplace_back();
+  scene.strata.interfaces.emplace_back();
   scene.fracture.emplace();
   return scene;
 }

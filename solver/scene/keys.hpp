@@ -26,6 +26,8 @@ using Path = std::vector<std::array<double, 2>>;
 bool read(const Value& value, double& member);
 bool read(const Value& value, int& member);
 bool read(const Value& value, std::string& member);  // text or, by the key, a formula
+bool read(const Value& value, bool& member);
+bool read(const Value& value, Field& member);
 bool read(const Value& value, Formulas& member);
 bool read(const Value& value, Path& member);  // pairs of numbers
 bool read(const Value& value, std::vector<Layer>& member);
@@ -37,6 +39,8 @@ bool read_word(const Value& value, std::string_view words, int& member);
 std::string text_of(Scene& scene, double member);
 std::string text_of(Scene& scene, int member);
 std::string text_of(Scene& scene, const std::string& member);
+std::string text_of(Scene& scene, bool member);
+std::string text_of(Scene& scene, const Field& member);
 std::string text_of(Scene& scene, const Formulas& member);
 std::string text_of(Scene& scene, const Path& member);
 std::string text_of(Scene& scene, const std::vector<Layer>& member);

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include "scene/derived.hpp"
+#include "scene/in_situ.hpp"
 #include "scene/reading.hpp"
 
 namespace strata {
@@ -63,6 +64,27 @@ void check_interfaces(Reading& reading) {
                      "interface on a grid line.",
                      place);
     }
+  }
+}
+
+// Where interfaces that end do so.
+void check_ends(Reading& reading) {
+  const Scene& scene = reading.scene;
+  const double h = scene.numerics.cell_m;
+  const Stretch rock = scene.strata.along == Strata::Along::y ? scene.domain.along_x() : scene.domain.along_y();
+  for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
+    const InterfacePlace& place = scene.strata.interfaces[k];
+    const std::string path = fmt::format("strata.interfaces[{}].", k);
+    const double from = place.from_m.value_or(rock.from), to = place.to_m.value_or(rock.to);
+    for (const auto& [key, end] : {std::pair{path + "from_m", from}, std::pair{path + "to_m", to}}) {
+      reading.refuse_if(end < rock.from || end > rock.to, key, "is outside the rock, from {} to {} m.", rock.from,
+                        rock.to);
+      reading.refuse_if(!is_whole(end / h), key, "is not on a grid line of cells of {} m. The nearest: {} m.", h,
+                        std::round(end / h) * h);
+    }
+    reading.refuse_if(to - from < 3.99 * h, reading.given(path + "to_m") ? path + "to_m" : path + "from_m",
+                      "leaves the interface {} m, less than 4 cells. Let it be longer, or use smaller cells.",
+                      to - from);
   }
 }
 
@@ -298,6 +320,10 @@ void check_scene(Reading& reading) {
   const bool layers_sound =
       reading.usable("strata.layers", along_y ? "domain.height_m" : "domain.width_m") && reading.sound("strata.along");
   if (cells_sound && layers_sound) check_interfaces(reading);
+  if (layers_sound && reading.usable("domain.width_m", "domain.height_m")) {
+    for (const auto& [key, text] : in_situ_faults(reading.scene)) reading.refuse(key, "{}", text);
+    if (cells_sound) check_ends(reading);
+  }
   check_fracture(reading, cells_sound);
   check_stop_values(reading);
   check_end(reading);

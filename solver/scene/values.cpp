@@ -100,6 +100,17 @@ bool read(const Value& v, std::string& member) {
   return true;
 }
 
+bool read(const Value& v, bool& member) {
+  if (!v.node.is_boolean()) return refuse(v, "neither true nor false.");
+  member = v.node.as_boolean()->get();
+  return true;
+}
+
+bool read(const Value& v, Field& member) {
+  if (v.node.is_number()) return read_number(v, {}, member.number);
+  return read_formula(v, member.formula);
+}
+
 bool read(const Value& v, Formulas& member) {
   if (list_of(v, 2) == nullptr) return refuse(v, "not a pair of formulas. Write [\"x component\", \"y component\"].");
   return all(v, [&](const Value& formula, std::size_t k) { return read(formula, member[k]); });
@@ -126,7 +137,9 @@ bool read(const Value& v, std::vector<Layer>& member) {
 bool read(const Value& v, std::vector<InterfacePlace>& member) {
   if (!v.node.is_array()) return refuse_list(v, "a list of names");
   member.assign(v.node.as_array()->size(), {});
-  return all(v, [](const Value& name, std::size_t) { return name.node.is_string() || refuse_list(name, "a name"); });
+  return all(v, [](const Value& name, std::size_t) {
+    return name.node.is_string() || name.node.is_table() || refuse_list(name, "a name");
+  });
 }
 
 std::string text_of(Scene&, double member) {
@@ -143,6 +156,14 @@ std::string text_of(Scene&, const std::string& member) {
   return out.str();
 }
 
+std::string text_of(Scene&, bool member) {
+  return member ? "true" : "false";
+}
+
+std::string text_of(Scene& scene, const Field& member) {
+  return member.formula.empty() ? number_text(member.number) : text_of(scene, member.formula);
+}
+
 std::string text_of(Scene& scene, const Formulas& member) {
   return list_text(scene, member);
 }
@@ -154,9 +175,14 @@ std::string text_of(Scene& scene, const Path& member) {
 }
 
 std::string text_of(Scene& scene, const std::vector<InterfacePlace>& member) {
-  std::vector<std::string> names;
-  for (const InterfacePlace& place : member) names.push_back(scene.laws[place.law].name);
-  return list_text(scene, names);
+  std::vector<std::string> texts;
+  for (std::size_t k = 0; k < member.size(); ++k) {
+    const bool ends = member[k].from_m || member[k].to_m;
+    const auto keys = lines_of("strata.interfaces[].", scene, k);
+    texts.push_back(ends ? fmt::format("{{{}}}", fmt::join(keys, ", "))
+                         : text_of(scene, scene.laws[member[k].law].name));
+  }
+  return fmt::format("[{}]", fmt::join(texts, ", "));
 }
 
 std::string text_of(Scene& scene, const std::vector<Layer>& member) {
