@@ -42,10 +42,6 @@ constexpr Key formula(Text path, Member member, Text unit, Text variables, Text 
   return {Kind::formula, path, member, help, unit, {}, variables};
 }
 
-constexpr Key truth(Text path, Member member, Text help) {
-  return {.kind = Kind::word, .path = path, .member = member, .help = help, .allowed = "true, false"};
-}
-
 constexpr Key required(Key key) {
   key.required = true;
   return key;
@@ -99,7 +95,7 @@ constexpr Key keys[] = {
          "The two stresses everywhere, or the static state of the bonded stack under them as edge tractions."),
     number("in_situ.shear_Pa", at<&Scene::in_situ, &InSitu::shear_Pa>, "Pa", finite,
            "Shear stress sigma_xy everywhere: positive, it drags the face towards +x towards +y."),
-    truth(
+    word(
         "in_situ.weight", at<&Scene::in_situ, &InSitu::weight>,
         "Whether the rock's weight acts: vertical_Pa is then the stress at the block's top, which grows by rho g below "
         "(g = 9.80665 m/s^2), or a formula of Y that does so itself to 0.1 %."),

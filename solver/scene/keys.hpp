@@ -91,7 +91,7 @@ auto& reach(auto& object, std::size_t index) {
 struct Member {
   bool (*read)(const Value&, Scene&, std::size_t index);
   std::string (*text)(Scene&, std::size_t index);
-  std::string_view words = "";  // of an enumeration
+  std::string_view words = "";  // of an enumeration or a truth
 };
 
 // The member scene.first.second..., by pointers to members.
@@ -101,6 +101,7 @@ constexpr Member at = [] {
   Member member{[](const Value& value, Scene& s, std::size_t k) { return read(value, reach<members...>(s, k)); },
                 [](Scene& s, std::size_t k) { return text_of(s, reach<members...>(s, k)); }};
   if constexpr (std::is_enum_v<Type>) member.words = words(Type{});
+  if constexpr (std::is_same_v<Type, bool>) member.words = "true, false";
   return member;
 }();
 

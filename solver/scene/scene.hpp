@@ -25,7 +25,7 @@ using Formulas = std::array<std::string, 2>;
 
 // A quantity that may change with place: a number, or a formula (see formula.hpp) of X and Y (m).
 struct Field {
-  double number;
+  double number = 0.0;
   std::string formula{};  // empty: the number everywhere
 
   Field(double number_everywhere = 0.0) : number(number_everywhere) {}

@@ -77,7 +77,7 @@ void check_ends(Reading& reading) {
     const std::string path = fmt::format("strata.interfaces[{}].", k);
     const double from = place.from_m.value_or(rock.from), to = place.to_m.value_or(rock.to);
     for (const auto& [key, end] : {std::pair{path + "from_m", from}, std::pair{path + "to_m", to}}) {
-      reading.refuse_if(end < rock.from || end > rock.to, key, "is outside the rock, from {} to {} m.", rock.from,
+      reading.refuse_if(end < rock.from || end > rock.to, key, "is outside the rock, from {} to {} m.", rock.from + 0.0,
                         rock.to);
       reading.refuse_if(!is_whole(end / h), key, "is not on a grid line of cells of {} m. The nearest: {} m.", h,
                         std::round(end / h) * h);

@@ -108,6 +108,7 @@ bool read(const Value& v, bool& member) {
 
 bool read(const Value& v, Field& member) {
   if (v.node.is_number()) return read_number(v, {}, member.number);
+  if (!v.node.is_string()) return refuse(v, "neither a number nor a formula in quotes.");
   return read_formula(v, member.formula);
 }
 

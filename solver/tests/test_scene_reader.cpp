@@ -85,9 +85,41 @@ TEST_CASE("What depends on a value of no use is left out") {
 
 TEST_CASE("Integers are numbers, whatever the size; other types are not") {
   CHECK(good(with(layered, "vertical_Pa = 3e6", "vertical_Pa = 3000000")).in_situ.vertical_Pa == 3e6);
-  CHECK_THAT(errors(with(layered, "vertical_Pa = 3e6", "vertical_Pa = \"3e6\"")), Catch::Contains("is not a number"));
-  CHECK_THAT(errors(with(layered, "vertical_Pa = 3e6", "vertical_Pa = [3e6]")), Catch::Contains("is not a number"));
+  CHECK_THAT(errors(with(layered, "width_m = 80", "width_m = \"80\"")), Catch::Contains("is not a number"));
+  CHECK_THAT(errors(with(layered, "width_m = 80", "width_m = [80]")), Catch::Contains("is not a number"));
   CHECK_THAT(errors(with(layered, "vertical_Pa = 3e6", "vertical_Pa = -inf")), Catch::Contains("is not finite"));
+}
+
+TEST_CASE("A stress is a number or a formula, a truth is neither") {
+  CHECK(good(with(layered, "horizontal_Pa = 2e6", "horizontal_Pa = \"2e6 + 1e4*Y\"")).in_situ.horizontal_Pa ==
+        Field("2e6 + 1e4*Y"));
+  CHECK(good(with(layered, "thickness_m = 10}", "thickness_m = 10, horizontal_Pa = 3e6}"))
+            .strata.layers[0]
+            .horizontal_Pa == Field(3e6));
+  CHECK(good(with(layered, "vertical_Pa = 3e6", "vertical_Pa = 3e6\nweight = true")).in_situ.weight);
+  CHECK_THAT(errors(with(layered, "vertical_Pa = 3e6", "vertical_Pa = [3e6]")),
+             Catch::Contains("neither a number nor a formula in quotes"));
+  CHECK_THAT(errors(with(layered, "horizontal_Pa = 2e6", "horizontal_Pa = \"2 MPa\"")),
+             Catch::Contains("is not a formula: "));
+  CHECK_THAT(errors(with(layered, "vertical_Pa = 3e6", "vertical_Pa = 3e6\nweight = 1")),
+             Catch::Contains("in_situ.weight = 1 is neither true nor false."));
+}
+
+TEST_CASE("An interface that ends stands where its list has a table") {
+  const auto end = [](const std::string& table) {
+    return with(layered, "interfaces = [\"joint\"]", "interfaces = [" + table + "]");
+  };
+  const InterfacePlace place = good(end("{name = \"joint\", from_m = 15, to_m = 65}")).strata.interfaces[0];
+  CHECK((place.law == 1 && place.from_m == 15.0 && place.to_m == 65.0));
+  CHECK_FALSE(good(end("{name = \"joint\", to_m = 65}")).strata.interfaces[0].from_m);
+  CHECK_THAT(errors(end("{from_m = 15}")), Catch::Contains("strata.interfaces[0].name is missing."));
+  CHECK_THAT(errors(end("{name = \"jont\"}")),
+             Catch::Contains("there is no [interface.jont]") && Catch::Contains("joint"));
+  CHECK_THAT(errors(end("{name = \"joint\", from_m = 15.3}")),
+             Catch::Contains("is not on a grid line of cells of 1 m. The nearest: 15 m."));
+  CHECK_THAT(errors(end("{name = \"joint\", to_m = 90}")), Catch::Contains("is outside the rock, from 0 to 80 m."));
+  CHECK_THAT(errors(end("{name = \"joint\", from_m = 30, to_m = 20}")), Catch::Contains("less than 4 cells"));
+  CHECK_THAT(errors(end("7")), Catch::Contains("is not a name"));
 }
 
 TEST_CASE("Bounds are open or closed as declared") {

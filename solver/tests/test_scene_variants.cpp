@@ -100,7 +100,7 @@ TEST_CASE("A variant and --set may replace a key of an element of a list that is
   CHECK_THAT(errors(layered, "", {"strata.layers[2].thickness_m=20"}),
              Catch::StartsWith("--set strata.layers[2].thickness_m=20: unknown key strata.layers[2].thickness_m."));
   CHECK_THAT(errors(layered, "", {"strata.interfaces[0]=perfect"}),
-             Catch::Contains("unknown key strata.interfaces[0]"));
+             Catch::Contains("strata.interfaces[0] = \"perfect\" is not a table"));
   CHECK_THAT(errors(layered, "", {"claim[0].id=x"}), Catch::Contains("not claims or variants"));
 }
 
