@@ -19,6 +19,18 @@ constexpr double k = 1e12;       // Pa/m, of closed contact
 constexpr double spread = 3e-6;  // m: jumps up to this on both sides of where a law changes
 constexpr int steps = 13;        // of jumps each way
 
+// What a law is asked at a place.
+struct LawInput {
+  double w_n = 0.0, w_t = 0.0;              // jump (m)
+  double w_t_start = 0.0, r_t_start = 0.0;  // what friction remembers (m, Pa)
+  double bound = -1.0;                      // of friction where it is given (Pa)
+  double n_rest = 0.0;                      // Pa
+};
+
+LawAnswer law_at(const InterfaceLaw& law, double stiffness, const LawInput& in) {
+  return lines_of(law, stiffness, {in.w_t_start, in.r_t_start, {}}, in.n_rest).at(in.w_n, in.w_t, in.bound);
+}
+
 // A law with all that a place asks it but the jump.
 struct Case {
   std::string name;
