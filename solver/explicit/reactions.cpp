@@ -131,8 +131,7 @@ std::vector<Held> find_held(const Laws& laws, const State& state) {
     const SurfacePoint& s = point_of(state, state.split.places[p]);
     const Vec2 tangent = tangent_of(s.n);
     const double r_n = s.reaction.dot(s.n);
-    const bool closed = r_n > 0.0 && law.contact.D > 0.0;
-    hold(closed ? law.contact : law.own, s.n);
+    hold(law.holding(r_n), s.n);
     constexpr double sticks = 1.0 - 1e-9;  // of the bound, at which sliding places stand but for round-off
     if (std::abs(s.reaction.dot(tangent)) < sticks * law.bound(r_n)) hold(law.shear, tangent);
   }
@@ -279,8 +278,8 @@ void add_jump(const InterfaceLaw& law, const Vec2& dw, SurfacePoint& s, State& s
 // kinematics = "total".
 void find_motion(bool total, State& state) {
   std::vector<SplitPlace>& places = state.split.places;
-  Laws laws;
-  laws.reserve(places.size());
+  thread_local Laws laws;  // keeps its memory: steps allocate nothing
+  laws.clear();
   for (SplitPlace& place : places) {
     const SurfacePoint& s = point_of(std::as_const(state), place);
     laws.push_back(lines_of(state.split.laws[place.law], place.k, start_of(s), s.closing_stress() - s.P));

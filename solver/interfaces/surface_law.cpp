@@ -21,6 +21,15 @@ InterfaceLaw spring_law(double D) {
   return law;
 }
 
+LawLine largest_at(const LawLines& law, double w) {
+  return std::ranges::max(law.normal(), {}, [w](const LawLine& line) { return line.at(w); });
+}
+
+// Where two lines meet (m).
+double meeting(const LawLine& a, const LawLine& b) {
+  return (a.at(0.0) - b.at(0.0)) / (a.D - b.D);
+}
+
 }  // namespace
 
 // --- the laws
@@ -74,11 +83,11 @@ InterfaceLaw tie_law(const TipTie& tie) {
 // friction, which is then negative by as much while load comes on. All of it is counted, so the ledger closes.
 double spring_energy_at(const InterfaceLaw& law, const SurfacePoint& s) {
   if (!law.pulls() || !s.split) return 0.0;
-  LawLines springs = lines_of(law, 0.0, start_of(s), 0.0);
+  LawLines springs = lines_of(law, HUGE_VAL, start_of(s), 0.0);
   springs.contact = LawLines::none;
-  const double w_t = s.w.dot(tangent_of(s.n)), w_n = s.opening();
-  return s.A * (springs.energy(law.takes_all_compression() ? w_n : std::max(0.0, w_n)) +
-                (springs.slides ? 0.0 : 0.5 * springs.shear.D * w_t * w_t));
+  const double w_t = s.w.dot(tangent_of(s.n)), D_t = springs.slides ? 0.0 : springs.shear.D;
+  const double w_n = law.takes_all_compression() ? s.opening() : std::max(0.0, s.opening());
+  return s.A * (springs.energy(w_n) + 0.5 * D_t * w_t * w_t);
 }
 
 double spring_energy(const Scene& scene, const State& state) {
@@ -93,10 +102,6 @@ double spring_energy(const Scene& scene, const State& state) {
 
 // --- what follows from the lines of any law
 
-double LawLine::at(double w) const {
-  return r_0 - D * (w - w_0);
-}
-
 // In the form that keeps its digits for any D > 0.
 double LawLine::at_end_of_step(double w_free, double per) const {
   return D > 0.0 ? (r_0 / D - (w_free - w_0)) / (1.0 / D + per) : r_0;
@@ -108,7 +113,7 @@ double LawLines::bound(double n) const {
 
 LawAnswer LawLines::at(double w_n, double w_t, double given) const {
   LawAnswer r;
-  const LawLine line = std::ranges::max(normal(), {}, [w_n](const LawLine& l) { return l.at(w_n); });
+  const LawLine line = largest_at(*this, w_n);
   r.piece = line.piece, r.n = line.at(w_n), r.n_0 = line.at(0.0), r.dn_dn = -line.D;
   r.energy = energy(w_n);
   const bool follows = given < 0.0;
@@ -142,17 +147,22 @@ Reaction LawLines::at_end_of_step(const FreeJump& w) const {
 
 Reaction LawLines::admissible(const Reaction& r) const {
   double n = r.n;
-  for (const LawLine& line : normal()) n = std::max(n, line.D > 0.0 ? -HUGE_VAL : line.r_0);
+  for (const LawLine& line : normal()) n = std::max(n, line.D > 0.0 ? -HUGE_VAL : line.at(0.0));
   return {n, std::clamp(r.t, -bound(n), bound(n))};
 }
 
-// The trapezoidal rule, from where the line changes to where it changes.
+// The trapezoidal rule between the ends and where lines meet.
 double LawLines::energy(double w_n) const {
-  const double meet = (own.at(0.0) - contact.at(0.0)) / (own.D - contact.D);
-  const double from = std::min(0.0, w_n), to = std::max(0.0, w_n), middle = std::clamp(meet, from, to);
-  const auto n = [this](double w) { return std::max(own.at(w), contact.at(w)); };
-  const auto under = [&](double a, double b) { return 0.5 * (n(a) + n(b)) * (b - a); };
-  return std::copysign(1.0, -w_n) * (under(from, middle) + under(middle, to));
+  const double from = std::min(0.0, w_n), to = std::max(0.0, w_n);
+  std::array cuts{from, meeting(own, contact), to};
+  double sum = 0.0;
+  for (double& w : cuts) w = std::min(to, std::max(from, w));
+  std::ranges::sort(cuts);
+  for (std::size_t k = 1; k < cuts.size(); ++k) {
+    const double a = cuts[k - 1], b = cuts[k];
+    sum += 0.5 * (largest_at(*this, a).at(a) + largest_at(*this, b).at(b)) * (b - a);
+  }
+  return w_n > 0.0 ? -sum : sum;
 }
 
 }  // namespace strata

@@ -12,17 +12,8 @@ namespace strata {
 // The reaction on the + face (Pa, its normal component positive in compression; the tangent is (n_y, -n_x)). Laws are
 // linear in pieces: on this one n = n_0 + dn_dn w_n and t = t_0 + dt_dn w_n + dt_dt w_t.
 struct LawAnswer {
-  // The line of the normal reaction, and 4 times what friction makes of shear: it sticks, slips one way or the other.
-  enum class Piece : char {
-    open,
-    closed,
-    open_stick = 4,
-    stick,
-    open_slip_plus = 8,
-    slip_plus,
-    open_slip_minus = 12,
-    slip_minus
-  };
+  // The line of the normal reaction, and 4 times what friction makes of shear.
+  enum class Piece : char { open, closed, stick = 5, slip_plus = 9, slip_minus = 13 };
   enum class Shear { free, sticks, slips_plus, slips_minus };
   Piece piece = Piece::open;
   double n = 0.0, t = 0.0;
@@ -38,11 +29,9 @@ struct Reaction {
   double n = 0.0, t = 0.0;  // Pa, n positive in compression
 };
 
-// What a law is asked in an implicit step: the jump that its end would see without this place's own reaction (m), and
-// what a reaction adds to it (m/Pa).
+// The jump that a step's end would see without this place's own reaction (m), and what a reaction adds to it (m/Pa).
 struct FreeJump {
-  double n = 0.0, t = 0.0;
-  double per_n = 0.0, per_t = 0.0;
+  double n = 0.0, t = 0.0, per_n = 0.0, per_t = 0.0;
 };
 
 // What a place held when the step began, or at the last equilibrium.
@@ -54,15 +43,13 @@ struct LawStart {
 // A line of a law, r = r_0 - D (w - w_0).
 struct LawLine {
   LawAnswer::Piece piece = LawAnswer::Piece::open;
-  double D = 0.0;               // Pa/m
-  double r_0 = 0.0, w_0 = 0.0;  // Pa, m
+  double D = 0.0, r_0 = 0.0, w_0 = 0.0;  // Pa/m, Pa, m
 
-  double at(double w) const;
+  double at(double w) const { return r_0 - D * (w - w_0); }
   double at_end_of_step(double w_free, double per) const;  // r = at(w_free + per r)
 };
 
-// A law at a place: the normal reaction is the largest of some lines; the tangential one is a line, which friction
-// bounds.
+// A law at a place: the normal reaction is the largest of some lines; friction bounds the tangential one.
 struct LawLines {
   static constexpr LawLine none{LawAnswer::Piece::open, 0.0, -std::numeric_limits<double>::infinity()};
   LawLine contact = none;  // of faces that push each other
@@ -78,13 +65,15 @@ struct LawLines {
   /// given: the bound of friction where it is not to follow the normal reaction (Pa); it then acts on open faces, too.
   LawAnswer at(double w_n, double w_t, double given = -1.0) const;
 
-  /// The reaction that satisfies at() at the end of the step, r = at(w_free + per r) in closed form (backward Euler, so
-  /// stable for any stiffness). What runs with inertia settle on is therefore the equilibrium of the law itself,
-  /// whatever the step.
+  /// The reaction that satisfies at() at the end of a step, in closed form (backward Euler, so stable for any
+  /// stiffness): what runs with inertia settle on is the equilibrium of the law itself, whatever the step.
   Reaction at_end_of_step(const FreeJump& w) const;
 
   /// The reaction nearest to r that the law allows whatever the jump: contact only pushes, friction is bounded.
   Reaction admissible(const Reaction& r) const;
+
+  /// The stiffness that holds a place under a normal reaction (Pa).
+  const LawLine& holding(double n) const { return n > 0.0 && contact.D > 0.0 ? contact : own; }
 
   /// What the normal reaction takes up on the way from no jump to w_n (J/m^2).
   double energy(double w_n) const;

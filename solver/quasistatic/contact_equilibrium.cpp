@@ -33,12 +33,8 @@ Vec2 jump_of(const ContactPlace& place, const Eigen::VectorXd& j) {
   return {times(place.D[0], j), times(place.D[1], j)};
 }
 
-double pressure(const State& state, const ContactPlace& place) {
-  return place.tie >= 0 ? 0.0 : state.surfaces[place.surface].points[place.point].P;
-}
-
 LawAnswer answer_at(const State& state, const ContactPlace& place, const Vec2& w) {
-  return lines_of(place.law, place.k, place.start, place.in_situ.dot(place.n) - pressure(state, place))
+  return lines_of(place.law, place.k, place.start, place.in_situ.dot(place.n) - point_of(state, place).P)
       .at(w.dot(place.n), w.dot(place.t()), place.bound);
 }
 
@@ -49,7 +45,7 @@ void add_force(const ContactPlace& place, const Vec2& traction, Eigen::VectorXd&
 }
 
 Vec2 net_load(const State& state, const ContactPlace& place) {
-  return pressure(state, place) * place.n - place.in_situ;
+  return point_of(state, place).P * place.n - place.in_situ;
 }
 
 // The body force's share of the loads on the jumps.

@@ -223,12 +223,6 @@ void load_body(const Scene& scene, double time, const IntactBody& body, State& s
   load.strain = 0.5 * load.intact.dot(u_0);
 }
 
-// The point of a surface, or the spring of a tip, that a place is.
-SurfacePoint& point_of(State& state, const ContactPlace& place) {
-  return place.tie >= 0 ? state.ties[static_cast<std::size_t>(place.tie)].s
-                        : state.surfaces[place.surface].points[place.point];
-}
-
 // Plastic slip of a place since friction's memory (m): the tangential jump less what the stick spring gives way.
 double plastic_slip(const ContactPlace& place, const LawAnswer& r, const Vec2& w) {
   if (r.dt_dn == 0.0) return 0.0;
