@@ -189,10 +189,10 @@ TEST_CASE("contact is complementary") {
   CHECK(react(InterfaceLaw{}, free_jump(-4e-6, 1.0)).n == 0.0);
 }
 
-// Requires of every law that react() gives what law_at() says at the jump which that reaction leaves, whatever the
-// jump, the memory of friction, the stress at rest and the place's compliance: the law of equilibria and of steps is
-// one. Mutations that fail: the place's compliance or k left out or doubled, n_rest or memory left out or of the other
-// sign.
+// Requires of every law that the reaction of a step is what its lines say at the jump which that reaction leaves,
+// whatever the jump, the memory of friction, the stress at rest and the place's compliance: the law of equilibria and
+// of steps is one. Mutations that fail: the place's compliance or k left out or doubled, n_rest or memory left out or
+// of the other sign.
 TEST_CASE("a step's reaction satisfies the law at its end") {
   const std::vector<InterfaceLaw> laws = {friction_law(0.6),
                                           weak_law(1e5, 1e5, 0.3),
