@@ -33,7 +33,7 @@ struct HeldFactor {
 
 namespace {
 
-using Kind = InterfaceLaw::Kind;
+using Laws = std::vector<LawLines>;  // of the places in a step
 
 // Places share nodes with about six neighbours, so plain Gauss-Seidel (1) is slow: 327 sweeps a step in Experiment 1
 // soft, to a tolerance of 1e-9, where 1.5 with today's tolerance takes 52. 1.5 was not tuned further.
@@ -121,24 +121,19 @@ void add_reaction(const SplitPlace& place, const Vec2& change, State& state) {
 
 // --- what stiffnesses hold, solved together
 
-std::vector<Held> find_held(const State& state) {
-  const SplitPlaces& split = state.split;
+std::vector<Held> find_held(const Laws& laws, const State& state) {
   std::vector<Held> held;
-  for (std::size_t p = 0; p < split.places.size(); ++p) {
-    const SplitPlace& place = split.places[p];
-    const SurfacePoint& s = point_of(state, place);
-    const InterfaceLaw& law = split.laws[place.law];
+  for (std::size_t p = 0; p < laws.size(); ++p) {
+    const auto hold = [&](const LawLine& line, const Vec2& along) {
+      if (line.D > 0.0) held.push_back({p, along, 1.0 / line.D, line.w_0 + line.r_0 / line.D});
+    };
+    const LawLines& law = laws[p];
+    const SurfacePoint& s = point_of(state, state.split.places[p]);
     const Vec2 tangent = tangent_of(s.n);
-    const double r_n = s.reaction.dot(s.n), r_t = s.reaction.dot(tangent), k = place.k;
-    const bool soft = law.kind == Kind::soft;
-    const bool closed = r_n > 0.0 && !(soft && law.compression == InterfaceLaw::Compression::spring);
-    if (closed) held.push_back({p, s.n, 1.0 / k, (s.closing_stress() - s.P) / k});
-    if (soft && !closed && law.normal_stiffness_Pa_m > 0.0)
-      held.push_back({p, s.n, 1.0 / law.normal_stiffness_Pa_m, 0.0});
-    if (soft && law.shear_stiffness_Pa_m > 0.0) held.push_back({p, tangent, 1.0 / law.shear_stiffness_Pa_m, 0.0});
+    const double r_n = s.reaction.dot(s.n);
+    hold(law.holding(r_n), s.n);
     constexpr double sticks = 1.0 - 1e-9;  // of the bound, at which sliding places stand but for round-off
-    if (!soft && closed && std::abs(r_t) < sticks * (r_n * sliding_coefficient(law)))
-      held.push_back({p, tangent, 1.0 / k, s.w.dot(tangent) + place.r_start.dot(tangent) / k});
+    if (std::abs(s.reaction.dot(tangent)) < sticks * law.bound(r_n)) hold(law.shear, tangent);
   }
   return held;
 }
@@ -187,18 +182,15 @@ bool solve(const std::vector<Held>& held, State& state) {
 
 // Brings back what is now beyond what a law allows: contact that pulls opens, friction beyond its bound slides. Returns
 // whether any did.
-bool release_inadmissible(const std::vector<Held>& held, State& state) {
-  SplitPlaces& split = state.split;
+bool release_inadmissible(const std::vector<Held>& held, const Laws& laws, State& state) {
   bool any = false;
   for (const Held& h : held) {
-    const SplitPlace& place = split.places[h.place];
-    const InterfaceLaw& law = split.laws[place.law];
+    const SplitPlace& place = state.split.places[h.place];
+    const LawLines& law = laws[h.place];
     const SurfacePoint& s = point_of(std::as_const(state), place);
     const Vec2 tangent = tangent_of(s.n);
-    const Reaction now{s.reaction.dot(s.n), s.reaction.dot(tangent)};
-    Reaction allowed = admissible(law, now);
-    const bool parts = law.kind == Kind::soft && now.n < 0.0 && h.compliance == 1.0 / place.k;
-    if (parts && law.normal_stiffness_Pa_m == 0.0) allowed.n = 0.0;  // else on to its spring
+    const Reaction now{s.reaction.dot(s.n), s.reaction.dot(tangent)}, allowed = law.admissible(now);
+    const bool parts = now.n < 0.0 && h.compliance == 1.0 / law.contact.D;  // on to what else the law has
     const bool beyond = allowed.n != now.n || allowed.t != now.t;
     any = any || parts || beyond;
     if (beyond) add_reaction(place, allowed.n * s.n + allowed.t * tangent - s.reaction, state);
@@ -214,28 +206,26 @@ bool release_inadmissible(const std::vector<Held>& held, State& state) {
 // rest is solved again (an active set that only shrinks, Nocedal & Wright 2006, 16.5; 8 times at most). Sweeps from
 // here find out where a place closes or sticks again. (A D M^-1 D^T + A/k, small, banded and positive definite, is
 // factored anew only where a place changes.)
-void solve_held_reactions(State& state) {
+void solve_held_reactions(const Laws& laws, State& state) {
   constexpr int most_rounds = 8;  // bounds the work of a step: sweeps go on from what is then held
   for (int round = 0; round < most_rounds; ++round) {
-    const std::vector<Held> held = find_held(state);
-    if (held.empty() || !solve(held, state) || !release_inadmissible(held, state)) return;
+    const std::vector<Held> held = find_held(laws, state);
+    if (held.empty() || !solve(held, state) || !release_inadmissible(held, laws, state)) return;
   }
 }
 
 // --- sweeps
 
-// One visit of successive over-relaxation: past react(), the reaction given all others, but never out of what the law
+// One visit of successive over-relaxation: past the law's reaction given all others, but never out of what the law
 // allows; returns how much the reaction changed (Pa).
-double relax(const SplitPlace& place, State& state) {
+double relax(const SplitPlace& place, const LawLines& law, State& state) {
   const SurfacePoint& s = point_of(std::as_const(state), place);
-  const InterfaceLaw& law = state.split.laws[place.law];
   const Vec2 tangent = tangent_of(s.n), w = s.w + state.dt * jump_rate(place, state);
   const Reaction now{s.reaction.dot(s.n), s.reaction.dot(tangent)};
-  const Reaction r = react(law, place.k,
-                           {w.dot(s.n) - place.per_n * now.n, w.dot(tangent) - place.per_t * now.t, s.w.dot(tangent),
-                            place.r_start.dot(tangent), place.per_n, place.per_t, s.closing_stress() - s.P});
+  const Reaction r = law.at_end_of_step(
+      {w.dot(s.n) - place.per_n * now.n, w.dot(tangent) - place.per_t * now.t, place.per_n, place.per_t});
   const Reaction next =
-      admissible(law, {now.n + over_relaxation * (r.n - now.n), now.t + over_relaxation * (r.t - now.t)});
+      law.admissible({now.n + over_relaxation * (r.n - now.n), now.t + over_relaxation * (r.t - now.t)});
   if (next.n == now.n && next.t == now.t) return 0.0;
   const Vec2 change = next.n * s.n + next.t * tangent - s.reaction;
   add_reaction(place, change, state);
@@ -243,15 +233,15 @@ double relax(const SplitPlace& place, State& state) {
 }
 
 // stays: places are those of the last step, so that a factor of what they hold serves many steps.
-void find_reactions(bool stays, State& state) {
+void find_reactions(bool stays, const Laws& laws, State& state) {
   // With fewer, what the tolerance leaves keeps nodes trembling: a bar on a stiff spring came to rest at a kinetic
   // energy of 3e-17 J instead of 7e-33 J.
   const int least_sweeps = stays ? 4 : 1;
   // What holds is solved again after some sweeps: solved once, 96 steps of Experiment 6 soft and 2895 of friction run
   // out of sweeps, so 0 and 441. Places that open and close in turn are left to the sweeps in the end.
   constexpr int solved_every = 8, solved_until = 64;
-  const SplitPlaces& split = state.split;
-  if (split.places.empty()) return;
+  const std::vector<SplitPlace>& places = state.split.places;
+  if (places.empty()) return;
   int sweeps = 0;
   const auto goes_on = [&](double change, double largest) {
     if (sweeps < least_sweeps) return change > 0.0;
@@ -259,11 +249,11 @@ void find_reactions(bool stays, State& state) {
   };
   double change = 1.0, largest = 0.0;
   for (; goes_on(change, largest); ++sweeps) {
-    if (stays && sweeps % solved_every == 0 && sweeps <= solved_until) solve_held_reactions(state);
+    if (stays && sweeps % solved_every == 0 && sweeps <= solved_until) solve_held_reactions(laws, state);
     change = largest = 0.0;
-    for (const SplitPlace& place : split.places) {
-      change = std::max(change, relax(place, state));
-      largest = std::max(largest, point_of(state, place).reaction.norm());
+    for (std::size_t k = 0; k < laws.size(); ++k) {
+      change = std::max(change, relax(places[k], laws[k], state));
+      largest = std::max(largest, point_of(state, places[k]).reaction.norm());
     }
   }
   note_sweeps(sweeps, change, largest, state.monitors);
@@ -274,11 +264,11 @@ void find_reactions(bool stays, State& state) {
 void add_jump(const InterfaceLaw& law, const Vec2& dw, SurfacePoint& s, State& state) {
   const double before = spring_energy_at(law, s);
   s.w += dw;
+  remember(law, s.opening(), dw.dot(tangent_of(s.n)), s.memory);
   const double stored = spring_energy_at(law, s) - before;
   state.ledger.friction -= s.A * s.reaction.dot(dw) + stored;
   state.ledger.fluid_work += s.A * s.P * s.n.dot(dw);
   state.ledger.in_situ_work -= s.A * s.in_situ.dot(dw);
-  if (law.kind != Kind::soft) s.slip += std::abs(dw.dot(tangent_of(s.n)));
   if (law.takes_all_compression()) return;
   note_largest(state.monitors.largest_penetration, -s.opening());
   note_largest(state.monitors.largest_contact_Pa, s.reaction.dot(s.n));
@@ -288,13 +278,16 @@ void add_jump(const InterfaceLaw& law, const Vec2& dw, SurfacePoint& s, State& s
 // kinematics = "total".
 void find_motion(bool total, State& state) {
   std::vector<SplitPlace>& places = state.split.places;
+  thread_local Laws laws;  // keeps its memory: steps allocate nothing
+  laws.clear();
   for (SplitPlace& place : places) {
     const SurfacePoint& s = point_of(std::as_const(state), place);
+    laws.push_back(lines_of(state.split.laws[place.law], place.k, start_of(s), s.closing_stress() - s.P));
     place.r_start = s.reaction;
     push(place, total ? Vec2{s.P * s.n - s.in_situ + s.reaction} : s.reaction, state);
   }
   for (SplitPlace& place : places) place.rate = rate_by_nodes(place, state);
-  find_reactions(total, state);
+  find_reactions(total, laws, state);
   for (const SplitPlace& place : places) {
     if (total) push(place, point_of(state, place).reaction - place.r_start, state);
   }

@@ -285,7 +285,7 @@ void weigh(const Surface& surface, BondedPlace& place) {
 void judge(const Surface& surface, const InterfaceLaw& law, double length, std::span<BondedPlace> stretch) {
   constexpr double round_off = 1e-9, as_bad = 1.0 - 1e-6;
   const Vec2 n = surface.points.front().n, t = tangent_of(n);
-  const double least = law.kind == InterfaceLaw::Kind::friction ? lets_go_sticking : 1.0;
+  const double least = law.only_sticks() ? lets_go_sticking : 1.0;
   const auto index_of = [&](const Vec2& carried) { return failure_index(law, carried.dot(n), carried.dot(t)) / least; };
   double all = 0.0;
   for (BondedPlace& place : stretch) {
@@ -313,7 +313,7 @@ void judge(const Surface& surface, const InterfaceLaw& law, double length, std::
       }
       if (left > round_off * length) break;  // the rest is shorter still
       const double index = index_of(force / length);
-      if (law.kind == InterfaceLaw::Kind::friction) most = std::min(most, 1.0);  // all that slide let go
+      if (law.only_sticks()) most = std::min(most, 1.0);  // all that slide let go
       for (std::size_t j = from; j < k; ++j) {
         BondedPlace& place = stretch[at(j)];
         if (!(place.own < as_bad * most) && !(index <= place.index)) place.index = index;  // no number stays
@@ -325,11 +325,11 @@ void judge(const Surface& surface, const InterfaceLaw& law, double length, std::
 }  // namespace
 
 double failure_index(const InterfaceLaw& law, double n, double t) {
-  if (law.kind == InterfaceLaw::Kind::weak) {
+  if (law.has_strength()) {
     const double S = t / law.shear_strength_Pa, N = std::max(0.0, -n) / law.tensile_strength_Pa;
     return std::sqrt(S * S + N * N);
   }
-  if (law.kind != InterfaceLaw::Kind::friction) return 0.0;
+  if (!law.only_sticks()) return 0.0;
   if (n < 0.0) return HUGE_VAL;
   return t == 0.0 ? 0.0 : std::abs(t) / (law.coefficient * n);
 }
@@ -338,9 +338,7 @@ Bonds find_bonds(const Scene& scene, const State& state) {
   Bonds bonds;
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
     const Surface& surface = state.surfaces[k];
-    if (surface.kind != Surface::Kind::interface) continue;
-    const InterfaceLaw::Kind kind = scene.laws[surface.law].kind;
-    if (kind != InterfaceLaw::Kind::weak && kind != InterfaceLaw::Kind::friction) continue;
+    if (surface.kind != Surface::Kind::interface || scene.laws[surface.law].apart_at_start()) continue;
     SampleBuilder b{scene, state, surface, band_of(scene, state, surface), {}};
     add_particles(b);
     add_faces(b);
@@ -416,8 +414,8 @@ Columns failing_columns(const Scene& scene, const State& state, const Bonds& bon
   Columns columns;
   for (const BondedPlace& place : bonds.places) {
     const Surface& surface = state.surfaces[place.surface];
-    const bool friction = scene.laws[surface.law].kind == InterfaceLaw::Kind::friction;
-    if (place.index >= (friction || inertia ? 1.0 : std::max(1.0, (1.0 - as_bad) * bonds.worst)))
+    const bool sticks = scene.laws[surface.law].only_sticks();
+    if (place.index >= (sticks || inertia ? 1.0 : std::max(1.0, (1.0 - as_bad) * bonds.worst)))
       columns.emplace(place.surface, surface.points[place.point].column);
   }
   return columns;

@@ -35,19 +35,18 @@ void watch_momentum(const Scene& scene, State& state) {
   if (!scene.domain.holds_y()) note_largest(m.largest_drift, std::abs(sum.y() - m.expected_y));
 }
 
-// Closed faces that overlap, and tension where a law carries none: a soft interface does.
+// Closed faces that overlap, and tension where a law carries none.
 void watch_contact(const Scene& scene, State& state) {
   Monitors& m = state.monitors;
   for (const Surface& surface : state.surfaces) {
-    const InterfaceLaw law = surface.kind == Surface::Kind::fracture ? face_law(scene) : scene.laws[surface.law];
-    const bool soft = law.kind == InterfaceLaw::Kind::soft;
-    if (soft && law.compression != InterfaceLaw::Compression::contact) continue;
+    const InterfaceLaw law = law_of(scene, surface);
+    if (law.takes_all_compression()) continue;
     for (const SurfacePoint& s : surface.points) {
       if (!s.split) continue;
       const double pressure = s.reaction.dot(s.n);
       note_largest(m.largest_penetration, -s.opening());
       note_largest(m.largest_contact_Pa, pressure);
-      if (!soft) note_largest(m.largest_tension_Pa, -pressure);
+      if (!law.pulls()) note_largest(m.largest_tension_Pa, -pressure);
     }
   }
 }

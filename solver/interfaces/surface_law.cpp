@@ -8,6 +8,7 @@ namespace strata {
 namespace {
 
 using Piece = LawAnswer::Piece;
+using Shear = LawAnswer::Shear;
 using Kind = InterfaceLaw::Kind;
 using Compression = InterfaceLaw::Compression;
 
@@ -20,91 +21,46 @@ InterfaceLaw spring_law(double D) {
   return law;
 }
 
-// r = r_rest - D w with w = w_free + per r, in the form that keeps its digits for any D > 0.
-double spring(double D, double r_rest, double w_free, double per) {
-  return D > 0.0 ? (r_rest / D - w_free) / (1.0 / D + per) : 0.0;
+LawLine largest_at(const LawLines& law, double w) {
+  return std::ranges::max(law.normal(), {}, [w](const LawLine& line) { return line.at(w); });
 }
 
-LawAnswer soft_law(const InterfaceLaw& law, double k, const LawInput& in) {
-  LawAnswer r;
-  const double D_n = law.normal_stiffness_Pa_m, D_t = law.shear_stiffness_Pa_m;
-  const double pushed = in.n_rest - k * in.w_n, pulled = -D_n * in.w_n;
-  const bool contact = law.compression == Compression::contact;
-  const auto energy = [&](double w_n) {
-    if (!contact || in.n_rest - k * w_n <= -D_n * w_n) return 0.5 * D_n * w_n * w_n;
-    const double w = in.n_rest / (k - D_n);  // where contact hands over to the spring
-    return 0.5 * D_n * w * w + (in.n_rest * (w_n - w) - 0.5 * k * (w_n * w_n - w * w)) * -1.0;
-  };
-  const bool closed = contact && pushed > pulled;
-  r.piece = closed ? Piece::closed : Piece::open;
-  r.n = closed ? pushed : pulled;
-  r.n_0 = closed ? in.n_rest : 0.0;
-  r.dn_dn = closed ? -k : -D_n;
-  r.t = -D_t * in.w_t;
-  r.dt_dt = -D_t;
-  r.energy = energy(in.w_n) - energy(0.0) + 0.5 * D_t * in.w_t * in.w_t;
-  return r;
+// Where two lines meet (m).
+double meeting(const LawLine& a, const LawLine& b) {
+  return (a.at(0.0) - b.at(0.0)) / (a.D - b.D);
 }
 
 }  // namespace
+
+// --- the laws
+
+LawLines lines_of(const InterfaceLaw& law, double k, const LawStart& start, double n_rest) {
+  LawLines lines;
+  if (law.kind == Kind::perfect) return lines;
+  lines.friction = law.friction(), lines.slides = law.slides();
+  if (!law.takes_all_compression()) lines.contact = {Piece::closed, k, n_rest};
+  lines.shear = {Piece::open, k, start.r_t, start.w_t};
+  if (law.kind == Kind::soft) {
+    lines.own.D = law.normal_stiffness_Pa_m;
+    lines.shear = {Piece::open, law.shear_stiffness_Pa_m};
+  }
+  return lines;
+}
+
+LawStart start_of(const SurfacePoint& s) {
+  const Vec2 t = tangent_of(s.n);
+  return {s.w.dot(t), s.reaction.dot(t), s.memory};
+}
+
+void remember(const InterfaceLaw& law, double /*w_n*/, double dw_t, InterfaceLaw::Memory& memory) {
+  if (law.slides()) memory.slip += std::abs(dw_t);
+}
 
 double contact_stiffness(const InterfaceLaw& law, const Rocks& rocks, const Grid& grid) {
   double E_prime = 0.0;
   for (const Elasticity& rock : rocks) E_prime = std::max(E_prime, rock.E_prime);
   const double k = 1e4 * E_prime / grid.h;
   return law.kind == Kind::soft ? std::max(k, 10.0 * law.normal_stiffness_Pa_m) : k;
-}
-
-LawAnswer law_at(const InterfaceLaw& law, double k, const LawInput& in) {
-  if (law.kind == Kind::soft) return soft_law(law, k, in);
-  LawAnswer r;
-  const double pushed = in.n_rest - k * in.w_n, at_rest = std::max(0.0, in.n_rest);
-  r.energy = (std::max(0.0, pushed) * std::max(0.0, pushed) - at_rest * at_rest) / (2.0 * k);
-  const bool closed = pushed > 0.0, given = in.bound >= 0.0;
-  if (closed) r.piece = Piece::closed, r.n = pushed, r.n_0 = in.n_rest, r.dn_dn = -k;
-  // A bound that is given does not ask for the normal reaction: else friction would jump where a face opens, and the
-  // energy with it.
-  if (!closed && !given) return r;
-  const double mu = sliding_coefficient(law);
-  if (mu == 0.0) return r;
-  const double held = in.r_t_start - k * (in.w_t - in.w_t_start);
-  const double bound = given ? in.bound : mu * r.n;
-  const double at_start = in.r_t_start * in.r_t_start / (2.0 * k);
-  if (std::abs(held) <= bound) {
-    r.piece = closed ? Piece::stick : Piece::open_stick;
-    r.t = held, r.t_0 = in.r_t_start + k * in.w_t_start, r.dt_dt = -k;
-    r.energy += held * held / (2.0 * k) - at_start;
-    return r;
-  }
-  const double sign = std::copysign(1.0, held);
-  if (closed)
-    r.piece = sign > 0.0 ? Piece::slip_plus : Piece::slip_minus;
-  else
-    r.piece = sign > 0.0 ? Piece::open_slip_plus : Piece::open_slip_minus;
-  r.t = sign * bound;
-  r.t_0 = given ? r.t : sign * mu * in.n_rest;
-  r.dt_dn = given ? 0.0 : sign * mu * r.dn_dn;
-  // A given bound makes sliding the gradient of an energy, too.
-  r.energy += (given ? 2.0 * bound * std::abs(held) - bound * bound : bound * bound) / (2.0 * k) - at_start;
-  return r;
-}
-
-// Of soft: both branches fall as the jump grows, so that the larger answer is that of the larger branch.
-Reaction react(const InterfaceLaw& law, double k, const FreeJump& w) {
-  if (law.kind == Kind::perfect) return {};
-  const double pushed = spring(k, w.n_rest, w.n, w.per_n);
-  if (law.kind == Kind::soft) {
-    const double pulled = spring(law.normal_stiffness_Pa_m, 0.0, w.n, w.per_n);
-    return {law.compression == Compression::contact ? std::max(pulled, pushed) : pulled,
-            spring(law.shear_stiffness_Pa_m, 0.0, w.t, w.per_t)};
-  }
-  return admissible(law, {pushed, spring(k, w.r_t_start, w.t - w.t_start, w.per_t)});
-}
-
-Reaction admissible(const InterfaceLaw& law, const Reaction& r) {
-  if (law.kind == Kind::soft) return r;
-  const double n = std::max(0.0, r.n), bound = sliding_coefficient(law) * n;
-  return {n, std::clamp(r.t, -bound, bound)};
 }
 
 InterfaceLaw face_law(const Scene& scene) {
@@ -115,6 +71,10 @@ InterfaceLaw face_law(const Scene& scene) {
   return law;
 }
 
+InterfaceLaw law_of(const Scene& scene, const Surface& surface) {
+  return surface.kind == Surface::Kind::fracture ? face_law(scene) : scene.laws[surface.law];
+}
+
 InterfaceLaw tie_law(const TipTie& tie) {
   return spring_law(tie.stiffness);
 }
@@ -122,10 +82,12 @@ InterfaceLaw tie_law(const TipTie& tie) {
 // Closed contact and stick hold r^2/(2k), some 1e-4 of what the rock beside them does: that is left in the ledger's
 // friction, which is then negative by as much while load comes on. All of it is counted, so the ledger closes.
 double spring_energy_at(const InterfaceLaw& law, const SurfacePoint& s) {
-  if (law.kind != Kind::soft || !s.split) return 0.0;
-  const double w_n = s.opening(), w_t = s.w.dot(tangent_of(s.n));
-  const bool closed = law.compression == Compression::contact && w_n < 0.0;
-  return 0.5 * s.A * ((closed ? 0.0 : law.normal_stiffness_Pa_m * w_n * w_n) + law.shear_stiffness_Pa_m * w_t * w_t);
+  if (!law.pulls() || !s.split) return 0.0;
+  LawLines springs = lines_of(law, HUGE_VAL, start_of(s), 0.0);
+  springs.contact = LawLines::none;
+  const double w_t = s.w.dot(tangent_of(s.n)), D_t = springs.slides ? 0.0 : springs.shear.D;
+  const double w_n = law.takes_all_compression() ? s.opening() : std::max(0.0, s.opening());
+  return s.A * (springs.energy(w_n) + 0.5 * D_t * w_t * w_t);
 }
 
 double spring_energy(const Scene& scene, const State& state) {
@@ -136,6 +98,71 @@ double spring_energy(const Scene& scene, const State& state) {
     for (const SurfacePoint& s : surface.points) energy += spring_energy_at(scene.laws[surface.law], s);
   }
   return energy;
+}
+
+// --- what follows from the lines of any law
+
+// In the form that keeps its digits for any D > 0.
+double LawLine::at_end_of_step(double w_free, double per) const {
+  return D > 0.0 ? (r_0 / D - (w_free - w_0)) / (1.0 / D + per) : r_0;
+}
+
+double LawLines::bound(double n) const {
+  return slides ? friction * std::max(0.0, n) : HUGE_VAL;
+}
+
+LawAnswer LawLines::at(double w_n, double w_t, double given) const {
+  LawAnswer r;
+  const LawLine line = largest_at(*this, w_n);
+  r.piece = line.piece, r.n = line.at(w_n), r.n_0 = line.at(0.0), r.dn_dn = -line.D;
+  r.energy = energy(w_n);
+  const bool follows = given < 0.0;
+  // A bound that is given does not ask for the normal reaction: else friction would jump where a face opens, and the
+  // energy with it.
+  if (slides && (friction == 0.0 || (follows && r.n <= 0.0))) return r;
+  const double held = shear.at(w_t), most = follows || !slides ? bound(r.n) : given;
+  r.t = std::clamp(held, -most, most);
+  if (r.t == held) {
+    if (slides) r.set(Shear::sticks);
+    r.t_0 = shear.at(0.0), r.dt_dt = -shear.D;
+    r.energy += 0.5 * (shear.r_0 + held) * (shear.w_0 - w_t);
+    return r;
+  }
+  const double sign = std::copysign(1.0, held);
+  r.set(sign > 0.0 ? Shear::slips_plus : Shear::slips_minus);
+  r.t_0 = follows ? sign * friction * r.n_0 : r.t;
+  r.dt_dn = follows ? sign * friction * r.dn_dn : 0.0;
+  // A given bound makes sliding the gradient of an energy, too.
+  const double slid = follows ? 0.0 : most * std::abs(held - r.t);
+  r.energy += (0.5 * (r.t * r.t - shear.r_0 * shear.r_0) + slid) / shear.D;
+  return r;
+}
+
+// Lines that fall meet the law's answer at the largest of theirs.
+Reaction LawLines::at_end_of_step(const FreeJump& w) const {
+  double n = -HUGE_VAL;
+  for (const LawLine& line : normal()) n = std::max(n, line.at_end_of_step(w.n, w.per_n));
+  return admissible({n, shear.at_end_of_step(w.t, w.per_t)});
+}
+
+Reaction LawLines::admissible(const Reaction& r) const {
+  double n = r.n;
+  for (const LawLine& line : normal()) n = std::max(n, line.D > 0.0 ? -HUGE_VAL : line.at(0.0));
+  return {n, std::clamp(r.t, -bound(n), bound(n))};
+}
+
+// The trapezoidal rule between the ends and where lines meet.
+double LawLines::energy(double w_n) const {
+  const double from = std::min(0.0, w_n), to = std::max(0.0, w_n);
+  std::array cuts{from, meeting(own, contact), to};
+  double sum = 0.0;
+  for (double& w : cuts) w = std::min(to, std::max(from, w));
+  std::ranges::sort(cuts);
+  for (std::size_t k = 1; k < cuts.size(); ++k) {
+    const double a = cuts[k - 1], b = cuts[k];
+    sum += 0.5 * (largest_at(*this, a).at(a) + largest_at(*this, b).at(b)) * (b - a);
+  }
+  return w_n > 0.0 ? -sum : sum;
 }
 
 }  // namespace strata

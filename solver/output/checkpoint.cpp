@@ -28,7 +28,7 @@ concept Is = std::is_same_v<std::remove_const_t<T>, Plain>;
 
 // The members of each structure, for saving and loading alike. A structured binding has to name every one, so that a
 // new one cannot be left out by oversight: the compiler asks for it here. Structures of numbers without gaps (Ledger,
-// Monitors, FluidBalance, Stress) are saved as the bytes they are.
+// Monitors, FluidBalance, Stress, InterfaceLaw::Memory) are saved as the bytes they are.
 #define STRATA_SAVED(Type, ...)                       \
   template <class Archive>                            \
   void fields(Archive& archive, Is<Type> auto& all) { \
@@ -36,7 +36,7 @@ concept Is = std::is_same_v<std::remove_const_t<T>, Plain>;
     archive(__VA_ARGS__);                             \
   }
 STRATA_SAVED(Grid, nx, ny, h, x_knots, y_knots)
-STRATA_SAVED(SurfacePoint, x, n, A, arc, w, u, reaction, in_situ, bonded, P, slip, column, sides, split, failed_s)
+STRATA_SAVED(SurfacePoint, x, n, A, arc, w, u, reaction, in_situ, bonded, P, memory, column, sides, split, failed_s)
 STRATA_SAVED(Surface, kind, bit, law, vertices, points)
 STRATA_SAVED(FluidLine, P, inlet, inlet_Pa, w_rate)
 STRATA_SAVED(ReynoldsLine, length, P, phi, content, w, w_rate, rates_known, inlet, inlet_Pa)

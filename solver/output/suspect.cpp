@@ -154,7 +154,7 @@ void Watch::surfaces() {
   // with two 22.
   double least = infinite;  // cells that failed interfaces were judged on
   for (const Surface& surface : state.surfaces) {
-    if (surface.kind != Surface::Kind::interface || scene.laws[surface.law].kind != InterfaceLaw::Kind::weak) continue;
+    if (surface.kind != Surface::Kind::interface || !scene.laws[surface.law].has_strength()) continue;
     const auto split = std::ranges::count_if(surface.points, &SurfacePoint::split);
     if (scene.fracture && split > 0 && split < std::ssize(surface.points))
       least = std::min(least, failure_length(scene, scene.laws[surface.law]) / state.grid.h);

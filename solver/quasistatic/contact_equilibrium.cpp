@@ -33,14 +33,9 @@ Vec2 jump_of(const ContactPlace& place, const Eigen::VectorXd& j) {
   return {times(place.D[0], j), times(place.D[1], j)};
 }
 
-double pressure(const State& state, const ContactPlace& place) {
-  return place.tie >= 0 ? 0.0 : state.surfaces[place.surface].points[place.point].P;
-}
-
 LawAnswer answer_at(const State& state, const ContactPlace& place, const Vec2& w) {
-  return law_at(place.law, place.k,
-                {w.dot(place.n), w.dot(place.t()), place.w_t_start, place.r_t_start, place.bound,
-                 place.in_situ.dot(place.n) - pressure(state, place)});
+  return lines_of(place.law, place.k, place.start, place.in_situ.dot(place.n) - point_of(state, place).P)
+      .at(w.dot(place.n), w.dot(place.t()), place.bound);
 }
 
 void add_force(const ContactPlace& place, const Vec2& traction, Eigen::VectorXd& f) {
@@ -50,7 +45,7 @@ void add_force(const ContactPlace& place, const Vec2& traction, Eigen::VectorXd&
 }
 
 Vec2 net_load(const State& state, const ContactPlace& place) {
-  return pressure(state, place) * place.n - place.in_situ;
+  return point_of(state, place).P * place.n - place.in_situ;
 }
 
 // The body force's share of the loads on the jumps.
@@ -311,9 +306,8 @@ Equilibrium solve_with_fixed_bounds(const State& state, const Condensed& condens
     change = 0.0;
     for (std::size_t k = 0; k < places.size(); ++k) {
       ContactPlace& place = places[k];
-      const double mu = sliding_coefficient(place.law);
-      const double bound = mu * at.answers[k].n;
-      if (mu == 0.0) continue;
+      if (!place.law.slides()) continue;
+      const double bound = place.law.friction() * std::max(0.0, at.answers[k].n);
       change = std::max(change, std::abs(bound - std::max(0.0, place.bound)));
       largest = std::max(largest, bound);
       place.bound = bound;
@@ -362,14 +356,12 @@ std::vector<ContactPlace> contact_places(const Scene& scene, const Rocks& rocks,
   std::vector<ContactPlace> places;
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
     const Surface& surface = state.surfaces[k];
-    const bool fracture = surface.kind == Surface::Kind::fracture;
-    const InterfaceLaw law = fracture ? face_law(scene) : scene.laws[surface.law];
+    const InterfaceLaw law = law_of(scene, surface);
     const double stiffness = contact_stiffness(law, rocks, state.grid);
     for (std::size_t q = 0; q < surface.points.size(); ++q) {
       const SurfacePoint& s = surface.points[q];
       if (!s.split) continue;
-      const Vec2 t = tangent_of(s.n);
-      places.push_back({k, q, -1, law, stiffness, s.A, s.n, s.in_situ, s.bonded, -1.0, s.w.dot(t), s.reaction.dot(t),
+      places.push_back({k, q, -1, law, stiffness, s.A, s.n, s.in_situ, s.bonded, -1.0, start_of(s),
                         jump_rows(condensed, state.point_stencils[k][q])});
     }
   }

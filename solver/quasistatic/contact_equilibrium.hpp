@@ -21,6 +21,13 @@ struct Equilibrium {
   int iterations = 0;
 };
 
+/// The point of a surface, or the spring of a tip, that a place is. Throws nothing.
+template <class AnyState>
+auto& point_of(AnyState& state, const ContactPlace& place) {
+  return place.tie >= 0 ? state.ties[static_cast<std::size_t>(place.tie)].s
+                        : state.surfaces[place.surface].points[place.point];
+}
+
 /// The split places of a state and the springs of its tips, with the memory of friction as the state holds it.
 /// Stencil weights must be up to date.
 std::vector<ContactPlace> contact_places(const Scene& scene, const Rocks& rocks, const State& state,

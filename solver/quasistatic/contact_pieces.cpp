@@ -4,21 +4,19 @@ namespace strata {
 
 namespace {
 
-using Piece = LawAnswer::Piece;
+using Shear = LawAnswer::Shear;
 
 // The linear piece of a law that sticks, for one that slides.
 LawAnswer sticking(const ContactPlace& place, LawAnswer r) {
-  const bool closed = r.piece == Piece::slip_plus || r.piece == Piece::slip_minus;
-  r.piece = closed ? Piece::stick : Piece::open_stick;
-  r.t_0 = place.r_t_start + place.k * place.w_t_start;
+  r.set(Shear::sticks);
+  r.t_0 = place.start.r_t + place.k * place.start.w_t;
   r.dt_dt = -place.k, r.dt_dn = 0.0;
   return r;
 }
 
 // 1, -1: slides so; 0: does not.
-int sense(Piece piece) {
-  if (piece == Piece::slip_plus || piece == Piece::open_slip_plus) return 1;
-  return piece == Piece::slip_minus || piece == Piece::open_slip_minus ? -1 : 0;
+int sense(const LawAnswer& r) {
+  return r.shear() == Shear::slips_plus ? 1 : r.shear() == Shear::slips_minus ? -1 : 0;
 }
 
 }  // namespace
@@ -34,7 +32,7 @@ std::vector<LawAnswer> first_pieces(const std::vector<ContactPlace>& places, con
                                     bool guessed) {
   std::vector<LawAnswer> on = laws;
   for (std::size_t k = 0; k < on.size() && !guessed; ++k) {
-    if (sense(on[k].piece) != 0) on[k] = sticking(places[k], on[k]);
+    if (sense(on[k]) != 0) on[k] = sticking(places[k], on[k]);
   }
   return on;
 }
@@ -54,7 +52,7 @@ void pivot(const std::vector<ContactPlace>& places, const std::vector<LawAnswer>
   }
   for (const std::size_t k : differ) {
     if (pivoting.patience < 0 && k != differ.back()) continue;
-    const bool turns = sense(on[k].piece) * sense(laws[k].piece) < 0;
+    const bool turns = sense(on[k]) * sense(laws[k]) < 0;
     on[k] = turns ? sticking(places[k], laws[k]) : laws[k];
   }
 }

@@ -40,7 +40,7 @@ void inherit_friction(const State& state, const std::vector<ContactPlace>& place
       return other.tie < 0 && other.surface == place.surface && at == static_cast<std::ptrdiff_t>(place.point);
     });
     if (same == places.end()) continue;
-    place.w_t_start = same->w_t_start, place.r_t_start = same->r_t_start;
+    place.start = same->start;
   }
 }
 

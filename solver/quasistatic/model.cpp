@@ -226,7 +226,7 @@ void load_body(const Scene& scene, double time, const IntactBody& body, State& s
 // Plastic slip of a place since friction's memory (m): the tangential jump less what the stick spring gives way.
 double plastic_slip(const ContactPlace& place, const LawAnswer& r, const Vec2& w) {
   if (r.dt_dn == 0.0) return 0.0;
-  return w.dot(place.t()) - place.w_t_start + (r.t - place.r_t_start) / place.k;
+  return w.dot(place.t()) - place.start.w_t + (r.t - place.start.r_t) / place.k;
 }
 
 }  // namespace
@@ -291,8 +291,7 @@ void set_fields(const Scene& scene, State& state, QuasistaticModel& model, const
   for (std::size_t k = 0; k < model.places.size(); ++k) {
     const ContactPlace& place = model.places[k];
     const LawAnswer& r = equilibrium.answers[k];
-    SurfacePoint& s = place.tie >= 0 ? state.ties[static_cast<std::size_t>(place.tie)].s
-                                     : state.surfaces[place.surface].points[place.point];
+    SurfacePoint& s = point_of(state, place);
     s.w = equilibrium.w[k];
     s.reaction = place.along(r.n, r.t);
   }
@@ -306,9 +305,10 @@ void set_fields(const Scene& scene, State& state, QuasistaticModel& model, const
 void remember(State& state, QuasistaticModel& model, const Equilibrium& equilibrium) {
   for (std::size_t k = 0; k < model.places.size(); ++k) {
     ContactPlace& place = model.places[k];
-    const double w_t = equilibrium.w[k].dot(place.t());
-    if (place.tie < 0) state.surfaces[place.surface].points[place.point].slip += std::abs(w_t - place.w_t_start);
-    place.w_t_start = w_t, place.r_t_start = equilibrium.answers[k].t;
+    InterfaceLaw::Memory& memory = point_of(state, place).memory;
+    const double w_n = equilibrium.w[k].dot(place.n), w_t = equilibrium.w[k].dot(place.t());
+    remember(place.law, w_n, w_t - place.start.w_t, memory);
+    place.start = {w_t, equilibrium.answers[k].t, memory};
   }
 }
 

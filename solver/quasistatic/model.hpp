@@ -55,7 +55,7 @@ void set_fields(const Scene& scene, State& state, QuasistaticModel& model, const
 /// Displacements and their gradients to all particles, for whoever looks at them.
 void set_all_particles(const Scene& scene, State& state, const QuasistaticModel& model);
 
-/// Makes the equilibrium that the state holds the one that friction remembers; adds up slip.
+/// Makes the equilibrium that the state holds the one that laws remember.
 void remember(State& state, QuasistaticModel& model, const Equilibrium& equilibrium);
 
 /// Energy stored in the laws of surfaces and the springs of tips (J/m).

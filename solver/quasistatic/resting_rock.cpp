@@ -82,9 +82,7 @@ void follow(const State& state, RestingRock& resting) {
     }
   }
   for (ContactPlace& place : resting.model.places) {
-    if (place.tie >= 0) continue;
-    const SurfacePoint& s = state.surfaces[place.surface].points[place.point];
-    place.w_t_start = s.w.dot(place.t()), place.r_t_start = s.reaction.dot(place.t());
+    if (place.tie < 0) place.start = start_of(state.surfaces[place.surface].points[place.point]);
   }
   resting.state.fluid = state.fluid;
   resting.state.time = state.time;

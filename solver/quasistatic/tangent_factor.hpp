@@ -23,11 +23,11 @@ struct ContactPlace {
   double k = 0.0;  // stiffness of closed contact (Pa/m)
   double A = 0.0;  // length (m)
   Vec2 n = Vec2::Zero();
-  Vec2 in_situ = Vec2::Zero();              // Pa
-  Vec2 bonded = Vec2::Zero();               // jump when it split (m)
-  double bound = -1.0;                      // friction's bound where it is held fixed (Pa)
-  double w_t_start = 0.0, r_t_start = 0.0;  // what friction remembers
-  std::array<SparseRow, 2> D;               // rows of the jump's x and y
+  Vec2 in_situ = Vec2::Zero();  // Pa
+  Vec2 bonded = Vec2::Zero();   // jump when it split (m)
+  double bound = -1.0;          // friction's bound where it is held fixed (Pa)
+  LawStart start;               // of the last equilibrium
+  std::array<SparseRow, 2> D;   // rows of the jump's x and y
 
   Vec2 t() const { return tangent_of(n); }
   Vec2 along(double normal, double tangential) const { return normal * n + tangential * t(); }

@@ -105,11 +105,28 @@ struct InterfaceLaw {
   double shear_stiffness_Pa_m = 0.5e6;       // soft
   Compression compression = Compression::contact;
 
+  // What a place under it remembers beside its last jump and reaction; of numbers alone, as it is saved byte by byte.
+  struct Memory {
+    double slip = 0.0;  // sliding distance, summed (m)
+  };
+
   // Whether its faces are apart from the start: nothing bonds springs, nor faces without friction.
   bool apart_at_start() const { return kind == Kind::soft || (kind == Kind::friction && coefficient == 0.0); }
 
   // Whether its springs go on carrying the in-situ stress, so that their reaction is the change from it.
   bool takes_all_compression() const { return kind == Kind::soft && compression == Compression::spring; }
+
+  // Whether strengths bond it; friction alone does, which gives nothing up where it lets go.
+  bool has_strength() const { return kind == Kind::weak; }
+  bool only_sticks() const { return kind == Kind::friction; }
+
+  // Whether its faces pull each other where they are apart; whether they hold in shear until they slide, not by
+  // springs.
+  bool pulls() const { return kind == Kind::soft; }
+  bool slides() const { return kind != Kind::soft; }
+
+  // Coefficient of friction between split faces, that of sliding where strength has failed.
+  double friction() const { return only_sticks() ? coefficient : has_strength() ? residual_friction : 0.0; }
   bool operator==(const InterfaceLaw&) const = default;
 };
 

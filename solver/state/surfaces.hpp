@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "scene/scene.hpp"
 #include "state/types.hpp"
 
 namespace strata {
@@ -20,7 +21,7 @@ struct SurfacePoint {
   Vec2 in_situ = Vec2::Zero();   // what the - side exerted on the + face in the in-situ state, -sigma_0 n (Pa)
   Vec2 bonded = Vec2::Zero();    // jump that its neighbours' splitting had opened here when it split: no part of w (m)
   double P = 0.0;                // fluid pressure (Pa)
-  double slip = 0.0;             // sliding distance, summed (m)
+  InterfaceLaw::Memory memory;   // what its law remembers beside
   int column = 0;                // the grid column (or row) an interface's point belongs to
   SideWord sides = 0;            // sides of the other surfaces; its own bit is clear
   bool split = false;            // two sides exist here: a law acts. Intact and bonded places are not split

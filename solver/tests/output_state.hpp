@@ -87,7 +87,7 @@ inline void fill_point(SurfacePoint& s, Numbers& number) {
   s.reaction = 1e6 * Vec2{number.next(), number.next()};
   s.in_situ = 1e6 * Vec2{number.next(), number.next()};
   s.P = 1e6 * number.next();
-  s.slip = number.next();
+  s.memory.slip = number.next();
   s.column = ++number.count;
   s.sides = static_cast<SideWord>(number.count);
   s.split = number.count % 2 == 0;

@@ -26,7 +26,7 @@ std::vector<LawAnswer> answers(const Pieces& pieces) {
 
 std::vector<ContactPlace> places_with_memory(std::size_t n) {
   std::vector<ContactPlace> places(n);
-  for (ContactPlace& place : places) place.k = 10.0, place.w_t_start = 0.25, place.r_t_start = -0.5;
+  for (ContactPlace& place : places) place.k = 10.0, place.start.w_t = 0.25, place.start.r_t = -0.5;
   return places;
 }
 

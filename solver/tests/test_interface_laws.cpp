@@ -19,13 +19,29 @@ using Compression = InterfaceLaw::Compression;
 // 1000th and a 1500th give the reactions of rigid contact and of rigid stick.
 constexpr double k_hand = 5e14, yielding = 1.0 + 1e-3, sticking = 1.0 + 1.0 / 1500.0;
 
+// What a law is asked in a step.
+struct Asked {
+  double n = 0.0, t = 0.0;                // jump without reaction (m)
+  double t_start = 0.0, r_t_start = 0.0;  // what friction remembers (m, Pa)
+  double per_n = 0.0, per_t = 0.0;        // m/Pa
+  double n_rest = 0.0;                    // Pa
+};
+
+LawLines lines(const InterfaceLaw& law, double k, const Asked& w) {
+  return lines_of(law, k, {w.t_start, w.r_t_start, {}}, w.n_rest);
+}
+
+Reaction react(const InterfaceLaw& law, double k, const Asked& w) {
+  return lines(law, k, w).at_end_of_step({w.n, w.t, w.per_n, w.per_t});
+}
+
 // A jump without reaction and the compliance of its place.
-FreeJump free_jump(double n, double t, double t_start = 0.0, double r_t_start = 0.0) {
+Asked free_jump(double n, double t, double t_start = 0.0, double r_t_start = 0.0) {
   return {n, t, t_start, r_t_start, 2e-12, 3e-12, 0.0};
 }
 
-Reaction react(const InterfaceLaw& law, const FreeJump& w) {
-  return strata::react(law, k_hand, w);
+Reaction react(const InterfaceLaw& law, const Asked& w) {
+  return react(law, k_hand, w);
 }
 
 // Splits all points of the only interface, in contact under the in-situ stress.
@@ -165,7 +181,7 @@ TEST_CASE("contact is complementary") {
     CHECK(closed.n == Approx(0.5e6));
     CHECK(-1e-6 * yielding + 2e-12 * closed.n == Approx(-2e-15 * 0.5e6));
   }
-  FreeJump at_rest = free_jump(-2e-12 * 7e5, 0.0);
+  Asked at_rest = free_jump(-2e-12 * 7e5, 0.0);
   at_rest.n_rest = 7e5;
   CHECK(react(friction_law(0.6), at_rest).n == Approx(7e5));
   CHECK(react(weak_law(1e5, 1e5, 0.3), free_jump(-4e-6 * yielding, 1.0)).t == Approx(-0.6e6));
@@ -173,10 +189,10 @@ TEST_CASE("contact is complementary") {
   CHECK(react(InterfaceLaw{}, free_jump(-4e-6, 1.0)).n == 0.0);
 }
 
-// Requires of every law that react() gives what law_at() says at the jump which that reaction leaves, whatever the
-// jump, the memory of friction, the stress at rest and the place's compliance: the law of equilibria and of steps is
-// one. Mutations that fail: the place's compliance or k left out or doubled, n_rest or memory left out or of the other
-// sign.
+// Requires of every law that the reaction of a step is what its lines say at the jump which that reaction leaves,
+// whatever the jump, the memory of friction, the stress at rest and the place's compliance: the law of equilibria and
+// of steps is one. Mutations that fail: the place's compliance or k left out or doubled, n_rest or memory left out or
+// of the other sign.
 TEST_CASE("a step's reaction satisfies the law at its end") {
   const std::vector<InterfaceLaw> laws = {friction_law(0.6),
                                           weak_law(1e5, 1e5, 0.3),
@@ -188,12 +204,9 @@ TEST_CASE("a step's reaction satisfies the law at its end") {
     for (const double per : {0.0, 1e-12}) {
       for (const double w_n : {-4e-6, -1e-9, 0.0, 1e-9, 3e-6}) {
         for (const double w_t : {-5e-6, -1e-10, 2e-10, 5e-6}) {
-          const FreeJump w{w_n, w_t + 1e-3, 1e-3, 2e5, 2.0 * per, 3.0 * per, 7e5};
-          const Reaction r = strata::react(law, 1e14, w);
-          LawInput in;
-          in.w_n = w.n + w.per_n * r.n, in.w_t = w.t + w.per_t * r.t;
-          in.w_t_start = w.t_start, in.r_t_start = w.r_t_start, in.n_rest = w.n_rest;
-          const LawAnswer at_end = law_at(law, 1e14, in);
+          const Asked w{w_n, w_t + 1e-3, 1e-3, 2e5, 2.0 * per, 3.0 * per, 7e5};
+          const Reaction r = react(law, 1e14, w);
+          const LawAnswer at_end = lines(law, 1e14, w).at(w.n + w.per_n * r.n, w.t + w.per_t * r.t);
           CAPTURE(static_cast<int>(law.kind), per, w_n, w_t, r.n, r.t);
           // k times the round-off of the jumps, of which the tangential one is that of 1e-3 m
           CHECK(r.n == Approx(at_end.n).epsilon(1e-9).margin(1.0));

@@ -26,7 +26,7 @@ void require_same(const SurfacePoint& a, const SurfacePoint& b) {
   CHECK(a.reaction == b.reaction);
   CHECK(a.in_situ == b.in_situ);
   CHECK(a.P == b.P);
-  CHECK(a.slip == b.slip);
+  CHECK(a.memory.slip == b.memory.slip);
   CHECK(a.column == b.column);
   CHECK(a.sides == b.sides);
   CHECK(a.split == b.split);

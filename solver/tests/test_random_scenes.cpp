@@ -50,7 +50,7 @@ void check_place(const State& state, const ContactPlace& place, const LawAnswer&
   worst.see(std::min(r.n, r.n - closed), "contact without touching");
   const double bound = friction_coefficient(place.law) * r.n, slack = bound - std::abs(r.t);
   worst.see(-slack, "friction beyond its bound");
-  const double slip = w_t - place.w_t_start + (r.t - place.r_t_start) / place.k;  // m
+  const double slip = w_t - place.start.w_t + (r.t - place.start.r_t) / place.k;  // m
   if (r.n <= 0.0) return;
   worst.see(std::min(slack, place.k * std::abs(slip)), "slip below friction's bound");
   if (bound > 0.0)

@@ -19,6 +19,18 @@ constexpr double k = 1e12;       // Pa/m, of closed contact
 constexpr double spread = 3e-6;  // m: jumps up to this on both sides of where a law changes
 constexpr int steps = 13;        // of jumps each way
 
+// What a law is asked at a place.
+struct LawInput {
+  double w_n = 0.0, w_t = 0.0;              // jump (m)
+  double w_t_start = 0.0, r_t_start = 0.0;  // what friction remembers (m, Pa)
+  double bound = -1.0;                      // of friction where it is given (Pa)
+  double n_rest = 0.0;                      // Pa
+};
+
+LawAnswer law_at(const InterfaceLaw& law, double stiffness, const LawInput& in) {
+  return lines_of(law, stiffness, {in.w_t_start, in.r_t_start, {}}, in.n_rest).at(in.w_n, in.w_t, in.bound);
+}
+
 // A law with all that a place asks it but the jump.
 struct Case {
   std::string name;
@@ -187,4 +199,34 @@ TEST_CASE("energy of a law is what its reaction takes up") {
       CHECK(r.energy == Approx(contact + (r.t * r.t - c.at.r_t_start * c.at.r_t_start) / (2.0 * k)));
     }
   });
+}
+
+// Requires, by hand, what laws allow whatever the jump: contact only pushes, friction holds 0.6 of that, springs
+// anything but without normal stiffness. Mutations that fail: contact that pulls, friction's bound doubled or left out.
+TEST_CASE("reactions that a law allows") {
+  const auto allowed = [](const InterfaceLaw& law, double n, double t) {
+    const Reaction r = lines_of(law, k, {}, 7e5).admissible({n, t});
+    return Vec2{r.n, r.t};
+  };
+  CHECK(allowed(friction_law(0.6), -1e5, 2e5) == Vec2{0.0, 0.0});
+  CHECK(allowed(friction_law(0.6), 1e5, -2e5).isApprox(Vec2{1e5, -6e4}));
+  CHECK(allowed(friction_law(0.6), 1e5, 5e4) == Vec2{1e5, 5e4});
+  CHECK(allowed(soft_law(1e9, 1e9), -1e5, 2e5) == Vec2{-1e5, 2e5});
+  CHECK(allowed(soft_law(0.0, 1e9), -1e5, 2e5) == Vec2{0.0, 2e5});
+}
+
+// Requires the energy of springs by hand, A (D_n w_n^2 + D_t w_t^2)/2 with A = 0.5 m, D_n = 2e9, D_t = 1e9 Pa/m, w_t =
+// 2 and w_n = 3 or -3 mm: 0.5 (9e3 + 2e3) J/m, without D_n where faces meet; none of friction, nor of what is whole.
+// Mutations that fail: either half of it doubled or left out, springs in faces that meet, none where springs act.
+TEST_CASE("energy that springs hold") {
+  const auto energy = [](const InterfaceLaw& law, double w_n, bool split = true) {
+    SurfacePoint s;
+    s.n = {0.0, 1.0}, s.A = 0.5, s.w = {2e-3, w_n}, s.split = split;
+    return spring_energy_at(law, s);
+  };
+  CHECK(energy(soft_law(2e9, 1e9), 3e-3) == Approx(5500.0));
+  CHECK(energy(soft_law(2e9, 1e9), -3e-3) == Approx(1000.0));
+  CHECK(energy(soft_law(2e9, 1e9, Compression::spring), -3e-3) == Approx(5500.0));
+  CHECK(energy(soft_law(2e9, 1e9), 3e-3, false) == 0.0);
+  CHECK(energy(friction_law(0.6), 3e-3) == 0.0);
 }

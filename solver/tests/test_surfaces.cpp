@@ -135,19 +135,19 @@ TEST_CASE("sides at a kink") {
 // anew from the first vertex, normals as before, and what the old points remember stays with them.
 TEST_CASE("surfaces grow at both ends") {
   Surface s = path({{1.0, 2.0}, {2.0, 2.0}});
-  s.points[0].slip = 7.0;
+  s.points[0].memory.slip = 7.0;
   s.vertices[0].w = {5.0, 6.0};
   extend(s, true, {3.0, 2.0}, 0.5);
   CHECK(s.length() == Approx(2.0));
   CHECK(s.points.size() == 4);
-  CHECK(s.points[0].slip == 7.0);
+  CHECK(s.points[0].memory.slip == 7.0);
   CHECK((s.vertices.back().x - Vec2{3.0, 2.0}).norm() < 1e-15);
   extend(s, false, {0.1, 2.0}, 0.5);
   CHECK(s.points.size() == 6);
   CHECK(s.length() == Approx(2.9));
   CHECK((s.vertices.front().x - Vec2{0.1, 2.0}).norm() < 1e-15);
   CHECK((s.vertices[1].x - Vec2{0.55, 2.0}).norm() < 1e-15);
-  CHECK(s.points[2].slip == 7.0);
+  CHECK(s.points[2].memory.slip == 7.0);
   CHECK(s.vertices[2].w == Vec2{5.0, 6.0});
   CHECK(s.points[2].arc == Approx(1.15));
   for (const SurfacePoint& point : s.points) CHECK((point.n - Vec2{0.0, 1.0}).norm() < 1e-14);
