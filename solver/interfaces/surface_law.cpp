@@ -67,7 +67,7 @@ InterfaceLaw face_law(const Scene& scene) {
   if (scene.fracture && scene.fracture->faces == Fracture::Faces::free) return spring_law(0.0);
   InterfaceLaw law;
   law.kind = Kind::friction;
-  law.coefficient = 0.0;
+  law.coefficient = scene.fracture ? scene.fracture->friction : 0.0;
   return law;
 }
 

@@ -410,12 +410,11 @@ void start_quasistatic(const Scene& scene, const Rocks& rocks, State& state, Qua
   if (state.step == 0) fill_fracture(scene, state, run.model);
   equilibrate(scene, rocks, state, run);
   if (state.step > 0) return;
-  remember(state, run.model, run.equilibrium);
   state.dt = first_flow_step;
   state.ledger = Ledger{};
   // The in-situ state: the fluid holds the fracture's faces against the stress across it, bonds carry all the rest and
-  // give it up as they give way. The work of either is then half of its last value times the jump, and what rock and
-  // springs store is as much (Clapeyron).
+  // give it up as they give way. The work of either, and of friction, is then half of its last value times the jump,
+  // and what rock and springs store is as much (Clapeyron).
   const LoadPoint unloaded = [&] {
     LoadPoint point = load_point(state);
     std::fill(point.u.begin(), point.u.end(), Vec2::Zero());
@@ -431,6 +430,8 @@ void start_quasistatic(const Scene& scene, const Rocks& rocks, State& state, Qua
     return point;
   }();
   close_ledger(run, unloaded, Change::load, 0.0, state);
+  state.ledger.friction *= 0.5;
+  remember(state, run.model, run.equilibrium);
 }
 
 void restart_quasistatic(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run) {

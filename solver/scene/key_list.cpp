@@ -179,6 +179,8 @@ constexpr Key keys[] = {
     word("fracture.faces", at<&Scene::fracture, &Fracture::faces>,
          "Where the fracture closes its faces meet, or they pass through each other as rock does not: to see what "
          "contact is worth."),
+    number("fracture.friction", at<&Scene::fracture, &Fracture::friction>, "", not_negative,
+           "Coulomb coefficient of the fracture's faces where they meet."),
     word("fluid.law", at<&Scene::fluid, &Fluid::law>,
          "Pressure diffusion along the fracture by eq. (3), the inlet's pressure everywhere in it, or lubrication "
          "that conserves mass.",

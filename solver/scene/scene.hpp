@@ -182,6 +182,7 @@ struct Fracture {
   std::optional<double> crossing_increment_m;  // absent: increment_m
   Order order = Order::interfaces;
   Faces faces = Faces::contact;
+  double friction = 0.0;  // of faces that meet
 
   double crossing_increment() const { return crossing_increment_m.value_or(increment_m); }
   bool operator==(const Fracture&) const = default;

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from verification.harness.given import given, half_length, lower, tip, upper
+from verification.harness.given import energy, given, half_length, last, lower, tip, upper
 from verification.harness.load import LoadError, Run
 from verification.harness.paths import ANALYTIC
 from verification.harness.reference import values
@@ -74,9 +74,27 @@ def K_linear(sign: float) -> Callable[[Run], float]:
     return exact
 
 
+def driving_Pa(run: Run) -> float:
+    """The shear stress that friction on closed faces leaves, t - mu (s_h - P)."""
+    rubs = given(run, "fracture.friction") * max(0.0, given(run, "in_situ.horizontal_Pa") - run.summary.inlet_Pa)
+    return max(0.0, given(run, "in_situ.shear_Pa") - rubs)
+
+
 def K_shear(run: Run) -> float:
     """K_II under sigma_xy = t: -t sqrt(pi a), since positive K_II turns growth clockwise and t turns it the other way."""
-    return -given(run, "in_situ.shear_Pa") * math.sqrt(math.pi * half_length(run))
+    return -driving_Pa(run) * math.sqrt(math.pi * half_length(run))
+
+
+def rubbed_J(run: Run) -> float:
+    """Work of friction, half of its last value times the slip: w = (4 t/E') sqrt(a^2 - x^2)."""
+    E, nu = (run.scene["rock"]["tender"][key] for key in ("youngs_modulus_Pa", "poisson_ratio"))
+    slip_m2 = 2.0 * math.pi * half_length(run) ** 2 * driving_Pa(run) * (1.0 - nu**2) / E
+    return 0.5 * given(run, "fracture.friction") * (given(run, "in_situ.horizontal_Pa") - run.summary.inlet_Pa) * slip_m2
+
+
+def largest_slip(run: Run) -> float:
+    """Of the fracture's faces, m."""
+    return float(np.max(np.abs(last(run, "fracture")[1]["slip_m"])))
 
 
 K_UNIT = "Pa sqrt(m)"
@@ -94,4 +112,9 @@ CASES = (
     case("sheared", "in-situ shear stress along the crack", cell_levels(1.0, 0.5, 0.25, variant="sheared"),
          (Quantity.of("K_II of the upper tip", K_UNIT, tip("K_II_Pa_sqrt_m", upper), K_shear, RINGS),
           Quantity.of("K_II of the lower tip", K_UNIT, tip("K_II_Pa_sqrt_m", lower), K_shear, RINGS))),
+    case("rubbing", "a closed crack that slides against its own friction", cell_levels(1.0, 0.5, 0.25, variant="rubbing"),
+         (Quantity.of("K_II", K_UNIT, tip("K_II_Pa_sqrt_m", upper), K_shear, RINGS),
+          Quantity.of("work of friction", "J/m", energy("friction_J"), rubbed_J))),
+    case("sticking", "the same crack, held by friction", cell_levels(1.0, 0.5, variant="sticking"),
+         (Quantity.of("largest slip", "m", largest_slip, lambda _: 0.0, "contact gives way by its penalty", scale=4.8e-3),)),  # free: 4 t a/E'
 )  # fmt: skip
