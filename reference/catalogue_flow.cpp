@@ -219,19 +219,22 @@ Answer solve_shut_in(const Inputs& in) {
   add("leaked_m2", &ShutInState::leaked, "m^2");
   const double t = in.numbers("time_s").front();
   answer.relative_error = 1e-12;
-  for (double ShutInState::*value : {&ShutInState::half_length, &ShutInState::leaked})
+  using Number = double ShutInState::*;
+  for (const Number value : {Number(&ShutInState::half_length), &ShutInState::leaked})
     answer.relative_error = std::max(answer.relative_error, std::abs(at(value, t, 200) / at(value, t) - 1));
   answer.error_basis = "change of length and leaked volume at the first time from half the steps";
   return answer;
 }
 
 Entry shut_in_entry() {
+  Input time = list_input("time_s", "since injection began", 600.0);
+  time.least = 0;
+  time.least_excluded = true;
   return {
       "shut_in",
       "plane-strain fracture with Carter leak-off and a fluid without viscosity, fed until shut-in: length, opening, "
       "net pressure",
-      joined(leakoff_inputs(), {positive_input("shut_in_s", "when the rate becomes 0", 500),
-                                list_input("time_s", "since injection began", 600)}),
+      joined(leakoff_inputs(), {positive_input("shut_in_s", "when the rate becomes 0", 500), time}),
       "own solution: Griffith's crack at K_I = K_Ic, then at rest, and Carter's law over its history",
       "uniform pressure (toughness_number of kgd_leakoff above about 4), no lag, incompressible fluid, infinite plane, "
       "until the fracture closes: then pressure and opening are 0; toughness above 0; net pressure",
