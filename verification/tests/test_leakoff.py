@@ -16,10 +16,10 @@ RATE, SHUT_IN_S = 5e-5, 300.0  # of the scene
 FIXED = """\
 domain = {width_m = 320, height_m = 160}
 in_situ = {vertical_Pa = 20e6, horizontal_Pa = 20e6}
-rock.r = {youngs_modulus_Pa = 20e9, poisson_ratio = 0.2, leakoff_m_sqrt_s = 1.5e-6}
+rock.r = {youngs_modulus_Pa = 20e9, poisson_ratio = 0.2, leakoff_m_sqrt_s = 1.5e-5}
 strata.layers = [{rock = "r"}]
 fracture = {path_m = [[160, 0], [160, 10]], growth = "none"}
-fluid = {law = "reynolds", viscosity_Pa_s = 1e-5, bulk_modulus_Pa = 1e12, inlet = {table = [[0, 0], [10, 2e-4], [20, 2e-4], [20.01, 0]], of = "rate_m2_s"}}
+fluid = {law = "reynolds", viscosity_Pa_s = 1e-5, bulk_modulus_Pa = 1e12, inlet = {table = [[0, 0], [10, 2e-3], [20, 2e-3], [20.01, 0]], of = "rate_m2_s"}}
 numerics = {mechanics = "quasistatic", cell_m = 0.5, far_cell_m = 16}
 stop = {time_s = 200}
 output = {fields_every_s = 10}
@@ -28,7 +28,7 @@ output = {fields_every_s = 10}
 
 def fed_m2(t: float) -> float:
     """What FIXED has been fed until a time that no row cuts, both wings."""
-    return 1e-5 * t * t if t <= 10.0 else 1e-3 + 2e-4 * (t - 10.0) if t <= 20.0 else 3.001e-3
+    return 1e-4 * t * t if t <= 10.0 else 1e-2 + 2e-3 * (t - 10.0) if t <= 20.0 else 3.001e-2
 
 
 def test_a_fixed_fracture_that_is_shut_in_falls_off_by_what_leaks(tmp_path: Path) -> None:
@@ -42,14 +42,14 @@ def test_a_fixed_fracture_that_is_shut_in_falls_off_by_what_leaks(tmp_path: Path
     for row in rows:
         t, volume, leaked = (float(row[name]) for name in ("time_s", "fracture_volume_m2", "leaked_m2"))
         if t >= 10.0:  # before that less comes in than the rock would take
-            assert leaked == pytest.approx(4.0 * 1.5e-6 * t**0.5 * 10.0, rel=1e-9)
+            assert leaked == pytest.approx(4.0 * 1.5e-5 * t**0.5 * 10.0, rel=1e-9)
         assert abs(float(row["fluid_volume_balance"])) < 1e-8
-        assert volume + leaked == pytest.approx(0.5 * fed_m2(t), rel=2e-3)  # rough faces hold 1e-6 m^2 besides
-        if t >= 10.0:
+        assert volume + leaked == pytest.approx(0.5 * fed_m2(t), rel=1e-6)  # rough faces held 1e-8 m^2 at the start
+        if t >= 30.0:  # nothing flows but what leaks
             net = float(row["inlet_Pa"]) - 20e6
-            assert net == pytest.approx((0.5 * fed_m2(t) - leaked) * (20e9 / 0.96) / (3.141592653589793 * 10.0**2), rel=0.02)
+            assert net == pytest.approx((0.5 * fed_m2(t) - leaked) * (20e9 / 0.96) / (3.141592653589793 * 10.0**2), rel=4e-3)
     assert summary_of(tmp_path / "X")["leaked_m2"] == float(rows[-1]["leaked_m2"])
-    assert leaked / (0.5 * fed_m2(200.0)) == pytest.approx(0.5656, abs=1e-3)  # 6e-5 sqrt(200)/1.5005e-3
+    assert leaked / (0.5 * fed_m2(200.0)) == pytest.approx(0.5656, abs=1e-3)  # 6e-4 sqrt(200)/1.5005e-2
 
 
 def at_end(run: Run) -> dict[str, float]:
