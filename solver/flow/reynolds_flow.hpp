@@ -31,8 +31,7 @@ struct RockResponse {
   Eigen::VectorXd w;
   Eigen::MatrixXd dw_dP;
   Eigen::VectorXd E_prime = {}, closing = {};
-  Eigen::VectorXd lost =
-      {};  // what both faces of each cell have lost by the step's end (m^2), or nothing where none do
+  Eigen::VectorXd lost = {};  // by both faces of each cell until the step's end (m^2), or nothing where none leak
 };
 using RockModel = std::function<RockResponse(const Eigen::VectorXd& P)>;  // P absolute, one a point (Pa)
 
