@@ -34,7 +34,7 @@ def fed_m2(t: float) -> float:
 def test_a_fixed_fracture_that_is_shut_in_falls_off_by_what_leaks(tmp_path: Path) -> None:
     """All is wet from time 0 on: a wing of 10 m has lost 4 C_L sqrt(t) a to its two faces, and p = V E'/(2 pi a^2) follows the rest.
 
-    Mutations that fail: one face, C_L doubled, a gain, the rate of a step's end in place of its mean.
+    Mutations that fail: one face, a gain, the rate of a step's end in place of its mean, steps over rows.
     """
     assert run_in(tmp_path, FIXED).returncode == 0
     rows = [row for row in rows_of(tmp_path / "X") if float(row["time_s"]) > 0.0]
@@ -135,7 +135,7 @@ def test_a_table_of_pressure_is_the_ramp_that_it_describes(tmp_path: Path, law: 
 
 
 def test_a_pressure_that_falls_again_between_outputs_is_followed(tmp_path: Path) -> None:
-    """A run without flow goes from event to event: the peak of a table counts, 0.3 or 0.6 MPa net where K_Ic takes 0.37."""
+    """A run without flow goes from event to event: the peak of a table counts, 0.3 or 0.6 MPa net where K_Ic takes 0.37. Steps over rows see neither."""
     text = """\
     domain = {width_m = 32, height_m = 32}
     in_situ = {vertical_Pa = 3e6, horizontal_Pa = 2e6}
