@@ -5,6 +5,7 @@
 #include "catalogue.hpp"
 #include "channel_flow.hpp"
 #include "kgd.hpp"
+#include "kgd_leakoff.hpp"
 
 namespace strata::reference {
 namespace {
@@ -170,6 +171,76 @@ Entry kgd_entry() {
           solve_kgd};
 }
 
+// The fracture of references that others computed too (Dontsov 2017).
+std::vector<Input> leakoff_inputs() {
+  return joined(rock_inputs("", 20e9), {number_input("toughness_Pa_sqrt_m", "K_Ic", 1e6, 0, 1e12),
+                                        positive_input("rate_m2_s", "Q_0, both wings together", 5e-5),
+                                        number_input("leakoff_m_sqrt_s", "C_L of each face", 1e-5, 0, 1)});
+}
+
+Entry kgd_leakoff_entry() {
+  return {
+      "kgd_leakoff",
+      "plane-strain hydraulic fracture at a constant rate with Carter leak-off, any toughness and viscosity: length, "
+      "opening, net pressure, efficiency",
+      joined(leakoff_inputs(),
+             {positive_input("viscosity_Pa_s", "mu", 0.01), positive_input("time_s", "since injection began", 500)}),
+      "lubrication, elasticity and Carter's law (Adachi & Detournay 2008), own solution marched in t^(1/6)",
+      "Carter's law 2 C_L/sqrt(t - t_0) of both faces, no lag, incompressible fluid, infinite plane, tip at K_I = "
+      "K_Ic; net pressure",
+      [](const Inputs& in) {
+        const double rate = in.number("rate_m2_s"), t = in.number("time_s");
+        const SettledLeakoff settled = kgd_leakoff(rock_of(in, "").E_prime(), rate, t, in.number("viscosity_Pa_s"),
+                                                   in.number("toughness_Pa_sqrt_m"), in.number("leakoff_m_sqrt_s"));
+        Answer answer = kgd_answer(in, settled.state, settled.error,
+                                   "what extrapolation from half the knots and half the steps adds, relative");
+        answer.values[3].value = rate * t * settled.state.efficiency;
+        answer.values.push_back({"efficiency", settled.state.efficiency, "1"});
+        answer.values.push_back({"leaked_m2", rate * t * (1 - settled.state.efficiency), "m^2"});
+        return answer;
+      }};
+}
+
+Answer solve_shut_in(const Inputs& in) {
+  const double E_prime = rock_of(in, "").E_prime();
+  const auto at = [&](double ShutInState::*value, double time, int steps = 400) {
+    return shut_in_fracture(E_prime, in.number("rate_m2_s"), in.number("shut_in_s"), in.number("toughness_Pa_sqrt_m"),
+                            in.number("leakoff_m_sqrt_s"), time, steps).*
+           value;
+  };
+  Answer answer;
+  const auto add = [&](const char* name, double ShutInState::*value, const char* unit) {
+    answer.values.push_back({name, at_each(in, "time_s", [&](double t) { return at(value, t); }), unit});
+  };
+  add("half_length_m", &ShutInState::half_length, "m");
+  add("mouth_opening_m", &ShutInState::mouth_opening, "m");
+  add("inlet_pressure_Pa", &ShutInState::inlet_pressure, "Pa");
+  add("efficiency", &ShutInState::efficiency, "1");
+  add("leaked_m2", &ShutInState::leaked, "m^2");
+  const double t = in.numbers("time_s").front();
+  answer.relative_error = 1e-12;
+  using Number = double ShutInState::*;
+  for (const Number value : {Number(&ShutInState::half_length), &ShutInState::leaked})
+    answer.relative_error = std::max(answer.relative_error, std::abs(at(value, t, 200) / at(value, t) - 1));
+  answer.error_basis = "change of length and leaked volume at the first time from half the steps";
+  return answer;
+}
+
+Entry shut_in_entry() {
+  Input time = list_input("time_s", "since injection began", 600.0);
+  time.least = 0;
+  time.least_excluded = true;
+  return {
+      "shut_in",
+      "plane-strain fracture with Carter leak-off and a fluid without viscosity, fed until shut-in: length, opening, "
+      "net pressure",
+      joined(leakoff_inputs(), {positive_input("shut_in_s", "when the rate becomes 0", 500), time}),
+      "own solution: Griffith's crack at K_I = K_Ic, then at rest, and Carter's law over its history",
+      "uniform pressure (toughness_number of kgd_leakoff above about 4), no lag, incompressible fluid, infinite plane, "
+      "until the fracture closes: then pressure and opening are 0; toughness above 0; net pressure",
+      solve_shut_in};
+}
+
 }  // namespace
 
 std::vector<Entry> flow_entries() {
@@ -179,7 +250,9 @@ std::vector<Entry> flow_entries() {
           channel_ellipse(),
           kgd_toughness_entry(),
           kgd_viscosity_entry(),
-          kgd_entry()};
+          kgd_entry(),
+          kgd_leakoff_entry(),
+          shut_in_entry()};
 }
 
 }  // namespace strata::reference

@@ -14,6 +14,8 @@
 
 #include <Eigen/Dense>
 
+#include "crack_tip_knots.hpp"
+
 namespace strata::reference {
 
 struct KgdState {
@@ -39,21 +41,26 @@ double kgd_toughness_number(double E_prime, double rate, double viscosity, doubl
 // from which it differs by K_m^3.17 (Garagash & Detournay 2005), 1e-8 at most.
 class KgdShape {
  public:
+  // A smaller toughness number than this is taken for it: the zone near the tip where toughness shows is then smaller
+  // than round-off.
+  static constexpr double least_toughness = 0.01;
+
   // knots: number of intervals, 50 to 1000. Throws std::invalid_argument outside or for K_m negative or not finite,
   // std::runtime_error without convergence.
   explicit KgdShape(double toughness_number = 0.0, int knots = 400);
 
-  double length_factor() const { return g_; }  // g: 0.615 at K_m = 0
-  double opening(double xi) const;             // W(xi), 1; 0 from the tip on
-  double pressure(double xi) const;            // P(xi), 1, for |xi| < 1; it has no lower bound at the tip
+  const CrackTipKnots& knots() const { return line_; }
+  Eigen::VectorXd openings() const { return line_.opening * P_ * g_; }  // W at the knots, without round-off at the tip
+  double length_factor() const { return g_; }                           // g: 0.615 at K_m = 0
+  double opening(double xi) const;                                      // W(xi), 1; 0 from the tip on
+  double pressure(double xi) const;  // P(xi), 1, for |xi| < 1; it has no lower bound at the tip
 
  private:
   void solve(double toughness_number);
 
   double g_ = 0.0;
-  double tip_slope_ = 0.0;  // dP/d ln(1 - xi) beyond the last knot
-  Eigen::VectorXd u_;       // 1 - xi at the knots, falling from 1
-  Eigen::VectorXd P_;       // at the knots; the last: mean from the last knot to the tip
+  CrackTipKnots line_;
+  Eigen::VectorXd P_;  // at the knots; the last: mean from the last knot to the tip
 };
 
 // The fracture of a shape at a time; arguments as above, viscosity mu in Pa s. Throws as kgd_toughness.

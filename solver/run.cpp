@@ -25,6 +25,7 @@
 #include "quasistatic/load_steps.hpp"
 #include "quasistatic/resting_rock.hpp"
 #include "scene/derived.hpp"
+#include "scene/inlet.hpp"
 #include "scene/toml_reader.hpp"
 
 namespace strata {
@@ -151,8 +152,7 @@ bool row_follows(const Run& run) {
   const double end = state.time + state.dt, slack = 0.5 * state.dt;
   if (end >= run.next_output() - slack) return true;
   if (stop.time_s && end >= *stop.time_s - slack) return true;
-  const Fluid& fluid = run.scene.fluid;
-  return stop.inlet_Pa && fluid.start_Pa + fluid.rate_Pa_s * end >= *stop.inlet_Pa * (1.0 - 1e-9);
+  return stop.inlet_Pa && inlet_pressure(run.scene.fluid, end) >= *stop.inlet_Pa * (1.0 - 1e-9);
 }
 
 // Whether all interfaces carry what they can: until then a state is neither written nor the last.
@@ -314,7 +314,7 @@ int run_anew(const Scene& scene, const RunOptions& options, const RunFolder& fol
              Clock::time_point start) {
   clear_run_folder(folder, replace);
   atomic_write(folder.scene(), scene.resolved_toml);
-  return run_to_end({scene, folder, options, start, Recorder(folder), Checkpoint()});
+  return run_to_end({scene, folder, options, start, Recorder(folder, {}, scene), Checkpoint()});
 }
 
 }  // namespace
@@ -353,7 +353,7 @@ int resume_run(const std::filesystem::path& dir, const RunOptions& options) {
   std::optional<Run> run;
   try {
     Checkpoint from = load_checkpoint(folder.checkpoint(), scene);
-    Recorder recorder(folder, from.written);
+    Recorder recorder(folder, from.written, scene);
     run.emplace(Run{scene, folder, options, start, std::move(recorder), std::move(from)});
   } catch (const OutputFailure&) {
     throw;

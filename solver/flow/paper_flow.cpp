@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "scene/inlet.hpp"
+
 namespace strata {
 
 namespace {
@@ -104,7 +106,7 @@ void advance_pressure(const Scene& scene, State& state) {
   if (!state.has_fracture) return;
   const Fluid& fluid = scene.fluid;
   FluidLine& line = state.fluid;
-  line.inlet_Pa = fluid.start_Pa + fluid.rate_Pa_s * (state.time + state.dt);
+  line.inlet_Pa = inlet_pressure(fluid, state.time + state.dt);
   if (fluid.law == Fluid::Law::uniform) {
     std::fill(line.P.begin(), line.P.end(), line.inlet_Pa);
   } else {

@@ -91,7 +91,8 @@ struct Trial {
 struct Balance {
   RockResponse rock;
   VectorXd held, inflow;  // theta w A (m^2), net flow into the cell (m^2/s), both at the cavitation pressure
-  VectorXd residual;      // held - held before - dt inflow
+  VectorXd leak;          // lost to the rock over the step (m^2)
+  VectorXd residual;      // held - held before - dt inflow + leak
   // d inflow/d P, d inflow/d w of a cell (rows) by the cell before it, itself and the one behind it (columns).
   Eigen::MatrixX3d by_P, by_w;
   double inlet_Pa = 0.0;
@@ -203,6 +204,12 @@ void add_inlet(const Step& step, const Trial& trial, Balance& b) {
   }
 }
 
+// What a full cell loses over the step (m^2 at the cavitation pressure), at its pressure before.
+double full_leak(const Step& step, const RockResponse& rock, Index k) {
+  const auto cell = static_cast<std::size_t>(k);
+  return density(step.fluid, step.line.P[cell]) * (rock.lost(k) - step.line.leaked[cell]);
+}
+
 Balance evaluate(const Step& step, const Trial& trial) {
   const Index n = trial.P.size();
   Balance b;
@@ -215,6 +222,9 @@ Balance evaluate(const Step& step, const Trial& trial) {
     b.held(k) = trial.phi(k) * density(step.fluid, trial.P(k)) * storage_opening(b.rock.w(k)) *
                 step.line.length[static_cast<std::size_t>(k)];
   b.residual = b.held - mapped(step.line.content) - step.dt * b.inflow;
+  b.leak = VectorXd::Zero(n);
+  for (Index k = 0; k < b.rock.lost.size(); ++k) b.leak(k) = trial.phi(k) * full_leak(step, b.rock, k);
+  b.residual += b.leak;
   return b;
 }
 
@@ -237,6 +247,7 @@ MatrixXd jacobian(const Step& step, const Trial& trial, const Balance& b) {
     if (trial.full[static_cast<std::size_t>(k)]) continue;
     J.col(k).setZero();
     J(k, k) = storage_opening(b.rock.w(k)) * step.line.length[static_cast<std::size_t>(k)];
+    if (b.rock.lost.size() > 0) J(k, k) += full_leak(step, b.rock, k);
   }
   return J;
 }
@@ -362,7 +373,9 @@ double error_of(const Step& step, const VectorXd& w) {
 void accept(const Step& step, const Trial& trial, const Balance& b, ReynoldsLine& line) {
   line.w_rate = as_vector((b.rock.w - mapped(line.w)) / step.dt);
   // By flows and not by what is held: what the iteration leaves over then does not add up from step to step.
-  line.content = as_vector(mapped(line.content) + step.dt * b.inflow);
+  line.content = as_vector(mapped(line.content) + step.dt * b.inflow - b.leak);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(b.rock.lost.size()); ++k)
+    line.leaked[k] += trial.phi(static_cast<Index>(k)) * (b.rock.lost(static_cast<Index>(k)) - line.leaked[k]);
   line.w = as_vector(b.rock.w);
   line.P = as_vector(trial.P);
   line.phi = as_vector(trial.phi);
@@ -381,6 +394,8 @@ ReynoldsLine full_line(const Fluid& fluid, const std::vector<double>& length, st
   line.phi.assign(n, 1.0);
   line.w = as_vector(w);
   line.w_rate.assign(n, 0.0);
+  line.wet_s.assign(n, 0.0);
+  line.leaked.assign(n, 0.0);
   line.inlet = inlet;
   line.inlet_Pa = line.P[0];
   balance = {};
@@ -392,13 +407,14 @@ ReynoldsLine full_line(const Fluid& fluid, const std::vector<double>& length, st
   return line;
 }
 
-void grow(ReynoldsLine& line, const Fluid& fluid, bool at_back, double length) {
+void grow(ReynoldsLine& line, const Fluid& fluid, bool at_back, double length, double time) {
   const auto add = [at_back](std::vector<double>& values, double value) {
     values.insert(at_back ? values.end() : values.begin(), value);
   };
   add(line.length, length);
   add(line.P, fluid.cavitation_Pa);
-  for (std::vector<double>* values : {&line.phi, &line.content, &line.w, &line.w_rate}) add(*values, 0.0);
+  add(line.wet_s, time);
+  for (std::vector<double>* values : {&line.phi, &line.content, &line.w, &line.w_rate, &line.leaked}) add(*values, 0.0);
   line.rates_known = false;
   if (!at_back) ++line.inlet;
 }
@@ -421,6 +437,7 @@ StepReport step_reynolds(const Fluid& fluid, const Inlet& inlet, double dt, cons
   accept(step, at.trial, b, line);
   balance.injected += dt * b.injected;
   balance.largest = std::max(balance.largest, std::abs(balance.injected));
+  balance.leaked += b.leak.sum();
   balance.stored = b.held.sum();
   return report;
 }

@@ -1,6 +1,6 @@
 // Lubrication flow along the fracture that conserves mass, solved in one system with the rock that the fluid opens.
 //
-//   d(theta w)/dt + d(theta q)/ds = inlet,  q = -(w^3/(12 mu)) dP/ds,  theta = phi (1 + (P - P_c)/M)
+//   d(theta w)/dt + d(theta q)/ds = inlet - leak-off,  q = -(w^3/(12 mu)) dP/ds,  theta = phi (1 + (P - P_c)/M)
 //   P >= P_c,  0 <= phi <= 1,  (P - P_c)(1 - phi) = 0
 // which is (w/M) dP/dt + dw/dt = d/ds(w^3/(12 mu) dP/ds) + inlet where the fracture is full (Batchelor 1967,
 // section 4.8) and a fluid front where it is not (mass-conserving cavitation: Jakobsson & Floberg 1957; Elrod 1981).
@@ -9,6 +9,8 @@
 // Finite volumes: a cell is a segment of the fracture, with P, phi and the opening w at its middle, where the rock
 // feels P and where the fluid is stored. Backward Euler. What a cell holds, theta w A, is part of the state: it stays
 // what it was when growth changes the openings, so nothing is lost or made between steps.
+// Leak-off: a cell loses over a step what the rock has taken since the cell was wet less what was lost before; of a
+// cell that fluid fills in part that part loses, and what is missing is lost once the cell is full.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,11 +25,13 @@ namespace strata {
 
 // The rock under a pressure: the opening at the fracture's points (m; about 0 where faces touch), and its change per
 // pressure at the points (m/Pa), row: opening, column: pressure; and what tells how a pressure within a cell parts its
-// faces, E/(1 - nu^2) and the closing stress there (Pa), or nothing where they part by cells alone.
+// faces, E/(1 - nu^2) and the closing stress there (Pa), or nothing where they part by cells alone; and what a rock
+// that takes up fluid has taken, as volume at the pressure of the fracture.
 struct RockResponse {
   Eigen::VectorXd w;
   Eigen::MatrixXd dw_dP;
   Eigen::VectorXd E_prime = {}, closing = {};
+  Eigen::VectorXd lost = {};  // by both faces of each cell until the step's end (m^2), or nothing where none leak
 };
 using RockModel = std::function<RockResponse(const Eigen::VectorXd& P)>;  // P absolute, one a point (Pa)
 
@@ -66,13 +70,13 @@ struct ReynoldsOptions {
 };
 
 /// A fracture full of fluid at P (Pa) throughout, with openings w (m) in cells of the given lengths (m) and the inlet
-/// at a vertex; sets `balance` to nothing injected.
+/// at a vertex, wet from time 0 on; sets `balance` to nothing injected.
 ReynoldsLine full_line(const Fluid& fluid, const std::vector<double>& length, std::size_t inlet, double P,
                        const Eigen::VectorXd& w, FluidBalance& balance);
 
-/// Adds an empty cell (phi = 0, P = P_c) of the given length (m) after the last one (at_back) or before the first,
-/// where the inlet's vertex moves up by one.
-void grow(ReynoldsLine& line, const Fluid& fluid, bool at_back, double length);
+/// Adds an empty cell (phi = 0, P = P_c) of the given length (m), wet from `time` (s) on, after the last one (at_back)
+/// or before the first, where the inlet's vertex moves up by one.
+void grow(ReynoldsLine& line, const Fluid& fluid, bool at_back, double length, double time = 0.0);
 
 /// One step dt (s) of flow and rock together: Newton's method on the balance of each cell, with P free in full cells
 /// and phi in others. Changes line and balance only where it converges; throws what the rock throws.

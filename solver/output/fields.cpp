@@ -190,8 +190,8 @@ void write_fields(const RunFolder& folder, std::size_t k, const Scene& scene, co
   });
 }
 
-void gather_fields(const RunFolder& folder, const std::vector<double>& times, const std::vector<HistoryRow>& rows) {
-  const std::vector<HistoryColumn> columns = history_columns();
+void gather_fields(const RunFolder& folder, const std::vector<HistoryColumn>& columns, const std::vector<double>& times,
+                   const std::vector<HistoryRow>& rows) {
   const auto write_head = [&](hdf5::Id file) {
     if (!times.empty()) set_made_with(file, made_with(folder));
     for (const char* kind : {"particles", "fracture", "interfaces"}) hdf5::make_group(file, kind);

@@ -37,7 +37,8 @@ void write_fields(const RunFolder& folder, std::size_t k, const Scene& scene, co
 
 /// Gathers the files of the output times (s) in result.h5, with the rows of the history, and writes the .xdmf. Throws
 /// OutputFailure, with all as it was, where the disc has no room.
-void gather_fields(const RunFolder& folder, const std::vector<double>& times, const std::vector<HistoryRow>& rows);
+void gather_fields(const RunFolder& folder, const std::vector<HistoryColumn>& columns, const std::vector<double>& times,
+                   const std::vector<HistoryRow>& rows);
 
 // What a run was made with and by; empty texts where it has no output yet.
 struct MadeWith {

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 namespace strata {
 
@@ -86,6 +87,10 @@ double fracture_volume(const State& state) {
   return volume;
 }
 
+double leaked_volume(const State& state) {
+  return std::accumulate(state.reynolds.leaked.begin(), state.reynolds.leaked.end(), 0.0);
+}
+
 // Those that the first versions had come first, so that files of all can be laid side by side.
 std::vector<HistoryColumn> history_columns(const Scene& scene, const State& state) {
   const Tip* tip = leading_tip(state);
@@ -120,6 +125,7 @@ std::vector<HistoryColumn> history_columns(const Scene& scene, const State& stat
                          {"fluid_volume_balance", "1", state.monitors.volume_balance}});
   add_energies(false);
   all.push_back({"near", "1", tip ? static_cast<double>(tip->near) : nan});
+  if (scene.leaks()) all.push_back({"leaked_m2", "m^2", leaked_volume(state)});
   return all;
 }
 
@@ -129,9 +135,9 @@ HistoryRow history_row(const Scene& scene, const State& state) {
   return row;
 }
 
-std::string history_header() {
+std::string history_header(const std::vector<HistoryColumn>& columns) {
   std::string line;
-  for (const HistoryColumn& column : history_columns()) line += (line.empty() ? "" : ",") + column.name;
+  for (const HistoryColumn& column : columns) line += (line.empty() ? "" : ",") + column.name;
   return line + '\n';
 }
 

@@ -34,6 +34,9 @@ double mouth_opening(const State& state);
 /// nothing.
 double fracture_volume(const State& state);
 
+/// Fluid that the rock has taken through the faces there (m^2). Throws nothing.
+double leaked_volume(const State& state);
+
 // A column's name, which ends in its unit, the unit apart, and its value in a state.
 struct HistoryColumn {
   std::string name;
@@ -42,7 +45,8 @@ struct HistoryColumn {
 };
 
 /// The columns in the order of history.csv, with their values in a state: of the leading tip, nan where it has no such
-/// number or there is none (opening, volume and inlet pressure are 0 then). Throws std::bad_alloc only.
+/// number or there is none (opening, volume and inlet pressure are 0 then); leaked_m2 where a rock takes up fluid.
+/// Throws std::bad_alloc only.
 std::vector<HistoryColumn> history_columns(const Scene& scene = Scene(), const State& state = State());
 
 using HistoryRow = std::vector<double>;  // a value of each column
@@ -52,7 +56,7 @@ HistoryRow history_row(const Scene& scene, const State& state);
 
 /// The first line of history.csv and that of a row, of which numbers are the shortest that read back to the same
 /// double. Throws std::bad_alloc only.
-std::string history_header();
+std::string history_header(const std::vector<HistoryColumn>& columns = history_columns());
 std::string history_line(const HistoryRow& row);
 
 }  // namespace strata

@@ -9,13 +9,14 @@
 
 namespace strata {
 
-Recorder::Recorder(const RunFolder& folder, Written written) : folder_(folder), written_(std::move(written)) {
+Recorder::Recorder(const RunFolder& folder, Written written, const Scene& scene)
+    : folder_(folder), written_(std::move(written)), columns_(history_columns(scene)) {
   make_folder(folder.all_fields());
   for (std::size_t k = 0; k < written_.output_times.size(); ++k) {
     if (!std::filesystem::exists(folder.fields(k)))
       throw std::runtime_error(fmt::format("{}: is missing.", folder.fields(k).string()));
   }
-  std::string history = history_header();
+  std::string history = history_header(columns_);
   for (const HistoryRow& row : written_.rows) history += history_line(row);
   atomic_write(folder.history(), history);
   history_bytes_ = history.size();
@@ -42,7 +43,7 @@ void Recorder::checkpoint(const Scene& scene, const Checkpoint& checkpoint) {
 }
 
 void Recorder::gather() const {
-  gather_fields(folder_, written_.output_times, written_.rows);
+  gather_fields(folder_, columns_, written_.output_times, written_.rows);
 }
 
 }  // namespace strata

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "output/checkpoint.hpp"
+#include "output/history.hpp"
 #include "output/run_folder.hpp"
 
 namespace strata {
@@ -11,9 +12,10 @@ namespace strata {
 class Recorder {
  public:
   /// Starts the files of a run, or goes on behind what a checkpoint says was written: they end as those of an
-  /// uninterrupted run. Throws std::runtime_error where fields are missing: then the run has to start anew. This and
-  /// all that follows throw OutputFailure where files cannot be written; what was there before stays.
-  explicit Recorder(const RunFolder& folder, Written written = {});
+  /// uninterrupted run. The scene says which columns the history has. Throws std::runtime_error where fields are
+  /// missing: then the run has to start anew. This and all that follows throw OutputFailure where files cannot be
+  /// written; what was there before stays.
+  explicit Recorder(const RunFolder& folder, Written written = {}, const Scene& scene = Scene());
 
   /// What was written so far; throws nothing.
   const Written& written() const { return written_; }
@@ -33,6 +35,7 @@ class Recorder {
  private:
   RunFolder folder_;
   Written written_;
+  std::vector<HistoryColumn> columns_;
   std::uint64_t history_bytes_ = 0;
 };
 

@@ -130,6 +130,7 @@ std::string summary_json(const Scene& scene, const State& state, const RunRecord
   summary["energy"] = energy_json(state.ledger);
   summary["mouth_opening_m"] = mouth_opening(state);
   summary["fracture_volume_m2"] = fracture_volume(state);
+  if (scene.leaks()) summary["leaked_m2"] = leaked_volume(state);
   summary["tips"] = tips_json(scene, state);
   summary["events"] = events_json(state.events);
   summary["monitors"] = monitors_json(state.monitors, watched(scene, state));

@@ -10,6 +10,7 @@
 
 #include "output/history.hpp"
 #include "scene/derived.hpp"
+#include "scene/inlet.hpp"
 #include "state/elasticity.hpp"
 #include "state/round_off.hpp"
 
@@ -202,7 +203,7 @@ void Watch::loading() {
   for (const Elasticity& rock : make_elasticities(scene)) slowest = std::min(slowest, rock.c_S);
   const double crossing = std::max(scene.domain.width_m, scene.domain.height_m) / slowest;
   const double d = scene.numerics.damping_1_s, answer = crossing * (1.0 + d * crossing / (pi * pi));
-  note("loading_share", std::abs(scene.fluid.rate_Pa_s) * answer / m.largest_net_Pa, threshold,
+  note("loading_share", fastest_change(scene.fluid) * answer / m.largest_net_Pa, threshold,
        "while a wave crosses the block, or its damped motion follows, the pressure rises by more than a tenth of the "
        "largest net pressure: the load is not slow; lower fluid.inlet.rate_Pa_s, or check density_kg_m3 and "
        "damping_1_s");

@@ -5,6 +5,7 @@
 
 #include "flow/paper_flow.hpp"
 #include "flow/reynolds_flow.hpp"
+#include "scene/inlet.hpp"
 #include "state/elasticity.hpp"
 
 namespace strata {
@@ -43,7 +44,7 @@ void diffuse_in_steps(const Scene& scene, const State& state, const std::vector<
   }
   const int steps = std::clamp(static_cast<int>(std::ceil(std::min(dt / shortest, 1.0 * most))), 1, most);
   const double step = dt / steps;
-  const auto inlet_Pa = [&](int k) { return fluid.start_Pa + fluid.rate_Pa_s * (time + k * step); };
+  const auto inlet_Pa = [&](int k) { return inlet_pressure(fluid, time + k * step); };
   diffuse(channel, mobility, fluid.time_rule, step, steps, inlet_Pa, line.P);
   line.inlet_Pa = inlet_Pa(steps);
 }
@@ -77,6 +78,19 @@ void add_place(const ContactPlace& place, const LawAnswer& r, double w, RockResp
   rock.dw_dP(k, k) += roughness / closing;
 }
 
+// What both faces of each cell have lost to the rock by a time (s), 2 (2 C_L sqrt(t - t_0)) A (m^2; Carter, in Howard &
+// Fast 1957); nothing where no rock takes up fluid.
+Eigen::VectorXd lost_by(const Scene& scene, double time, const State& state) {
+  if (!scene.leaks() || state.reynolds.size() == 0) return {};
+  Eigen::VectorXd lost(state.fracture().points.size());
+  for (std::size_t k = 0; k < state.reynolds.size(); ++k) {
+    const SurfacePoint& s = state.fracture().points[k];
+    const double C_L = scene.rocks[rock_at(scene, s.x)].leakoff_m_sqrt_s;
+    lost[static_cast<Eigen::Index>(k)] = 4.0 * C_L * std::sqrt(time - state.reynolds.wet_s[k]) * s.A;
+  }
+  return lost;
+}
+
 // The rock at a time (s) as the flow sees it: openings and their change with the pressures, in equilibrium with all
 // surfaces.
 RockModel rock_of(const Scene& scene, double time, State& state, QuasistaticModel& model) {
@@ -88,14 +102,15 @@ RockModel rock_of(const Scene& scene, double time, State& state, QuasistaticMode
     E_prime[k] = rocks[rock_at(scene, s.x)].E_prime, closing[k] = s.closing_stress();
   }
   if (model.dw_dP_of != model.factor.pieces) model.dw_dP.resize(0, 0);
-  return [&scene, time, &state, &model, E_prime, closing](const Eigen::VectorXd& P) {
+  const Eigen::VectorXd lost = lost_by(scene, time, state);
+  return [&scene, time, &state, &model, E_prime, closing, lost](const Eigen::VectorXd& P) {
     set_point_pressures(P, state);
     const Equilibrium at = find_equilibrium(scene, time, state, model);
     if (model.dw_dP_of != at.pieces || model.dw_dP.size() == 0) {  // the same as long as no place opens or closes
       model.dw_dP = opening_per_pressure(state, model.condensed, model.places, at, model.factor);
       model.dw_dP_of = at.pieces;
     }
-    RockResponse rock{Eigen::VectorXd::Zero(P.size()), model.dw_dP, E_prime, closing};
+    RockResponse rock{Eigen::VectorXd::Zero(P.size()), model.dw_dP, E_prime, closing, lost};
     for (std::size_t k = 0; k < model.places.size(); ++k) {
       const ContactPlace& place = model.places[k];
       if (place.tie < 0 && place.surface == 0) add_place(place, at.answers[k], at.w[k].dot(place.n), rock);
@@ -104,11 +119,13 @@ RockModel rock_of(const Scene& scene, double time, State& state, QuasistaticMode
   };
 }
 
-Inlet inlet_at(const Scene& scene, const State& state, double time) {
-  if (!scene.fluid.rate_m2_s) return {Inlet::Drive::pressure, scene.fluid.start_Pa + scene.fluid.rate_Pa_s * time};
+// The pressure at the end of a step dt from the state on, or the rate midway, which between rows of a table is its
+// mean.
+Inlet inlet_over(const Scene& scene, const State& state, double dt) {
+  if (!scene.fluid.rate_m2_s) return {Inlet::Drive::pressure, inlet_pressure(scene.fluid, state.time + dt)};
   // Half of a fracture that starts on the symmetry line gets half of what the whole is fed.
   const bool half = scene.domain.bottom == Edge::symmetry && state.fracture().vertices.front().x.y() == 0.0;
-  return {Inlet::Drive::rate, *scene.fluid.rate_m2_s * (half ? 0.5 : 1.0)};
+  return {Inlet::Drive::rate, inlet_rate(scene.fluid, state.time + 0.5 * dt) * (half ? 0.5 : 1.0)};
 }
 
 FluidStep couple(const Scene& scene, double dt, State& state, QuasistaticModel& model) {
@@ -117,7 +134,7 @@ FluidStep couple(const Scene& scene, double dt, State& state, QuasistaticModel& 
   const double allowed = scene.numerics.flow_error;
   const double step = std::max(dt, shortest_coupled_step);
   const double end = state.time + step;
-  const StepReport report = step_reynolds(scene.fluid, inlet_at(scene, state, end), step,
+  const StepReport report = step_reynolds(scene.fluid, inlet_over(scene, state, step), step,
                                           rock_of(scene, end, state, model), state.reynolds, state.balance);
   if (!report.converged) return {false, 0.0, report.reason};
   state.time += step;
@@ -177,7 +194,7 @@ void add_fluid_cells(const Scene& scene, bool at_back, std::size_t added, State&
   const auto& points = state.fracture().points;
   for (std::size_t k = 0; k < added; ++k) {
     const std::size_t q = at_back ? points.size() - added + k : added - 1 - k;
-    grow(state.reynolds, scene.fluid, at_back, points[q].A);
+    grow(state.reynolds, scene.fluid, at_back, points[q].A, state.time);
   }
 }
 
@@ -188,7 +205,7 @@ FluidStep advance_fluid(const Scene& scene, double dt, State& state, Quasistatic
   }
   if (scene.fluid.law == Fluid::Law::reynolds) return couple(scene, dt, state, model);
   if (scene.fluid.law == Fluid::Law::uniform) {
-    if (dt > 0.0) state.fluid.inlet_Pa = scene.fluid.start_Pa + scene.fluid.rate_Pa_s * (state.time + dt);
+    if (dt > 0.0) state.fluid.inlet_Pa = inlet_pressure(scene.fluid, state.time + dt);
     std::fill(state.fluid.P.begin(), state.fluid.P.end(), state.fluid.inlet_Pa);
   } else if (dt > 0.0) {
     diffuse_in_steps(scene, state, openings_midway(scene, dt, state, model), state.time, dt, state.fluid);

@@ -12,6 +12,7 @@
 #include "interfaces/failure.hpp"
 #include "interfaces/monitors.hpp"
 #include "quasistatic/fluid_step.hpp"
+#include "scene/inlet.hpp"
 
 namespace strata {
 
@@ -451,7 +452,8 @@ void advance_quasistatic(const Scene& scene, const Rocks& rocks, double until, S
   const LoadPoint from = load_point(state);
   const double margin = run.margin;
   const std::vector<double> w = foresees_openings(scene, state) ? openings_of(state.fracture()) : std::vector<double>{};
-  const LoadStep step = find_step(scene, rocks, from, w, until - from.time, state, run);
+  const double left = std::min(until, next_row(scene.fluid, from.time)) - from.time;
+  const LoadStep step = find_step(scene, rocks, from, w, left, state, run);
   if (run.margin > 1.0 + event_tolerance) locate_event(scene, rocks, from, margin, step.dt, state, run);
   if (foresees_openings(scene, state)) note_rates(w, state.time - from.time, state);
   accept(scene, from, Change::load, state, run);

@@ -52,20 +52,35 @@ void apply(Reading& reading) {
   }
 }
 
-// The inlet's pressure or its rate: where both are given, the one that a variant or --set lays above the other.
+// The inlet's pressure, its rate or a table of either: where more are given, the one that a variant or --set lays above
+// the others.
 void choose_inlet(Reading& reading) {
   const auto rank_of = [&](const char* path) { return reading.given(path) ? reading.where(path).rank : -1; };
   const int rate = rank_of("fluid.inlet.rate_m2_s"), start = rank_of("fluid.inlet.start_Pa");
-  const int pressure = std::max(start, rank_of("fluid.inlet.rate_Pa_s"));
+  const int pressure = std::max(start, rank_of("fluid.inlet.rate_Pa_s")), table = rank_of("fluid.inlet.table");
   Fluid& fluid = reading.scene.fluid;
-  if (rate < 0 || pressure < 0) return;
-  if (rate > pressure) fluid.start_Pa = fluid.rate_Pa_s = 0.0;
-  if (rate < pressure) fluid.rate_m2_s.reset();
-  if (rate == pressure) {
+  if (rate >= 0 && rate == pressure && rate > table) {
     reading.refuse("fluid.inlet.rate_m2_s",
                    "fluid.inlet has both rate_m2_s and {}. Prescribe the rate, inlet = {{rate_m2_s}}, or the pressure, "
                    "inlet = {{start_Pa, rate_Pa_s}}: a fracture fed at a rate starts at its closing stress.",
                    start == pressure ? "start_Pa" : "rate_Pa_s");
+  }
+  if (table >= 0 && table == std::max(rate, pressure)) {
+    reading.refuse("fluid.inlet.table",
+                   "fluid.inlet has both table and {}. The table says all of the inlet, inlet = {{table, of}}: leave "
+                   "the other out.",
+                   rate == table    ? "rate_m2_s"
+                   : start == table ? "start_Pa"
+                                    : "rate_Pa_s");
+  }
+  if (rate > pressure || table > pressure) fluid.start_Pa = fluid.rate_Pa_s = 0.0;
+  if (pressure > rate || table > rate) fluid.rate_m2_s.reset();
+  if (std::max(rate, pressure) > table) fluid.table.clear();
+  if (fluid.table.empty()) return;
+  if (fluid.table_of == Fluid::TableOf::rate_m2_s) {
+    fluid.rate_m2_s = fluid.table.front()[1];
+  } else {
+    fluid.start_Pa = fluid.table.front()[1];
   }
 }
 
@@ -90,7 +105,7 @@ void check_required(Reading& reading) {
     }
   }
   if (reading.scene.rocks.empty()) reading.refuse("rock", "there is no rock. Give a table [rock.NAME].");
-  if (fracture && none("fluid.inlet.start_Pa", "fluid.inlet.rate_Pa_s", "fluid.inlet.rate_m2_s")) {
+  if (fracture && none("fluid.inlet.start_Pa", "fluid.inlet.rate_Pa_s", "fluid.inlet.rate_m2_s", "fluid.inlet.table")) {
     reading.refuse("fluid.inlet",
                    "fluid.inlet is missing; a fracture needs it. Give inlet = {{start_Pa = 2e6, rate_Pa_s = 0.35e6}} "
                    "in [fluid].");

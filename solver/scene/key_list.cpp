@@ -111,6 +111,11 @@ constexpr Key keys[] = {
     number("rock.NAME.density_kg_m3", at<&Scene::rocks, &Rock::density_kg_m3>, "kg/m^3", positive, "Density."),
     number("rock.NAME.toughness_Pa_sqrt_m", at<&Scene::rocks, &Rock::toughness_Pa_sqrt_m>, "Pa sqrt(m)", not_negative,
            "Fracture toughness K_Ic; with 0 a fracture grows while J > 0."),
+    number(
+        "rock.NAME.leakoff_m_sqrt_s", at<&Scene::rocks, &Rock::leakoff_m_sqrt_s>, "m/s^0.5", not_negative,
+        "Carter's C_L under fluid.law = \"reynolds\": each face of the fracture loses C_L/sqrt(t - t_0), t_0 the time "
+        "when the tip came by.",
+        "Rock that takes no fluid has 0."),
     required(word("interface.NAME.law", at<&Scene::laws, &InterfaceLaw::kind>,
                   "How the interface passes load; the interface named perfect needs no table.",
                   "friction, weak, soft, perfect")),
@@ -197,6 +202,11 @@ constexpr Key keys[] = {
     number("fluid.inlet.rate_m2_s", at<&Scene::fluid, &Fluid::rate_m2_s>, "m^2/s", positive,
            "Fluid fed into the whole fracture per metre out of plane, instead of a pressure; with symmetry at the "
            "bottom the modelled half gets half of it."),
+    list("fluid.inlet.table", at<&Scene::fluid, &Fluid::table>,
+         "Instead of these: rows [time_s, value], from time 0 on; linear between rows, the last value is held.",
+         "Write [[0, value], [time_s, value]].", "s"),
+    word("fluid.inlet.of", at<&Scene::fluid, &Fluid::table_of>,
+         "What the table's values are: a rate as rate_m2_s, or the inlet's pressure. Shut-in is a rate of 0."),
     word("fluid.new_point", at<&Scene::fluid, &Fluid::new_point>,
          "Pressure of a new fracture point: 0, or the former tip's."),
     word("fluid.time_rule", at<&Scene::fluid, &Fluid::time_rule>, "Time integration of the flow."),

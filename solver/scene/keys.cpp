@@ -81,8 +81,12 @@ std::vector<std::string> lines_of(std::string_view table, Scene& scene, std::siz
   for (const Key& key : scene_keys()) {
     if (key.table() != table) continue;
     if (!key.law.empty() && !key.is_of(word_of(scene.laws[index].kind))) continue;
-    // The inlet is given in one of two ways.
-    if (scene.fluid.rate_m2_s && (key.path == "fluid.inlet.start_Pa" || key.path == "fluid.inlet.rate_Pa_s")) continue;
+    // The inlet is given in one of three ways.
+    if (table == "fluid.inlet.") {
+      const bool of_table = key.name() == "table" || key.name() == "of", of_rate = key.name() == "rate_m2_s";
+      if (of_table == scene.fluid.table.empty() || (!of_table && of_rate != scene.fluid.rate_m2_s.has_value()))
+        continue;
+    }
     const std::string value = key.member.text(scene, index);
     if (!value.empty()) lines.push_back(fmt::format("{} = {}", key.name(), value));
   }

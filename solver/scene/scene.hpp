@@ -2,6 +2,7 @@
 // Units are SI and stand in the names; in-situ stress and fluid pressure are positive in compression.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -85,6 +86,7 @@ struct Rock {
   double poisson_ratio = 0.2;
   double density_kg_m3 = 2500.0;
   double toughness_Pa_sqrt_m = 1.45e6;
+  double leakoff_m_sqrt_s = 0.0;  // Carter's C_L of each face
   bool operator==(const Rock&) const = default;
 };
 
@@ -202,7 +204,13 @@ struct Fluid {
   double start_Pa = 0.0;            // inlet pressure at time 0
   double rate_Pa_s = 0.0;           // and its rise
   std::optional<double> rate_m2_s;  // instead of a pressure: what the whole fracture is fed
-  double cavitation_Pa = 0.0;       // absolute lower bound of the fluid pressure
+  // Or either of them by rows of time (s) and value, linear between, the last one held; start_Pa or rate_m2_s is then
+  // the first one. Empty: none.
+  enum class TableOf { rate_m2_s, pressure_Pa };
+  friend constexpr std::string_view words(TableOf) { return "rate_m2_s, pressure_Pa"; }
+  std::vector<std::array<double, 2>> table;
+  TableOf table_of = TableOf::rate_m2_s;
+  double cavitation_Pa = 0.0;  // absolute lower bound of the fluid pressure
   NewPoint new_point = NewPoint::dry;
   TimeRule time_rule = TimeRule::trapezoid;
   bool operator==(const Fluid&) const = default;
@@ -290,6 +298,11 @@ struct Scene {
   // The same at a place along it (m).
   bool changes_at(std::size_t interface, double along) const {
     return stiffness_changes_at(interface) || (changes_at(interface) && strata.interfaces[interface].holds_at(along));
+  }
+
+  // Whether any rock takes up fluid.
+  bool leaks() const {
+    return std::ranges::any_of(rocks, [](const Rock& rock) { return rock.leakoff_m_sqrt_s > 0.0; });
   }
 
   // Coordinate of a place (m) along which layers are stacked.

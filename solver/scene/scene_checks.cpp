@@ -182,7 +182,7 @@ void check_stop_values(Reading& reading) {
     reading.refuse_if(tip_y_m <= tip_m, "stop.tip_y_m",
                       "ends the run before it starts: a tip is at y = {} m. Give more than that.", tip_m);
   }
-  const bool pressed = !scene.fluid.rate_m2_s && reading.sound("fluid.inlet.start_Pa");
+  const bool pressed = !scene.fluid.rate_m2_s && scene.fluid.table.empty() && reading.sound("fluid.inlet.start_Pa");
   reading.refuse_if(pressed && scene.fluid.start_Pa >= scene.stop.inlet_Pa, "stop.inlet_Pa",
                     "ends the run before it starts: fluid.inlet.start_Pa = {}. Give more than that.",
                     scene.fluid.start_Pa);
@@ -195,6 +195,7 @@ void check_end(Reading& reading) {
   for (const char* path : {"fluid.inlet.rate_Pa_s", "fluid.inlet.rate_m2_s", "fracture.growth"})
     if (!reading.sound(path)) return;
   const bool fed = reading.scene.fluid.rate_m2_s.has_value();
+  if (reading.given("fluid.inlet.table")) return;  // asks for stop.time_s itself
   if (!fed && !reading.given("fluid.inlet.start_Pa") && !reading.given("fluid.inlet.rate_Pa_s")) return;
   const bool by_inlet = reading.given("stop.inlet_Pa"), by_tip = reading.given("stop.tip_y_m");
   if (reading.given("stop.time_s") || (!by_inlet && !by_tip)) return;
@@ -279,13 +280,44 @@ void check_fine_ends(Reading& reading) {
   }
 }
 
+// The inlet's table: what its rows may be, and what goes with it.
+void check_inlet_table(Reading& reading) {
+  const char* key = "fluid.inlet.table";
+  const auto& table = reading.scene.fluid.table;
+  reading.refuse_if(!reading.given(key), "fluid.inlet.of", "says what a table holds, but there is no {}.", key);
+  if (table.empty() || !reading.usable(key)) return;
+  if (!reading.given("fluid.inlet.of"))
+    reading.refuse(key, "{}: of is missing. Add of = \"rate_m2_s\" or of = \"pressure_Pa\".", key);
+  if (table.front()[0] != 0.0) reading.refuse(key, "{} begins at {} s. Begin at time 0.", key, table.front()[0]);
+  for (std::size_t k = 0; k < table.size(); ++k) {
+    const auto& [time, value] = table[k];
+    if (k > 0 && time <= table[k - 1][0]) {
+      reading.refuse(key,
+                     "{}[{}]: the time {} s is not after {} s of the row before. A jump takes two rows a moment apart.",
+                     key, k, time, table[k - 1][0]);
+    }
+    if (value < 0.0) reading.refuse(key, "{}[{}]: the value {} is outside [0, inf).", key, k, value);
+  }
+  if (!reading.given("stop.time_s"))
+    reading.refuse("stop", "a run with {} needs stop.time_s: the table's last value is held without end.", key);
+}
+
 void check_fluid(Reading& reading) {
   const Fluid& fluid = reading.scene.fluid;
-  if (!reading.scene.fracture || !reading.sound("fluid.law")) return;
-  reading.refuse_if(fluid.rate_m2_s && fluid.law != Fluid::Law::reynolds, "fluid.inlet.rate_m2_s",
-                    "needs a law that conserves the fluid's mass, but fluid.law = \"{}\". Use law = \"reynolds\", or "
-                    "inlet = {{start_Pa, rate_Pa_s}}.",
-                    word_of(fluid.law));
+  if (!reading.scene.fracture) return;
+  check_inlet_table(reading);
+  if (!reading.sound("fluid.law")) return;
+  const bool conserves = fluid.law == Fluid::Law::reynolds;
+  const char* why = "needs a law that conserves the fluid's mass, but fluid.law";
+  for (const char* path : {"fluid.inlet.rate_m2_s", "fluid.inlet.table"}) {
+    reading.refuse_if(fluid.rate_m2_s && !conserves, path,
+                      "{} = \"{}\". Use law = \"reynolds\", or inlet = {{start_Pa, rate_Pa_s}}.", why,
+                      word_of(fluid.law));
+  }
+  for (const Rock& rock : reading.scene.rocks) {
+    reading.refuse_if(rock.leakoff_m_sqrt_s > 0.0 && !conserves, "rock." + rock.name + ".leakoff_m_sqrt_s",
+                      "{} = \"{}\". Use law = \"reynolds\", or leave it out.", why, word_of(fluid.law));
+  }
   const bool pressed = reading.usable("fluid.inlet.start_Pa") && !fluid.rate_m2_s;
   reading.refuse_if(pressed && fluid.cavitation_Pa > fluid.start_Pa, "fluid.cavitation_Pa",
                     "is above fluid.inlet.start_Pa = {}, but no pressure may be below it. Lower it, or start higher.",

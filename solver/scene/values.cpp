@@ -119,7 +119,8 @@ bool read(const Value& v, Formulas& member) {
 
 bool read(const Value& v, Path& member) {
   const toml::array* pairs = v.node.as_array();
-  if (pairs == nullptr || pairs->size() < 2) return refuse_list(v, "a list of at least two points");
+  if (pairs == nullptr || pairs->size() < 2)
+    return refuse_list(v, v.key.name() == "table" ? "a list of at least two rows" : "a list of at least two points");
   member.resize(pairs->size());
   return all(v, [&](const Value& pair, std::size_t k) {
     const toml::array* both = list_of(pair, 2);

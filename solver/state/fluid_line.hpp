@@ -22,6 +22,8 @@ struct ReynoldsLine {
   std::vector<double> content;  // theta w A: volume of the fluid at the cavitation pressure (m^2)
   std::vector<double> w;        // opening at the end of the last step (m)
   std::vector<double> w_rate;   // over the last step (m/s), for the estimate of its error
+  std::vector<double> wet_s;    // when the tip came by (s)
+  std::vector<double> leaked;   // what both faces have lost to the rock since then (m^2)
   bool rates_known = false;     // false before the first step and after growth
   std::size_t inlet = 0;        // vertex at which the fluid enters
   double inlet_Pa = 0.0;        // pressure there
@@ -34,12 +36,13 @@ struct FluidBalance {
   double stored_at_start = 0.0;
   double injected = 0.0;  // integral of theta q dt through the inlet
   double stored = 0.0;    // sum of theta w A over the cells, from P, phi and the rock's w
+  double leaked = 0.0;    // lost to the rock
   double largest = 0.0;   // of |injected| so far
 
   // What is missing, relative to what was injected (or stored, where that is more).
   double closure() const {
     const double scale = largest > stored_at_start ? largest : stored_at_start;
-    return scale > 0.0 ? (stored - stored_at_start - injected) / scale : 0.0;
+    return scale > 0.0 ? (stored - stored_at_start - injected + leaked) / scale : 0.0;
   }
 };
 

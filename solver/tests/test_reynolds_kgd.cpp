@@ -1,7 +1,7 @@
 // A fracture that grows, fed at a constant rate: the coupled step with Sneddon's crack as its rock against the two
-// self-similar limits of the plane-strain hydraulic fracture.
+// self-similar limits of the plane-strain hydraulic fracture, and against the one with leak-off.
 #include <catch2/catch.hpp>
-#include <kgd.hpp>
+#include <kgd_leakoff.hpp>
 
 #include "crack_kernel.hpp"
 
@@ -17,7 +17,8 @@ constexpr double rate = 1e-4;            // both wings (m^2/s)
 
 struct Setting {
   double viscosity, toughness;
-  double cell;  // m
+  double cell;           // m
+  double leakoff = 0.0;  // C_L, m/sqrt(s)
 };
 
 // Half of the fracture by symmetry, with what its numbers are off by, relative to the limit's at the same time.
@@ -38,13 +39,20 @@ struct Growing {
   }
   VectorXd P() const { return Eigen::Map<const VectorXd>(line.P.data(), static_cast<Eigen::Index>(line.size())); }
   StepReport step(double dt) {
-    return step_reynolds(
-        fluid, {Inlet::Drive::rate, 0.5 * rate}, dt, [this](const VectorXd& p) { return kernel(p); }, line, balance);
+    const auto rock = [&](const VectorXd& p) {
+      RockResponse response = kernel(p);
+      if (setting.leakoff > 0.0) response.lost = VectorXd::Zero(p.size());
+      for (Eigen::Index k = 0; k < response.lost.size(); ++k)
+        response.lost(k) =
+            4.0 * setting.leakoff * setting.cell * std::sqrt(time + dt - line.wet_s[static_cast<std::size_t>(k)]);
+      return response;
+    };
+    return step_reynolds(fluid, {Inlet::Drive::rate, 0.5 * rate}, dt, rock, line, balance);
   }
   void extend() {
     h.push_back(setting.cell);
     kernel = CrackKernel(E_prime, closing, h, true);
-    grow(line, fluid, true, setting.cell);
+    grow(line, fluid, true, setting.cell, time);
   }
 };
 
@@ -91,7 +99,7 @@ Off run(const Setting& setting, const std::function<reference::KgdState(double)>
     REQUIRE(std::abs(g.balance.closure()) < 1e-10);
   }
   const reference::KgdState exact = limit(g.time);
-  CHECK(g.failures == 0);
+  CHECK(g.failures <= (setting.leakoff > 0.0 ? 3 : 0));  // a closed cell that leaks may ask for a shorter step
   // The fluid came in at between 20 and some 22 MPa: 2 % denser than at no pressure, not more.
   CHECK(g.balance.injected == Approx(0.5 * rate * g.time * (1.0 + g.line.inlet_Pa / 1e9)).epsilon(2e-3));
   return {g.kernel.half_length() / exact.half_length - 1.0, g.kernel.opening(g.P(), 0.0) / exact.mouth_opening - 1.0,
@@ -130,5 +138,21 @@ TEST_CASE("a fracture dominated by viscosity") {
     CHECK(std::abs(off.mouth) < std::min(0.025, 0.8 * std::abs(before.mouth)));
     CHECK(std::abs(off.inlet) < std::min(0.025, 0.8 * std::abs(before.inlet)));
     before = off;
+  }
+}
+
+// Requires a fracture of which toughness, viscosity and leak-off all count (efficiency 0.64 and 0.08 at 100 s) within 2
+// % in length, 2.5 % in mouth and inlet's net pressure of the reference at 60 cells. Measured: 1.4, -1.7, -1.5 % and
+// -0.3, -0.5, 1.1 % (30 cells: 0.4, -0.5, 0.7 % and -1.2, 3.6, 5.9 %). Mutations that fail: leak-off halved or doubled,
+// cells wet from time 0 on.
+TEST_CASE("a fracture that leaks off") {
+  const double mu = 0.01, K_c = 1e6;
+  for (const double C_L : {1e-5, 1e-4}) {
+    const auto exact = [&](double t) { return reference::kgd_leakoff_once(E_prime, rate, t, mu, K_c, C_L, 80, 24); };
+    const Off off = run({mu, K_c, exact(100.0).half_length / 60, C_L}, exact);
+    CAPTURE(C_L, off.length, off.mouth, off.inlet);
+    CHECK(std::abs(off.length) < 0.02);
+    CHECK(std::abs(off.mouth) < 0.025);
+    CHECK(std::abs(off.inlet) < 0.025);
   }
 }

@@ -32,6 +32,7 @@ KILLED = {
     "quasi-static paper": Job(EXP1, "soft", HERE, (QUASISTATIC, "stop.tip_y_m=40")),
     "quasi-static turning": Job(EXP5, "", HERE, (QUASISTATIC, *COARSE)),
     "quasi-static reynolds": Job(ANALYTIC / "kgd.toml", "", HERE, ("stop.time_s=4",)),
+    "quasi-static leak-off": Job(ANALYTIC / "kgd_leakoff.toml", "", HERE, ("stop.time_s=60", 'fluid.inlet={table=[[0,5e-5],[20,5e-5],[20.001,0]],of="rate_m2_s"}')),
 }
 
 

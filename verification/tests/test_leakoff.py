@@ -1,0 +1,155 @@
+"""A rock that takes up fluid, and an inlet by a table: against solutions of their own, and the volume to its last digits."""
+
+from pathlib import Path
+
+import pytest
+
+from verification.harness.load import Run
+from verification.harness.paths import ANALYTIC
+from verification.harness.reference import value
+from verification.tests.cases import completed, rows_of, run_in, summary_of
+
+SCENE = ANALYTIC / "kgd_leakoff.toml"
+RATE, SHUT_IN_S = 5e-5, 300.0  # of the scene
+
+# A fracture of 10 m that does not grow, of a thin fluid, fed for 20 s by a rate that rises for 10.
+FIXED = """\
+domain = {width_m = 320, height_m = 160}
+in_situ = {vertical_Pa = 20e6, horizontal_Pa = 20e6}
+rock.r = {youngs_modulus_Pa = 20e9, poisson_ratio = 0.2, leakoff_m_sqrt_s = 1.5e-5}
+strata.layers = [{rock = "r"}]
+fracture = {path_m = [[160, 0], [160, 10]], growth = "none"}
+fluid = {law = "reynolds", viscosity_Pa_s = 1e-5, bulk_modulus_Pa = 1e12, inlet = {table = [[0, 0], [10, 2e-3], [20, 2e-3], [20.01, 0]], of = "rate_m2_s"}}
+numerics = {mechanics = "quasistatic", cell_m = 0.5, far_cell_m = 16}
+stop = {time_s = 200}
+output = {fields_every_s = 10}
+"""
+
+
+def fed_m2(t: float) -> float:
+    """What FIXED has been fed until a time that no row cuts, both wings."""
+    return 1e-4 * t * t if t <= 10.0 else 1e-2 + 2e-3 * (t - 10.0) if t <= 20.0 else 3.001e-2
+
+
+def test_a_fixed_fracture_that_is_shut_in_falls_off_by_what_leaks(tmp_path: Path) -> None:
+    """All is wet from time 0 on: a wing of 10 m has lost 4 C_L sqrt(t) a to its two faces, and p = V E'/(2 pi a^2) follows the rest.
+
+    Mutations that fail: one face, a gain, the rate of a step's end in place of its mean, steps over rows.
+    """
+    assert run_in(tmp_path, FIXED).returncode == 0
+    rows = [row for row in rows_of(tmp_path / "X") if float(row["time_s"]) > 0.0]
+    assert len(rows) >= 20
+    for row in rows:
+        t, volume, leaked = (float(row[name]) for name in ("time_s", "fracture_volume_m2", "leaked_m2"))
+        if t >= 10.0:  # before that less comes in than the rock would take
+            assert leaked == pytest.approx(4.0 * 1.5e-5 * t**0.5 * 10.0, rel=1e-9)
+        assert abs(float(row["fluid_volume_balance"])) < 1e-8
+        assert volume + leaked == pytest.approx(0.5 * fed_m2(t), rel=1e-6)  # rough faces held 1e-8 m^2 at the start
+        if t >= 30.0:  # nothing flows but what leaks
+            net = float(row["inlet_Pa"]) - 20e6
+            assert net == pytest.approx((0.5 * fed_m2(t) - leaked) * (20e9 / 0.96) / (3.141592653589793 * 10.0**2), rel=4e-3)
+    assert summary_of(tmp_path / "X")["leaked_m2"] == float(rows[-1]["leaked_m2"])
+    assert leaked / (0.5 * fed_m2(200.0)) == pytest.approx(0.5656, abs=1e-3)  # 6e-4 sqrt(200)/1.5005e-2
+
+
+def at_end(run: Run) -> dict[str, float]:
+    """Half length (m), mouth opening (m), net inlet pressure (Pa), efficiency of a run of SCENE at its end."""
+    last = {name: float(run.history[name][-1]) for name in ("time_s", "tip_y_m", "mouth_opening_m", "inlet_Pa", "fracture_volume_m2")}
+    return {
+        "half_length_m": last["tip_y_m"], "mouth_opening_m": last["mouth_opening_m"], "inlet_pressure_Pa": last["inlet_Pa"] - 20e6,
+        "efficiency": 2.0 * last["fracture_volume_m2"] / (RATE * last["time_s"]),
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(("variant", "leakoff"), [("none", 0.0), ("little", 1e-6), ("", 1e-5)])
+def test_a_growing_fracture_comes_near_the_reference(variant: str, leakoff: float) -> None:
+    """Toughness, viscosity and leak-off together at 0.25 m cells: within 5 % of length, opening and pressure; half or twice the leak-off is 15 % off."""
+    run = completed(SCENE, variant)
+    for name, found in at_end(run).items():
+        assert found == pytest.approx(value("kgd_leakoff", name, leakoff_m_sqrt_s=leakoff), rel=0.01 if name == "efficiency" else 0.05), name
+    assert abs(run.history["fluid_volume_balance"]).max() < 1e-8
+    if leakoff > 0.0:
+        together = run.history["fracture_volume_m2"] + run.history["leaked_m2"]
+        assert together[-1] == pytest.approx(0.5 * RATE * 500.0, rel=3e-4)
+    else:
+        assert "leaked_m2" not in run.history
+
+
+def test_finer_cells_come_nearer_to_the_reference() -> None:
+    """Cells and floor of the opening halved: within 1 % at an efficiency of 0.41."""
+    run = completed(SCENE, "", ("numerics.cell_m=0.125", "fracture.increment_m=0.125", "fluid.minimum_opening_m=1e-5"))
+    for name, found in at_end(run).items():
+        assert found == pytest.approx(value("kgd_leakoff", name), rel=0.01), name
+
+
+def test_a_fracture_that_grew_falls_off_after_shut_in() -> None:
+    """Each place leaks since the tip came by: against the solution of a fluid without viscosity, whose own length is a cell or so off."""
+    run = completed(SCENE, "shut_in")
+    t, l, p, leaked = (run.history[name] for name in ("time_s", "tip_y_m", "inlet_Pa", "leaked_m2"))
+    assert l[t > SHUT_IN_S].min() == l[-1]
+    for at in (100.0, SHUT_IN_S, 400.0, 600.0, 1000.0):
+        row = int(abs(t - at).argmin())
+        exact = {name: value("shut_in", name, leakoff_m_sqrt_s=3e-6, shut_in_s=SHUT_IN_S, time_s=at) for name in ("half_length_m", "inlet_pressure_Pa", "leaked_m2")}
+        assert l[row] == pytest.approx(exact["half_length_m"], rel=0.025)
+        assert 2.0 * leaked[row] == pytest.approx(exact["leaked_m2"], rel=0.03)
+        assert p[row] - 20e6 == pytest.approx(exact["inlet_pressure_Pa"], rel=0.06)
+        # What is left presses on a crack of the run's own length: no cell is between them.
+        own = (0.5 * RATE * min(at, SHUT_IN_S) - leaked[row]) * (20e9 / 0.96) / (3.141592653589793 * l[row] ** 2)
+        assert p[row] - 20e6 == pytest.approx(own, rel=0.015)
+
+
+def histories(tmp_path: Path, scene: str | Path, *inlets: str, settings: tuple[str, ...] = ()) -> list[list[dict[str, str]]]:
+    """The histories of a scene under inlets given in different ways."""
+    found = []
+    for inlet in inlets:
+        done = run_in(tmp_path, scene, f"fluid.inlet={inlet}", *settings)
+        assert done.returncode == 0, done.stderr
+        found.append(rows_of(tmp_path / "X"))
+    return found
+
+
+def test_a_table_of_one_rate_is_that_rate(tmp_path: Path) -> None:
+    """To the last digit, the table's last row behind the end of the run."""
+    one, other = histories(tmp_path, SCENE, "{rate_m2_s=5e-5}", '{table=[[0, 5e-5], [99, 5e-5]], of="rate_m2_s"}', settings=("stop.time_s=20",))
+    assert one == other
+
+
+@pytest.mark.parametrize("mechanics", ["quasistatic", "explicit"])
+@pytest.mark.parametrize("law", ["uniform", "paper"])
+def test_a_table_of_pressure_is_the_ramp_that_it_describes(tmp_path: Path, law: str, mechanics: str) -> None:
+    """A ramp in two rows gives what start_Pa and rate_Pa_s give, with inertia and without."""
+    ramp = """\
+    domain = {width_m = 32, height_m = 32}
+    in_situ = {vertical_Pa = 3e6, horizontal_Pa = 2e6}
+    rock.r = {youngs_modulus_Pa = 10e9}
+    strata.layers = [{rock = "r"}]
+    fracture.path_m = [[16, 0], [16, 5]]
+    numerics.cell_m = 1
+    stop = {tip_y_m = 12, time_s = 2}
+    """
+    settings = (f"fluid.law={law}", f"numerics.mechanics={mechanics}")
+    one, other = histories(tmp_path, ramp, "{start_Pa=3e6, rate_Pa_s=1e6}", '{table=[[0, 3e6], [4, 7e6]], of="pressure_Pa"}', settings=settings)
+    assert len(one) == len(other) > 5
+    for name in ("time_s", "inlet_Pa", "tip_y_m", "mouth_opening_m", "fluid_work_J"):
+        assert [float(row[name]) for row in other] == pytest.approx([float(row[name]) for row in one], rel=1e-7, abs=1e-12), name
+
+
+def test_a_pressure_that_falls_again_between_outputs_is_followed(tmp_path: Path) -> None:
+    """A run without flow goes from event to event: the peak of a table counts, 0.3 or 0.6 MPa net where K_Ic takes 0.37. Steps over rows see neither."""
+    text = """\
+    domain = {width_m = 32, height_m = 32}
+    in_situ = {vertical_Pa = 3e6, horizontal_Pa = 2e6}
+    rock.r = {youngs_modulus_Pa = 10e9}
+    strata.layers = [{rock = "r"}]
+    fracture = {path_m = [[16, 0], [16, 5]], increment_m = 1}
+    fluid = {law = "uniform", inlet = {table = [[0, 2e6], [1, PEAK], [2, 2e6]], of = "pressure_Pa"}}
+    numerics = {cell_m = 1, mechanics = "quasistatic"}
+    stop = {time_s = 4}
+    output = {fields_every_s = 4}
+    """
+    ends = []
+    for peak in ("2.3e6", "2.6e6"):
+        assert run_in(tmp_path, text.replace("PEAK", peak)).returncode == 0
+        ends.append(rows_of(tmp_path / "X")[-1])
+        assert float(ends[-1]["inlet_Pa"]) == 2e6 and float(ends[-1]["time_s"]) == 4.0
+    assert float(ends[0]["tip_y_m"]) == 5.0 < float(ends[1]["tip_y_m"])
