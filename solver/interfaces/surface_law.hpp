@@ -97,8 +97,8 @@ void remember(const InterfaceLaw& law, double w_n, double dw_t, InterfaceLaw::Me
 /// reactions would not be unique.
 double contact_stiffness(const InterfaceLaw& law, const Rocks& rocks, const Grid& grid);
 
-/// The law of a surface; that of the fracture's own faces: contact under fracture.friction, or none at all (fracture.faces =
-/// "free"), a spring of no stiffness both ways.
+/// The law of a surface; that of the fracture's own faces: contact under fracture.friction, or none at all
+/// (fracture.faces = "free"), a spring of no stiffness both ways.
 InterfaceLaw law_of(const Scene& scene, const Surface& surface);
 InterfaceLaw face_law(const Scene& scene);
 
