@@ -191,17 +191,21 @@ def final_angle_deg(run: Run, parameters: Parameters = NONE) -> Measured:
     return exactly(math.degrees(math.atan2(dy, dx)))
 
 
-def failed_length_m(arrays: dict[str, Array], number: int) -> float:
-    """Length of interface `number` (from 1) that has two separate sides at an output time, m. Each of its places stands for half of the way to its
-    neighbours, those at the ends for as much outwards as inwards."""
-    place = str(number - 1)
-    x, split = arrays[f"{place}/x_m"], arrays[f"{place}/split"]
+def length_m(x: Array, chosen: Array) -> float:
+    """Length of the chosen ones of places along an interface, m. Each stands for half of the way to its neighbours, those at the ends for as much
+    outwards as inwards."""
     if len(x) < 2:
         return 0.0
     order = np.argsort(x)
     ways = np.diff(x[order])
     lengths = 0.5 * (np.append(ways[0], ways) + np.append(ways, ways[-1]))
-    return float(np.sum(lengths[split[order] > 0]))
+    return float(np.sum(lengths[chosen[order]]))
+
+
+def failed_length_m(arrays: dict[str, Array], number: int) -> float:
+    """Length of interface `number` (from 1) that has two separate sides at an output time, m."""
+    place = str(number - 1)
+    return length_m(arrays[f"{place}/x_m"], arrays[f"{place}/split"] > 0)
 
 
 def interface_failure_excess_Pa(run: Run, parameters: Parameters) -> Measured:

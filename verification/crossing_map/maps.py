@@ -1,0 +1,140 @@
+"""Maps: two axes of scene keys, a run at each of their points, and the verdicts as a table."""
+
+import csv
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, fields
+from functools import partial
+from pathlib import Path
+
+from verification.crossing_map.verdict import Verdict, verdict_of
+from verification.harness import store
+from verification.harness.paths import RUNS
+from verification.harness.plan import make
+from verification.harness.run import Job
+from verification.harness.side_by_side import Task, side_by_side
+
+HERE = Path(__file__).parent
+SCENE, RECORDS = HERE / "crossing.toml", HERE / "records"
+FAILED = "failed"  # no verdict: the run has none
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Values of a key, or of what settings are made of: its column (with its unit), settings of a value, first and last value, even steps or ratios."""
+
+    column: str
+    settings: Callable[[float], tuple[str, ...]]
+    first: float
+    last: float
+    log: bool = False
+
+    def values(self, count: int) -> list[float]:
+        """So many values from the first to the last, to four digits."""
+        shares = [k / (count - 1) for k in range(count)]
+        at = [self.first * (self.last / self.first) ** s if self.log else self.first + (self.last - self.first) * s for s in shares]
+        return [float(f"{value:.4g}") for value in at]
+
+
+@dataclass(frozen=True)
+class Map:
+    """A variant of the scene over two axes, so many values of each; further settings of all its runs."""
+
+    name: str
+    variant: str
+    x: Axis
+    y: Axis
+    size: tuple[int, int] = (20, 20)
+    settings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Point:
+    """A run of a map and what came of it."""
+
+    x: float
+    y: float
+    found: Verdict
+
+
+def key(name: str, scale: float = 1.0) -> Callable[[float], tuple[str, ...]]:
+    """The settings that give a key a value."""
+    return lambda value: (f"{name}={value * scale!r}",)
+
+
+def strength(value: float) -> tuple[str, ...]:
+    """Both strengths of the weak interface, MPa."""
+    return tuple(f"interface.weak.{kind}_strength_Pa={value * 1e6!r}" for kind in ("shear", "tensile"))
+
+
+def closing(value: float) -> tuple[str, ...]:
+    """The stress that closes the fracture, MPa; the ramp starts there and ends 1.5 MPa above."""
+    return (f"in_situ.horizontal_Pa={value * 1e6!r}", f"fluid.inlet.start_Pa={value * 1e6!r}", f"stop.inlet_Pa={(value + 1.5) * 1e6!r}")
+
+
+def increment(value: float) -> tuple[str, ...]:
+    """An increment of growth, m, which is the failure length too; the fracture starts one below the interface."""
+    return (f"fracture.increment_m={value!r}", f"fracture.path_m=[[40,0],[40,{10.0 - value!r}]]")
+
+
+VERTICAL = Axis("vertical_MPa", key("in_situ.vertical_Pa", 1e6), 0.1, 10.0, log=True)
+FRICTION = Axis("friction", key("interface.friction.coefficient"), 0.05, 1.0)
+MAPS = {one.name: one for one in (
+    Map("friction", "", VERTICAL, FRICTION),
+    Map("weak", "weak", Axis("modulus_ratio", key("rock.beyond.youngs_modulus_Pa", 10e9), 0.1, 10.0, log=True), Axis("strength_MPa", strength, 0.05, 1.0)),
+    # Why strata and the criteria part, at friction 0.4: the closing stress, and the length over which slip and growth are judged.
+    Map("closing", "", VERTICAL, Axis("closing_MPa", closing, 1.0, 4.0), (20, 3)),
+    Map("increment", "", VERTICAL, Axis("increment_m", increment, 0.5, 2.0, log=True), (20, 3), ("numerics.cell_m=0.25",)),
+)}  # fmt: skip
+
+
+def jobs_of(one: Map, size: tuple[int, int], runs: Path) -> dict[tuple[float, float], Job]:
+    """The runs of a map by their points."""
+    return {(x, y): Job(SCENE, one.variant, runs / "crossing_map" / one.name / f"{x:g}_{y:g}", (*one.settings, *one.x.settings(x), *one.y.settings(y)))
+            for y in one.y.values(size[1]) for x in one.x.values(size[0])}  # fmt: skip
+
+
+def found(job: Job, stop: threading.Event) -> Verdict:
+    """Make a run, unless it is there, and judge it. Its fields, some MB, go once its verdict is kept beside its summary."""
+    kept = job.out / "verdict.json"
+    outcome, run = make(job, stop)
+    if outcome.skipped and (before := store.read(Verdict, kept)) is not None:
+        return before
+    if run is None or not outcome.ok:
+        return Verdict(FAILED, float("nan"), float("nan"), False, float("nan"), (outcome.reason[:80].replace(",", ";"),))
+    store.write(verdict := verdict_of(run), kept)
+    for name in ("result.h5", "result.xdmf"):
+        (job.out / name).unlink(missing_ok=True)
+    return verdict
+
+
+def swept(one: Map, size: tuple[int, int], at_a_time: int, runs: Path = RUNS) -> list[Point]:
+    """All runs of a map; what is there for the same scene and solver is not run again."""
+    jobs = jobs_of(one, size, runs)
+    tasks = [Task(f"{one.name} {x:g} {y:g}", partial(found, job), lambda verdict: verdict.verdict) for (x, y), job in jobs.items()]
+    return [Point(x, y, verdict) for (x, y), verdict in zip(jobs, side_by_side(tasks, at_a_time))]
+
+
+def write_table(one: Map, points: Sequence[Point], folder: Path = RECORDS) -> Path:
+    """Keep a map's table: a line a run, numbers to five digits."""
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{one.name}.csv"
+    with path.open("w", encoding="utf-8", newline="") as file:
+        lines = csv.writer(file, lineterminator="\n")
+        lines.writerow([one.x.column, one.y.column, *(item.name for item in fields(Verdict))])
+        for point in points:
+            values = {**asdict(point.found), "passed": int(point.found.passed), "suspect": " ".join(point.found.suspect)}
+            lines.writerow([f"{value:.5g}" if isinstance(value, float) else value for value in (point.x, point.y, *values.values())])
+    return path
+
+
+def read_table(one: Map, folder: Path = RECORDS) -> list[Point]:
+    """A map's table as it is kept; empty where none is."""
+    path = folder / f"{one.name}.csv"
+    if not path.is_file():
+        return []
+    with path.open(encoding="utf-8", newline="") as file:
+        return [
+            Point(float(x), float(y), Verdict(word, float(arrival), float(rise), passed == "1", float(slid), tuple(marks.split())))
+            for x, y, word, arrival, rise, passed, slid, marks in list(csv.reader(file))[1:]
+        ]

@@ -1,0 +1,56 @@
+"""What a fracture did at an interface: crossed it, stopped at it, or made it give way."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from verification.harness.load import Run, frames
+from verification.harness.observables import SLACK_M, interface_height, length_m
+
+CROSSES, STOPS, GIVES_WAY = "crosses", "stops", "gives way"
+
+BEYOND_M = 2.0  # two increments: the tip has left the interface and K is its own again (solver/README.md: past 1 m it no longer counts as on it)
+HELD_PA = 0.05e6  # the rise of the inlet that makes an arrest (contract of events)
+WAY_M = 2.0  # of slip to one side: twice what one failure takes (failure_length_m 1 m), so it runs on by itself
+SLIP_M = 1e-6  # parted or slid: faces that stick move by 1e-8 m (1 MPa over the contact's 1e14 Pa/m), the fracture opens by 1e-3 m
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What it did, and by which numbers: pressure on arrival (Pa; NaN: it never came), rise until it was 2 m beyond (Pa; to the run's end where it never
+    was), slid or parted length of the interface to the one side where it is longer, at the last output before it was beyond (m)."""
+
+    verdict: str
+    arrival_Pa: float
+    rise_Pa: float
+    passed: bool
+    slid_m: float
+    suspect: tuple[str, ...] = ()
+
+
+def judged(rise_Pa: float, passed: bool, slid_m: float) -> str:
+    """The verdict: giving way counts first, whatever the fracture does after it; what neither crosses nor gives way is stopped."""
+    if slid_m >= WAY_M - SLACK_M:
+        return GIVES_WAY
+    return CROSSES if passed and rise_Pa <= HELD_PA else STOPS
+
+
+def slid_length_m(arrays: dict[str, np.ndarray], number: int, at_m: float) -> float:
+    """Length of interface `number` (from 1) that has slid or parted at an output, on the side of a place (x, m) where it is longer, m."""
+    place = str(number - 1)
+    x = arrays[f"{place}/x_m"]
+    moved = np.maximum(np.abs(arrays[f"{place}/slip_m"]), arrays[f"{place}/opening_m"]) > SLIP_M
+    return max(length_m(x, moved & side) for side in (x < at_m, x > at_m))
+
+
+def verdict_of(run: Run, number: int = 1) -> Verdict:
+    """What a run's fracture did at interface `number` (from 1)."""
+    height, tip, inlet = interface_height(run, number), run.history["tip_y_m"], run.history["inlet_Pa"]
+    arrived, beyond = (np.flatnonzero(tip >= place - SLACK_M) for place in (height, height + BEYOND_M))
+    passed = beyond.size > 0
+    end = int(beyond[0]) if passed else len(tip) - 1
+    arrival = float(inlet[arrived[0]]) if arrived.size else float("nan")
+    rise = float(inlet[end]) - arrival
+    before = [arrays for time_s, arrays in frames(run, "interfaces") if not passed or time_s < run.history["time_s"][end] - 1e-9]
+    slid = slid_length_m(before[-1], number, float(run.path[-1][0])) if before else 0.0
+    return Verdict(judged(rise, passed, slid), arrival, rise, passed, slid, tuple(mark.monitor for mark in run.summary.suspect))
