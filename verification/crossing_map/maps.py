@@ -1,6 +1,7 @@
 """Maps: two axes of scene keys, a run at each of their points, and the verdicts as a table."""
 
 import csv
+import math
 import threading
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, fields
@@ -17,6 +18,7 @@ from verification.harness.side_by_side import Task, side_by_side
 HERE = Path(__file__).parent
 SCENE, RECORDS = HERE / "crossing.toml", HERE / "records"
 FAILED = "failed"  # no verdict: the run has none
+LIMIT_S = 120.0  # a hundred times what a run takes
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,7 @@ class Map:
     y: Axis
     size: tuple[int, int] = (20, 20)
     settings: tuple[str, ...] = ()
+    at_rest: Callable[[float, float], bool] = lambda x, y: True  # whether the interface bears the in-situ stress; where it does not nothing is run
 
 
 @dataclass(frozen=True)
@@ -77,27 +80,58 @@ def increment(value: float) -> tuple[str, ...]:
     return (f"fracture.increment_m={value!r}", f"fracture.path_m=[[40,0],[40,{10.0 - value!r}]]")
 
 
+def in_situ(angle_deg: float) -> tuple[float, float, float]:
+    """Stress normal to the interface, along it, and shear on it (tension positive), MPa, of INCLINED_MPa along and across a fracture at an angle to it."""
+    (along, across), turn = INCLINED_MPa, math.radians(angle_deg)
+    c, s = math.cos(turn), math.sin(turn)
+    return along * s * s + across * c * c, along * c * c + across * s * s, (across - along) * s * c
+
+
+def angle(value: float) -> tuple[str, ...]:
+    """A fracture of two tips, 18 m long, at an angle (degrees) to the interface at 50 m, 1 m along its way below it; along and across it are the
+    principal stresses. Its lower tip is in rock too tough to grow in."""
+    normal, along, shear = in_situ(value)
+    c, s = math.cos(math.radians(value)), math.sin(math.radians(value))
+    stresses = (f"in_situ.{name}_Pa={stress * 1e6!r}" for name, stress in (("vertical", normal), ("horizontal", along), ("shear", shear)))
+    start = INCLINED_MPa[1] * 1e6
+    return (
+        *stresses, f"fracture.path_m=[[{40 - 19 * c!r},{50 - 19 * s!r}],[{40 - c!r},{50 - s!r}]]", f"fluid.inlet.start_Pa={start!r}",
+        f"stop={{tip_y_m=53,inlet_Pa={start + 1.5e6!r}}}", 'domain.bottom="traction"', 'strata.interfaces=["perfect","friction"]',
+        'rock.tough={youngs_modulus_Pa=10e9,poisson_ratio=0.2,density_kg_m3=2500,toughness_Pa_sqrt_m=50e6}',
+        'strata.layers=[{rock="tough",thickness_m=45},{rock="below",thickness_m=5},{rock="beyond"}]',
+    )  # fmt: skip
+
+
+def bears(friction: float, angle_deg: float) -> bool:
+    """Whether friction holds the interface under the in-situ stress, by a twentieth."""
+    normal, _, shear = in_situ(angle_deg)
+    return abs(shear) < 0.95 * friction * normal
+
+
+INCLINED_MPa = (1.2, 0.5)  # along and across the inclined fracture
 VERTICAL = Axis("vertical_MPa", key("in_situ.vertical_Pa", 1e6), 0.1, 10.0, log=True)
 FRICTION = Axis("friction", key("interface.friction.coefficient"), 0.05, 1.0)
 MAPS = {one.name: one for one in (
     Map("friction", "", VERTICAL, FRICTION),
     Map("weak", "weak", Axis("modulus_ratio", key("rock.beyond.youngs_modulus_Pa", 10e9), 0.1, 10.0, log=True), Axis("strength_MPa", strength, 0.05, 1.0)),
     # Why strata and the criteria part, at friction 0.4: the closing stress, and the length over which slip and growth are judged.
-    Map("closing", "", VERTICAL, Axis("closing_MPa", closing, 1.0, 4.0), (20, 3)),
-    Map("increment", "", VERTICAL, Axis("increment_m", increment, 0.5, 2.0, log=True), (20, 3), ("numerics.cell_m=0.25",)),
+    Map("closing", "", VERTICAL, Axis("closing_MPa", closing, 1.0, 4.0), (12, 3)),
+    Map("increment", "", VERTICAL, Axis("increment_m", increment, 0.5, 2.0, log=True), (12, 3), ("numerics.cell_m=0.25",)),
+    Map("inclined", "", Axis("friction", key("interface.friction.coefficient"), 0.2, 1.0), Axis("angle_deg", angle, 45.0, 90.0), (9, 4),
+        ("numerics.cell_m=1",), bears),
 )}  # fmt: skip
 
 
 def jobs_of(one: Map, size: tuple[int, int], runs: Path) -> dict[tuple[float, float], Job]:
     """The runs of a map by their points."""
     return {(x, y): Job(SCENE, one.variant, runs / "crossing_map" / one.name / f"{x:g}_{y:g}", (*one.settings, *one.x.settings(x), *one.y.settings(y)))
-            for y in one.y.values(size[1]) for x in one.x.values(size[0])}  # fmt: skip
+            for y in one.y.values(size[1]) for x in one.x.values(size[0]) if one.at_rest(x, y)}  # fmt: skip
 
 
 def found(job: Job, stop: threading.Event) -> Verdict:
     """Make a run, unless it is there, and judge it. Its fields, some MB, go once its verdict is kept beside its summary."""
     kept = job.out / "verdict.json"
-    outcome, run = make(job, stop)
+    outcome, run = make(job, stop, limit_s=LIMIT_S)
     if outcome.skipped and (before := store.read(Verdict, kept)) is not None:
         return before
     if run is None or not outcome.ok:

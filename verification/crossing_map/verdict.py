@@ -43,8 +43,9 @@ def slid_length_m(arrays: dict[str, np.ndarray], number: int, at_m: float) -> fl
     return max(length_m(x, moved & side) for side in (x < at_m, x > at_m))
 
 
-def verdict_of(run: Run, number: int = 1) -> Verdict:
-    """What a run's fracture did at interface `number` (from 1)."""
+def verdict_of(run: Run) -> Verdict:
+    """What a run's fracture did at the scene's last interface."""
+    number = len(run.interfaces_m)
     height, tip, inlet = interface_height(run, number), run.history["tip_y_m"], run.history["inlet_Pa"]
     arrived, beyond = (np.flatnonzero(tip >= place - SLACK_M) for place in (height, height + BEYOND_M))
     passed = beyond.size > 0

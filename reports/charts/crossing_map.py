@@ -1,0 +1,36 @@
+"""Draws maps of verdicts with lines of criteria over them."""
+
+from matplotlib.figure import Figure
+
+from reports.charts.style import DASHED, DOTTED, FLAG, INK, PALE, entry, panel_grid, put_legend
+from reports.shown import Shown
+
+_VERDICTS = {"crosses": ("#0067a5", "s"), "stops": ("#d9a400", "^"), "gives way": ("#d04a00", "o"), "failed": (FLAG, "x")}
+_LINES = {
+    "Renshaw & Pollard": (INK, "-"), "Gu & Weng": (INK, DASHED), "Blanton": (INK, DOTTED), "slip 1 m ahead of the tip": (PALE, DASHED),
+    "mean over 2 m slides": ("#00845f", "-"), "mean shear over 1 m, like rocks": ("#00845f", "none"),
+}  # fmt: skip
+
+
+def draw_crossing_map(data: Shown) -> Figure:
+    """A panel a map: a mark a run, larger the more the inlet rose before the fracture was beyond; a line a criterion."""
+    figure, every, _ = panel_grid(data.title, len(data.panels), 3.6)
+    for axes, panel in zip(every, data.panels, strict=True):
+        for verdict, (colour, marker) in _VERDICTS.items():
+            chosen = [(x, y, 7.0 + 40.0 * min(max(rise, 0.0), 1.0)) for x, y, word, rise in panel.runs if word == verdict]
+            if chosen:
+                axes.scatter(*zip(*chosen), color=colour, marker=marker, linewidths=0.5)
+        for name, (xs, ys) in panel.lines.items():
+            colour, dashes = _LINES[name]
+            axes.plot(xs, ys, color=colour, linestyle=dashes, linewidth=1.4, marker="*" if len(xs) == 1 else None, markersize=13, zorder=4)
+        low, high = panel.x_range
+        axes.set_xscale("log" if panel.x_log else "linear")
+        axes.set_yscale("log" if panel.y_log else "linear")
+        margin = (0.85, 1.18) if panel.x_log else (0.9, 1.05)
+        axes.set(title=panel.heading, xlabel=panel.x_label, ylabel=panel.y_label, xlim=(low * margin[0], high * margin[1]))
+    handles = [entry(word, color=colour, marker=marker, linestyle="none") for word, (colour, marker) in _VERDICTS.items()
+               if any(run[2] == word for panel in data.panels for run in panel.runs)]
+    handles += [entry(name, color=_LINES[name][0], linestyle=_LINES[name][1], marker="*" if _LINES[name][1] == "none" else None)
+                for name in dict.fromkeys(name for panel in data.panels for name in panel.lines)]
+    put_legend(figure, handles, 5)
+    return figure
