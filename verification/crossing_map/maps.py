@@ -115,8 +115,8 @@ MAPS = {one.name: one for one in (
     Map("friction", "", VERTICAL, FRICTION),
     Map("weak", "weak", Axis("modulus_ratio", key("rock.beyond.youngs_modulus_Pa", 10e9), 0.1, 10.0, log=True), Axis("strength_MPa", strength, 0.05, 1.0)),
     # Why strata and the criteria part, at friction 0.4: the closing stress, and the length over which slip and growth are judged.
-    Map("closing", "", VERTICAL, Axis("closing_MPa", closing, 1.0, 4.0), (12, 3)),
-    Map("increment", "", VERTICAL, Axis("increment_m", increment, 0.5, 2.0, log=True), (12, 3), ("numerics.cell_m=0.25",)),
+    Map("closing", "", VERTICAL, Axis("closing_MPa", closing, 1.0, 4.0), (20, 3)),
+    Map("increment", "", VERTICAL, Axis("increment_m", increment, 0.5, 2.0, log=True), (20, 3), ("numerics.cell_m=0.25",)),
     Map("inclined", "", Axis("friction", key("interface.friction.coefficient"), 0.2, 1.0), Axis("angle_deg", angle, 45.0, 90.0), (9, 4),
         ("numerics.cell_m=1",), bears),
 )}  # fmt: skip
