@@ -5,7 +5,6 @@ usage: python3 -m reports.crossing_map [--records DIR]      (after python3 -m ve
 
 import argparse
 import math
-from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -14,43 +13,29 @@ from reports.charts.crossing_map import draw_crossing_map
 from reports.charts.style import save
 from reports.shown import Shown
 from verification.crossing_map.criteria import blanton, first_slip, griffith_means, gu_weng, mean_slip, renshaw_pollard
-from verification.crossing_map.maps import INCLINED_MPa, MAPS, RECORDS, Point, read_table
+from verification.crossing_map.maps import INCLINED_MPa, MAPS, RECORDS, Verdicts, read_table
 from verification.crossing_map.verdict import CROSSES, WAY_M
 
 # The strength of rock that goes with K_Ic = 1.45 and an increment of 1 m: a crack of 1 m from a free face, K = 1.1215 T0 sqrt(pi d), releases as much.
 STRENGTH_MPa = 1.45 / (1.1215 * math.sqrt(0.5 * math.pi))
 CLOSING_MPa, K, TIP_M, HALF_M = 2.0, 1.45, 1.0, 10.0
 NET_MPa = K / math.sqrt(math.pi * (HALF_M - 0.5 * TIP_M))  # of arrival: mean K_I^2 of a Griffith crack over the increment is K_Ic^2
-LABELS = {
-    "vertical_MPa": "stress normal to the interface (MPa)", "friction": "friction", "modulus_ratio": "modulus beyond over that below",
-    "strength_MPa": "strength of the interface (MPa)", "closing_MPa": "closing stress (MPa)", "increment_m": "increment (m)",
-    "angle_deg": "angle to the interface (degrees)",
-}  # fmt: skip
+S_V = np.geomspace(0.1, 100.0, 400)  # MPa, where criteria are asked
 
 
-def least(crosses: Callable[[float], bool], low: float = 1e-3, high: float = 1e3) -> float:
-    """The least value that crosses, of those between two bounds, by halving their ratio; NaN where none does."""
-    if not crosses(high):
-        return math.nan
-    for _ in range(50):
-        middle = math.sqrt(low * high)
-        low, high = (low, middle) if crosses(middle) else (middle, high)
-    return high
-
-
-def crosses_above(points: Sequence[Point], y: float) -> float:
-    """The least x of a row above which every run crosses; NaN where the last does not."""
-    row = sorted((point for point in points if point.y == y), key=lambda point: point.x)
-    held = [k for k, point in enumerate(row) if point.found.verdict != CROSSES]
-    start = held[-1] + 1 if held else 0
-    return row[start].x if start < len(row) else math.nan
+def crosses_above(verdicts: Verdicts, y: float) -> float:
+    """The least x of a row from which on every run crosses; NaN where the last does not."""
+    row = sorted((x, found.verdict) for (x, at), found in verdicts.items() if at == y)
+    start = max((k + 1 for k, (_, word) in enumerate(row) if word != CROSSES), default=0)
+    return row[start][0] if start < len(row) else math.nan
 
 
 def boundaries(friction: float, strength: float, closing: float) -> dict[str, float]:
-    """The least s_v (MPa) at which each criterion lets a fracture normal to an interface cross."""
+    """The least s_v (MPa) at which each criterion lets a fracture normal to an interface cross, and closed forms of slip."""
+    asked = [gu_weng(strength, s_v, closing) for s_v in S_V]  # falls as s_v rises
     return {
         "Renshaw & Pollard": renshaw_pollard(friction, strength, closing),
-        "Gu & Weng": least(lambda s_v: gu_weng(friction, strength, s_v, closing)),
+        "Gu & Weng": float(S_V[np.argmax(np.array(asked) < friction)]),
         "Blanton": blanton(strength, closing),
         "slip 1 m ahead of the tip": first_slip(friction, K, TIP_M),
         "mean over 2 m slides": mean_slip(friction, NET_MPa, HALF_M, WAY_M),
@@ -60,33 +45,29 @@ def boundaries(friction: float, strength: float, closing: float) -> dict[str, fl
 def lines_of(name: str) -> dict[str, tuple[list[float], list[float]]]:
     """Lines over a map: x and y of each criterion."""
     one = MAPS[name]
-    ys = list(np.linspace(one.y.first, one.y.last, 41))
+    ys = list(np.linspace(one.y.first, one.y.last, 31))
     if name == "weak":
         return {"mean shear over 1 m, like rocks": ([1.0], [NET_MPa * griffith_means(HALF_M, 1.0)[0]])}
     if name == "inclined":
-        along, across = INCLINED_MPa
-        return {"Gu & Weng": ([least(lambda mu, y=y: gu_weng(mu, STRENGTH_MPa, along, across, math.radians(y)), 0.01, 10.0) for y in ys], ys)}
-    at = {"friction": lambda y: (y, CLOSING_MPa), "closing": lambda y: (0.4, y), "increment": lambda y: (0.4, CLOSING_MPa)}[name]
-    found = [boundaries(at(y)[0], STRENGTH_MPa / (math.sqrt(y) if name == "increment" else 1.0), at(y)[1]) for y in ys]
-    shown = list(found[0]) if name == "friction" else ["Renshaw & Pollard", "Gu & Weng", "Blanton"]
-    return {line: ([row[line] for row in found], ys) for line in shown}
+        return {"Gu & Weng": ([gu_weng(STRENGTH_MPa, *INCLINED_MPa, math.radians(y)) for y in ys], ys)}
+    given = {"friction": lambda y: (y, 1.0, CLOSING_MPa), "closing": lambda y: (0.4, 1.0, y), "increment": lambda y: (0.4, y, CLOSING_MPa)}[name]
+    found = [boundaries(mu, STRENGTH_MPa / math.sqrt(increment), closing) for mu, increment, closing in map(given, ys)]
+    return {line: ([row[line] for row in found], ys) for line in list(found[0])[: 5 if name == "friction" else 3]}
 
 
 def panel_of(name: str, folder: Path) -> Shown:
     """A map as it is drawn."""
     one = MAPS[name]
-    points = read_table(one, folder)
-    return Shown(heading=name, x_label=LABELS[one.x.column], y_label=LABELS[one.y.column], x_log=one.x.log, y_log=one.y.log, lines=lines_of(name),
-                 x_range=(one.x.first, one.x.last), runs=[(point.x, point.y, point.found.verdict, point.found.rise_Pa / 1e6) for point in points])
+    return Shown(heading=name, x=one.x, y=one.y, lines=lines_of(name),
+                 runs=[(*at, found.verdict, found.rise_Pa / 1e6) for at, found in read_table(one, folder).items()])
 
 
 def parting(folder: Path) -> str:
     """Where strata crosses beside where the criteria would, s_v in MPa, as a table in Markdown."""
-    points = read_table(MAPS["friction"], folder)
-    ys = sorted({point.y for point in points})
-    rows = [(y, crosses_above(points, y), *boundaries(y, STRENGTH_MPa, CLOSING_MPa).values()) for y in ys[3::4]]
-    heads = ["friction", "strata", *boundaries(1.0, STRENGTH_MPa, CLOSING_MPa)]
-    return "\n".join(["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|", *("| " + " | ".join(f"{v:.3g}" for v in row) + " |" for row in rows)])
+    verdicts = read_table(MAPS["friction"], folder)
+    found = {y: {"friction": y, "strata": crosses_above(verdicts, y), **boundaries(y, STRENGTH_MPa, CLOSING_MPa)} for y in sorted({y for _, y in verdicts})}
+    rows = [["---"] * 7, *([f"{value:.2f}" for value in found[y].values()] for y in (0.1, 0.2, 0.4, 0.6, 0.9) if y in found)]
+    return "\n".join("| " + " | ".join(row) + " |" for row in (next(iter(found.values())), *rows))
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -23,11 +23,10 @@ def draw_crossing_map(data: Shown) -> Figure:
         for name, (xs, ys) in panel.lines.items():
             colour, dashes = _LINES[name]
             axes.plot(xs, ys, color=colour, linestyle=dashes, linewidth=1.4, marker="*" if len(xs) == 1 else None, markersize=13, zorder=4)
-        low, high = panel.x_range
-        axes.set_xscale("log" if panel.x_log else "linear")
-        axes.set_yscale("log" if panel.y_log else "linear")
-        margin = (0.85, 1.18) if panel.x_log else (0.9, 1.05)
-        axes.set(title=panel.heading, xlabel=panel.x_label, ylabel=panel.y_label, xlim=(low * margin[0], high * margin[1]))
+        axes.set_xscale("log" if panel.x.log else "linear")
+        axes.set_yscale("log" if panel.y.log else "linear")
+        margins = (0.85, 1.18) if panel.x.log else (0.9, 1.05)
+        axes.set(title=panel.heading, xlabel=panel.x.label, ylabel=panel.y.label, xlim=(panel.x.first * margins[0], panel.x.last * margins[1]))
     handles = [entry(word, color=colour, marker=marker, linestyle="none") for word, (colour, marker) in _VERDICTS.items()
                if any(run[2] == word for panel in data.panels for run in panel.runs)]
     handles += [entry(name, color=_LINES[name][0], linestyle=_LINES[name][1], marker="*" if _LINES[name][1] == "none" else None)

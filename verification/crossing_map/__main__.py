@@ -34,10 +34,10 @@ def main(arguments: list[str] | None = None) -> int:
         if options.list:
             print(f"{one.name}: {one.x.column} x {one.y.column}, {size[0]} x {size[1]}")
             continue
-        points = swept(one, size, options.jobs, options.runs.resolve())
-        counts = Counter(point.found.verdict for point in points)
+        verdicts = swept(one, size, options.jobs, options.runs.resolve())
+        counts = Counter(found.verdict for found in verdicts.values())
         failed += counts[FAILED]
-        print(f"{write_table(one, points, options.out)}: {', '.join(f'{word} {count}' for word, count in sorted(counts.items()))}")
+        print(f"{write_table(one, verdicts, options.out)}: {', '.join(f'{word} {count}' for word, count in sorted(counts.items()))}")
     return 3 if failed else 0
 
 

@@ -27,25 +27,23 @@ def blanton(strength_Pa: float, closing_Pa: float) -> float:
     return closing_Pa + strength_Pa
 
 
-def gu_weng(friction: float, strength_Pa: float, along_Pa: float, closing_Pa: float, angle: float = 0.5 * math.pi) -> bool:
-    """Whether a fracture crosses an interface at an angle (rad), by the idea of Gu & Weng (2010), written anew from it: in-situ stresses along the
-    fracture and closing it, to which the field of the tip is added on the interface, until the largest tension on one of its halves is T0; no half
-    may then slide by Coulomb, nor open. At 90 degrees it is Renshaw & Pollard's but for the largest tension in place of that across the fracture."""
-    halves = [angle, angle - math.pi]
+def gu_weng(strength_Pa: float, along_Pa: float, closing_Pa: float, angle: float = 0.5 * math.pi) -> float:
+    """The least friction with which a fracture crosses an interface at an angle (rad), infinite where that opens, by the idea of Gu & Weng (2010), written
+    anew from it: in-situ stresses along the fracture and closing it, and the field of the tip on the interface, up to where the largest tension on one of
+    its halves is T0; no half may then slide. At 90 degrees Renshaw & Pollard's but for the largest tension in place of that across the fracture."""
+    halves = (angle, angle - math.pi)
 
     def stress(theta: float, k: float) -> np.ndarray:
         along, across, shear = (k * part for part in tip_field(theta))
         return np.array([[along - along_Pa, shear], [shear, across - closing_Pa]])
 
-    def tension(k: float) -> float:
-        return max(float(np.linalg.eigvalsh(stress(theta, k))[-1]) for theta in halves)
-
     low, high = 0.0, 1e3 * (strength_Pa + along_Pa + closing_Pa)
-    for _ in range(80):  # K/sqrt(2 pi r) at which T0 is met; the largest eigenvalue is convex in it and below T0 without it
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if tension(middle) > strength_Pa else (middle, high)
+    for _ in range(60):  # K/sqrt(2 pi r) at which T0 is met: the largest eigenvalue is convex in it and below T0 without it
+        k = 0.5 * (low + high)
+        low, high = (low, k) if max(np.linalg.eigvalsh(stress(theta, k))[-1] for theta in halves) > strength_Pa else (k, high)
     normal, way = np.array([-math.sin(angle), math.cos(angle)]), np.array([math.cos(angle), math.sin(angle)])
-    return all(abs(way @ stress(theta, high) @ normal) < -friction * (normal @ stress(theta, high) @ normal) for theta in halves)
+    on = [(abs(way @ stress(theta, high) @ normal), -(normal @ stress(theta, high) @ normal)) for theta in halves]
+    return max(float(shear / pressed) if pressed > 0.0 else math.inf for shear, pressed in on)
 
 
 def first_slip(friction: float, K: float, distance_m: float) -> float:

@@ -3,10 +3,12 @@
 import csv
 import math
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields
 from functools import partial
 from pathlib import Path
+
+import numpy as np
 
 from verification.crossing_map.verdict import Verdict, verdict_of
 from verification.harness import store
@@ -23,9 +25,10 @@ LIMIT_S = 120.0  # a hundred times what a run takes
 
 @dataclass(frozen=True)
 class Axis:
-    """Values of a key, or of what settings are made of: its column (with its unit), settings of a value, first and last value, even steps or ratios."""
+    """Values of a run: their column (with the unit) and label, the settings of a value, first and last value, even steps or ratios."""
 
     column: str
+    label: str
     settings: Callable[[float], tuple[str, ...]]
     first: float
     last: float
@@ -33,14 +36,14 @@ class Axis:
 
     def values(self, count: int) -> list[float]:
         """So many values from the first to the last, to four digits."""
-        shares = [k / (count - 1) for k in range(count)]
-        at = [self.first * (self.last / self.first) ** s if self.log else self.first + (self.last - self.first) * s for s in shares]
-        return [float(f"{value:.4g}") for value in at]
+        steps = np.geomspace if self.log else np.linspace
+        return [float(f"{value:.4g}") for value in steps(self.first, self.last, count)]
 
 
 @dataclass(frozen=True)
 class Map:
-    """A variant of the scene over two axes, so many values of each; further settings of all its runs."""
+    """A variant of the scene over two axes, so many values of each; further settings of all its runs; whether the interface bears the in-situ stress:
+    where it does not nothing is run."""
 
     name: str
     variant: str
@@ -48,16 +51,10 @@ class Map:
     y: Axis
     size: tuple[int, int] = (20, 20)
     settings: tuple[str, ...] = ()
-    at_rest: Callable[[float, float], bool] = lambda x, y: True  # whether the interface bears the in-situ stress; where it does not nothing is run
+    at_rest: Callable[[float, float], bool] = lambda x, y: True
 
 
-@dataclass(frozen=True)
-class Point:
-    """A run of a map and what came of it."""
-
-    x: float
-    y: float
-    found: Verdict
+Verdicts = dict[tuple[float, float], Verdict]  # of a map, by x and y
 
 
 def key(name: str, scale: float = 1.0) -> Callable[[float], tuple[str, ...]]:
@@ -109,15 +106,16 @@ def bears(friction: float, angle_deg: float) -> bool:
 
 
 INCLINED_MPa = (1.2, 0.5)  # along and across the inclined fracture
-VERTICAL = Axis("vertical_MPa", key("in_situ.vertical_Pa", 1e6), 0.1, 10.0, log=True)
-FRICTION = Axis("friction", key("interface.friction.coefficient"), 0.05, 1.0)
+VERTICAL = Axis("vertical_MPa", "stress normal to the interface (MPa)", key("in_situ.vertical_Pa", 1e6), 0.1, 10.0, log=True)
+FRICTION, RATIO = key("interface.friction.coefficient"), key("rock.beyond.youngs_modulus_Pa", 10e9)
 MAPS = {one.name: one for one in (
-    Map("friction", "", VERTICAL, FRICTION),
-    Map("weak", "weak", Axis("modulus_ratio", key("rock.beyond.youngs_modulus_Pa", 10e9), 0.1, 10.0, log=True), Axis("strength_MPa", strength, 0.05, 1.0)),
+    Map("friction", "", VERTICAL, Axis("friction", "friction", FRICTION, 0.05, 1.0)),
+    Map("weak", "weak", Axis("modulus_ratio", "modulus beyond over that below", RATIO, 0.1, 10.0, log=True),
+        Axis("strength_MPa", "strength of the interface (MPa)", strength, 0.05, 1.0)),
     # Why strata and the criteria part, at friction 0.4: the closing stress, and the length over which slip and growth are judged.
-    Map("closing", "", VERTICAL, Axis("closing_MPa", closing, 1.0, 4.0), (20, 3)),
-    Map("increment", "", VERTICAL, Axis("increment_m", increment, 0.5, 2.0, log=True), (20, 3), ("numerics.cell_m=0.25",)),
-    Map("inclined", "", Axis("friction", key("interface.friction.coefficient"), 0.2, 1.0), Axis("angle_deg", angle, 45.0, 90.0), (9, 4),
+    Map("closing", "", VERTICAL, Axis("closing_MPa", "closing stress (MPa)", closing, 1.0, 4.0), (20, 3)),
+    Map("increment", "", VERTICAL, Axis("increment_m", "increment (m)", increment, 0.5, 2.0, log=True), (20, 3), ("numerics.cell_m=0.25",)),
+    Map("inclined", "", Axis("friction", "friction", FRICTION, 0.2, 1.0), Axis("angle_deg", "angle to the interface (degrees)", angle, 45.0, 90.0), (9, 4),
         ("numerics.cell_m=1",), bears),
 )}  # fmt: skip
 
@@ -142,33 +140,29 @@ def found(job: Job, stop: threading.Event) -> Verdict:
     return verdict
 
 
-def swept(one: Map, size: tuple[int, int], at_a_time: int, runs: Path = RUNS) -> list[Point]:
+def swept(one: Map, size: tuple[int, int], at_a_time: int, runs: Path = RUNS) -> Verdicts:
     """All runs of a map; what is there for the same scene and solver is not run again."""
     jobs = jobs_of(one, size, runs)
     tasks = [Task(f"{one.name} {x:g} {y:g}", partial(found, job), lambda verdict: verdict.verdict) for (x, y), job in jobs.items()]
-    return [Point(x, y, verdict) for (x, y), verdict in zip(jobs, side_by_side(tasks, at_a_time))]
+    return dict(zip(jobs, side_by_side(tasks, at_a_time)))
 
 
-def write_table(one: Map, points: Sequence[Point], folder: Path = RECORDS) -> Path:
+def write_table(one: Map, verdicts: Verdicts, folder: Path = RECORDS) -> Path:
     """Keep a map's table: a line a run, numbers to five digits."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{one.name}.csv"
     with path.open("w", encoding="utf-8", newline="") as file:
         lines = csv.writer(file, lineterminator="\n")
         lines.writerow([one.x.column, one.y.column, *(item.name for item in fields(Verdict))])
-        for point in points:
-            values = {**asdict(point.found), "passed": int(point.found.passed), "suspect": " ".join(point.found.suspect)}
-            lines.writerow([f"{value:.5g}" if isinstance(value, float) else value for value in (point.x, point.y, *values.values())])
+        for at, found_there in verdicts.items():
+            values = asdict(found_there) | {"passed": int(found_there.passed), "suspect": " ".join(found_there.suspect)}
+            lines.writerow([f"{value:.5g}" if isinstance(value, float) else value for value in (*at, *values.values())])
     return path
 
 
-def read_table(one: Map, folder: Path = RECORDS) -> list[Point]:
+def read_table(one: Map, folder: Path = RECORDS) -> Verdicts:
     """A map's table as it is kept; empty where none is."""
     path = folder / f"{one.name}.csv"
-    if not path.is_file():
-        return []
-    with path.open(encoding="utf-8", newline="") as file:
-        return [
-            Point(float(x), float(y), Verdict(word, float(arrival), float(rise), passed == "1", float(slid), tuple(marks.split())))
-            for x, y, word, arrival, rise, passed, slid, marks in list(csv.reader(file))[1:]
-        ]
+    rows = csv.reader(path.read_text(encoding="utf-8").splitlines()[1:] if path.is_file() else [])
+    return {(float(x), float(y)): Verdict(word, float(arrival), float(rise), passed == "1", float(slid), tuple(marks.split()))
+            for x, y, word, arrival, rise, passed, slid, marks in rows}  # fmt: skip
