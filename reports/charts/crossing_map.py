@@ -1,5 +1,7 @@
 """Draws maps of verdicts with lines of criteria over them."""
 
+import math
+
 from matplotlib.figure import Figure
 
 from reports.charts.style import DASHED, DOTTED, FLAG, INK, PALE, entry, panel_grid, put_legend
@@ -17,7 +19,7 @@ def draw_crossing_map(data: Shown) -> Figure:
     figure, every, _ = panel_grid(data.title, len(data.panels), 3.6)
     for axes, panel in zip(every, data.panels, strict=True):
         for verdict, (colour, marker) in _VERDICTS.items():
-            chosen = [(x, y, 7.0 + 40.0 * min(max(rise, 0.0), 1.0)) for x, y, word, rise in panel.runs if word == verdict]
+            chosen = [(x, y, 30.0 if math.isnan(rise) else 7.0 + 40.0 * min(rise, 1.0)) for x, y, word, rise in panel.runs if word == verdict]
             if chosen:
                 axes.scatter(*zip(*chosen), color=colour, marker=marker, linewidths=0.5)
         for name, (xs, ys) in panel.lines.items():

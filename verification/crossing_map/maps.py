@@ -115,8 +115,8 @@ MAPS = {one.name: one for one in (
     # Why strata and the criteria part, at friction 0.4: the closing stress, and the length over which slip and growth are judged.
     Map("closing", "", VERTICAL, Axis("closing_MPa", "closing stress (MPa)", closing, 1.0, 4.0), (20, 3)),
     Map("increment", "", VERTICAL, Axis("increment_m", "increment (m)", increment, 0.5, 2.0, log=True), (20, 3), ("numerics.cell_m=0.25",)),
-    Map("inclined", "", Axis("friction", "friction", FRICTION, 0.2, 1.0), Axis("angle_deg", "angle to the interface (degrees)", angle, 45.0, 90.0), (9, 4),
-        ("numerics.cell_m=1",), bears),
+    Map("inclined", "", Axis("friction", "friction", FRICTION, 0.2, 1.0), Axis("angle_deg", "angle to the interface (degrees)", angle, 45.0, 90.0), (9, 4), (),
+        bears),
 )}  # fmt: skip
 
 
