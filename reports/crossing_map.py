@@ -1,4 +1,4 @@
-"""The crossing map from its tables: verification/crossing_map/records/crossing_map.svg and .png, and the table of where strata and the criteria part.
+"""The crossing map from its tables: verification/crossing_map/records/crossing_map.png (the SVG is not kept), and the table of where strata and the criteria part.
 
 usage: python3 -m reports.crossing_map [--records DIR]      (after python3 -m verification.crossing_map)
 """
