@@ -76,8 +76,11 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--records", type=Path, default=RECORDS)
     folder = parser.parse_args(arguments).records
     panels = [panel_of(name, folder) for name in MAPS if (folder / f"{name}.csv").is_file()]
-    save(draw_crossing_map(Shown(title="A fracture crosses far below the stress that published criteria ask for", panels=panels)), folder, "crossing_map")
-    print(parting(folder))
+    border, asked = crosses_above(read_table(MAPS["friction"], folder), 0.4), renshaw_pollard(0.4, STRENGTH_MPa, CLOSING_MPa)
+    title = f"At friction 0.4 the fracture crosses from {border:.2g} MPa on, where Renshaw & Pollard ask for {asked:.2g} MPa"
+    save(draw_crossing_map(Shown(title="Verdicts" if math.isnan(border) else title, panels=panels)), folder, "crossing_map")
+    if (folder / "friction.csv").is_file():
+        print(parting(folder))
     return 0
 
 
