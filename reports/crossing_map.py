@@ -35,7 +35,7 @@ def boundaries(friction: float, strength: float, closing: float) -> dict[str, fl
     asked = [gu_weng(strength, s_v, closing) for s_v in S_V]  # falls as s_v rises
     return {
         "Renshaw & Pollard": renshaw_pollard(friction, strength, closing),
-        "Gu & Weng": float(S_V[np.argmax(np.array(asked) < friction)]),
+        "Gu & Weng": float(np.interp(friction, asked[::-1], S_V[::-1])),
         "Blanton": blanton(strength, closing),
         "slip 1 m ahead of the tip": first_slip(friction, K, TIP_M),
         "mean over 2 m slides": mean_slip(friction, NET_MPa, HALF_M, WAY_M),
