@@ -201,6 +201,7 @@ std::string strata_text(Scene scene, const Lengths& at) {
   for (std::size_t k = at.thickness.size(); k-- > 0; depth -= at.thickness[k]) {
     const std::string law = word_of(scene.laws[k].kind);
     if (laws.insert(scene.laws[k].kind).second) {
+      scene.laws[k].failure_length_m = 2.0 * static_cast<double>(at.cell) / units_per_m;  // shorter ones are unresolved
       text += "\n# open: all but the law";
       add("interface." + law, "interface.NAME.", k);
     }
@@ -246,7 +247,8 @@ vertical_Pa = {vertical:.4e}    # open: 25 kPa for each metre down to the log's 
 
 [fracture]
 path_m = [[{x}, {low}], [{x}, {high}]]    # open: half of the layer of least stress
-increment_m = {cell}    # open: one cell; what crosses an interface whose faces are apart wants two or more
+increment_m = {cell}
+crossing_increment_m = {pair}    # open: two cells, as failure_length_m
 
 [fluid]
 law = "uniform"    # open: or "reynolds", with viscosity_Pa_s and inlet = {{rate_m2_s = 1e-4}}
@@ -263,8 +265,8 @@ inlet_Pa = {stop:.4e}    # open: the largest stress, and what starts the fractur
       fmt::arg("bottom", metres(at.bottom)), fmt::arg("width", metres(width)), fmt::arg("height", metres(at.height)),
       fmt::arg("beyond", metres(20 * at.height)), fmt::arg("vertical", 25e3 * middle_m),
       fmt::arg("strata", strata_text(scene, at)), fmt::arg("x", metres(width / 2)), fmt::arg("low", metres(low)),
-      fmt::arg("high", metres(high)), fmt::arg("cell", metres(at.cell)), fmt::arg("start", number_text(stress(least))),
-      fmt::arg("far", metres(8 * at.cell)),
+      fmt::arg("high", metres(high)), fmt::arg("cell", metres(at.cell)), fmt::arg("pair", metres(2 * at.cell)),
+      fmt::arg("start", number_text(stress(least))), fmt::arg("far", metres(8 * at.cell)),
       fmt::arg("stop", stress(most) + toughest / std::sqrt(std::numbers::pi * half_m)));
 }
 
