@@ -127,8 +127,8 @@ void read_row(Log& log, std::size_t row) {
       log.fault(where, "{} is missing. Give it{}.", name, is_depth ? "" : ", or the name of a rock above that has it");
     }
   }
-  const double above_m = row > 1 ? scene.strata.layers[row - 2].to_m : -1.0;
-  if (scene.strata.layers.back().to_m < above_m + 1.0 / units_per_m && !top.text.empty())
+  const double above_m = row > 1 ? scene.strata.layers[row - 2].to_m : -std::numeric_limits<double>::infinity();
+  if (scene.strata.layers.back().to_m < above_m + 1.0 / units_per_m)
     log.fault(top.where, "top_m = {} is not below the row above, at {} m. Sort rows by depth.", top.text, above_m);
   constexpr std::size_t longest = 60;  // of 64 in a scene, with room for a number
   if (!named.text.empty() && (!is_plain_name(named.text) || named.text.size() > longest))

@@ -116,13 +116,14 @@ TEST_CASE("All mistakes of a log are said in one pass, each with its place") {
       "is nearly incompressible.",
       "well.csv:2:26: interface: no layer lies above the first. Leave it out.",
       "well.csv:4:20: horizontal_Pa is missing. Give it, or the name of a rock above that has it.",
-      "well.csv:4:21: interface = 'wek' is not allowed. Use one of \"friction\", \"weak\", \"soft\", \"perfect\". Did "
+      "well.csv:4:21: interface = \"wek\" is not allowed. Use one of \"friction\", \"weak\", \"soft\", \"perfect\". "
+      "Did "
       "you mean weak?",
       "well.csv:5:1: top_m = 8 is not below the row above, at 10 m. Sort rows by depth.",
       "well.csv:5:5: youngs_modulus_Pa = 0.0 is outside (0, inf).",
       "well.csv:5:11: horizontal_Pa = nan is not finite. Write a finite number.",
       "well.csv:5:16: the row has more cells than the header. Remove them.",
-      "well.csv:6:7: horizontal_Pa = 2e6: the last row holds the depth where the last layer ends, alone. Add it."};
+      "well.csv:6:8: horizontal_Pa = 2e6: the last row holds the depth where the last layer ends, alone. Add it."};
   CHECK(said == wanted);
 }
 
