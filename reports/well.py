@@ -13,7 +13,7 @@ import numpy as np
 from reports.charts.style import save
 from reports.charts.well import draw_well
 from reports.shown import Shown
-from verification.harness.column import column, pressure_beyond
+from verification.harness.column import EDGE_M, column, pressure_beyond
 from verification.harness.load import Run
 from verification.harness.paths import EXPERIMENTS, RUNS
 from verification.harness.plan import make_all
@@ -29,6 +29,7 @@ def heights_of(runs: list[Run]) -> Shown:
     """Layers and depths (m) against pressure (MPa), of the reference with one modulus, then of runs; the finding as title."""
     one, perfect, full = runs
     layers, column_of = full.scene["strata"]["layers"], column(one)
+    column_of["upper_limit_m"] -= EDGE_M
     bottoms = [BOTTOM_M, *(BOTTOM_M - y for y in accumulate(layer["thickness_m"] for layer in layers[:-1]))]
     tops = [*bottoms[1:], BOTTOM_M - full.scene["domain"]["height_m"]]
     stop_Pa = full.scene["stop"]["inlet_Pa"]

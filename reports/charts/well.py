@@ -18,7 +18,7 @@ def draw_well(data: Shown) -> Figure:
         colour = shade(0.1 + 0.5 * layer.modulus_GPa / max(other.modulus_GPa for other in data.layers))
         left.barh(layer.top_m, layer.stress_MPa, layer.thickness_m, align="edge", color=colour, edgecolor="white", linewidth=0.6)
         left.text(data.least_MPa, layer.top_m + layer.thickness_m / 2.0, f" {layer.rock}, {layer.modulus_GPa:g} GPa", va="center", fontsize=7.5)
-    left.set(xlabel="closing stress (MPa)", ylabel="depth (m)", xlim=(data.least_MPa, None), ylim=(data.bottom_m, data.layers[-1].top_m))
+    left.set(xlabel="closing stress (MPa)", ylabel="depth (m)", xlim=(data.least_MPa, data.stop_MPa), ylim=(data.bottom_m, data.layers[-1].top_m))
     right.grid(True)
     interface_lines(right, [layer.top_m for layer in data.layers])
     for place, name in data.bedding:

@@ -68,6 +68,7 @@ void split_rows(Log& log, std::string_view text, const std::string& file) {
     auto& row = log.rows.emplace_back();
     for (const std::string& cell : split(line, ",")) {
       row.push_back({std::string(trimmed(cell)), where});
+      row.back().where.column += static_cast<unsigned>(std::min(cell.find_first_not_of(" \t\r"), cell.size()));
       where.column += static_cast<unsigned>(cell.size()) + 1;
     }
   }
@@ -94,10 +95,9 @@ void read_cell(Log& log, std::size_t row, const std::string& name) {
   const Key& key = *column(name);
   const bool is_word = key.kind == Key::Kind::text || key.kind == Key::Kind::word;
   double number = 0.0;
-  if (!is_word && std::from_chars(text.data(), text.data() + text.size(), number).ptr != text.data() + text.size()) {
-    log.fault(where, "{} = {} is not a number. Write digits as in 1.5e6, without a unit.", name, text);
-    return;
-  }
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (!is_word && (error != std::errc() || end != text.data() + text.size()))
+    return log.fault(where, "{} = {} is not a number. Write digits as in 1.5e6, without a unit.", name, text);
   const toml::value<double> as_number(number);
   const toml::value<std::string> as_word(text);
   const toml::node& node = is_word ? static_cast<const toml::node&>(as_word) : as_number;
@@ -139,44 +139,34 @@ void read_row(Log& log, std::size_t row) {
     log.fault(log.rows[row][log.rows[0].size()].where, "the row has more cells than the header. Remove them.");
 }
 
-std::string metres(long length) {
-  return number_text(static_cast<double>(length) / units_per_m);
+std::string metres(double length) {
+  return number_text(std::round(length * units_per_m) / units_per_m);
 }
 
-// The scene's lengths in 0.1 mm.
-struct Lengths {
-  std::vector<long> thickness;  // of each layer, from the top
-  long bottom = 0, height = 0, cell = 0;
-};
-
 // The largest cell that divides all layers, and the thinnest into four at least.
-Lengths lengths_of(Log& log) {
+void choose_cell(Log& log) {
   constexpr long fewest = 4, most = 40;
-  Lengths found;
-  std::vector<long> depths;
-  for (const Layer& layer : log.scene.strata.layers) depths.push_back(std::lround(layer.to_m * units_per_m));
-  for (std::size_t k = 1; k < depths.size(); ++k) found.thickness.push_back(depths[k] - depths[k - 1]);
-  found.bottom = depths.back();
-  found.height = depths.back() - depths.front();
-  const long thinnest = std::ranges::min(found.thickness);
-  long step = 0;
-  for (const long thickness : found.thickness) step = std::gcd(step, thickness);
+  const std::vector<Layer>& layers = log.scene.strata.layers;
+  long step = 0, thinnest = std::numeric_limits<long>::max();
+  for (std::size_t k = 1; k < layers.size(); ++k) {
+    const long thickness = std::lround((layers[k].to_m - layers[k - 1].to_m) * units_per_m);
+    step = std::gcd(step, thickness);
+    thinnest = std::min(thinnest, thickness);
+  }
   long parts = (fewest * step + thinnest - 1) / thinnest;
   while (step % parts != 0 && parts < step) ++parts;
-  found.cell = step / parts;
-  if (found.cell * most < thinnest || found.cell * fewest > thinnest) {
-    const double fourth_m = static_cast<double>(thinnest) / units_per_m / fewest;
+  const long cell = step / parts;
+  const double cell_m = log.scene.numerics.cell_m = static_cast<double>(cell) / units_per_m;
+  const double thinnest_m = static_cast<double>(thinnest) / units_per_m;
+  if (cell * most < thinnest || cell * fewest > thinnest)
     log.fault(log.cell(0, "top_m").where,
               "top_m: cells that divide all layers have {} m, and the thinnest layer {} m. Round depths to {} m.",
-              metres(found.cell), metres(thinnest), std::pow(10.0, std::floor(std::log10(fourth_m))));
-  }
-  return found;
+              metres(cell_m), metres(thinnest_m), std::pow(10.0, std::floor(std::log10(thinnest_m / fewest))));
 }
 
 // The index of an equal rock; a new one of a name that is taken becomes NAME_2, NAME_3, ...
 std::size_t take_up(std::vector<Rock>& rocks, Rock rock) {
-  const std::string name = rock.name.empty() ? "rock" : rock.name;
-  rock.name = name;
+  const std::string name = rock.name = rock.name.empty() ? "rock" : rock.name;
   for (int k = 2;; ++k) {
     const auto same = std::ranges::find(rocks, rock.name, &Rock::name);
     const auto index = static_cast<std::size_t>(same - rocks.begin());
@@ -186,50 +176,62 @@ std::size_t take_up(std::vector<Rock>& rocks, Rock rock) {
   }
 }
 
-// Tables of rocks and interfaces, and the layers upwards.
-std::string strata_text(Scene scene, const Lengths& at) {
+// Puts the layers upwards from y = 0, the log's bottom, whose depth (m) is returned.
+double stack(Scene& scene) {
+  auto& layers = scene.strata.layers;
+  const double bottom_m = layers.back().to_m;
   std::vector<Rock> rocks;
-  std::string text, layers, interfaces;
-  for (std::size_t k = 0; k < at.thickness.size(); ++k) scene.strata.layers[k].rock = take_up(rocks, scene.rocks[k]);
+  for (std::size_t k = 0; k + 1 < layers.size(); ++k) {
+    layers[k].rock = take_up(rocks, scene.rocks[k]);
+    layers[k].from_m = bottom_m - layers[k + 1].to_m;
+    layers[k].to_m = bottom_m - layers[k].to_m;
+  }
   scene.rocks = rocks;
+  layers.pop_back();
+  scene.laws.pop_back();
+  std::ranges::reverse(layers);
+  std::ranges::reverse(scene.laws);
+  scene.domain.height_m = layers.back().to_m;
+  return bottom_m;
+}
+
+// Tables of rocks and interfaces, and the layers.
+std::string strata_text(Scene& scene, double bottom_m) {
+  std::string text, layers, interfaces;
   const auto add = [&](const std::string& name, std::string_view keys, std::size_t k) {
     text += fmt::format("\n[{}]\n{}\n", name, fmt::join(lines_of(keys, scene, k), "\n"));
   };
-  for (std::size_t k = 0; k < rocks.size(); ++k) add("rock." + rocks[k].name, "rock.NAME.", k);
+  for (std::size_t k = 0; k < scene.rocks.size(); ++k) add("rock." + scene.rocks[k].name, "rock.NAME.", k);
   std::set laws{InterfaceLaw::Kind::perfect};
-  long depth = at.bottom;
-  for (std::size_t k = at.thickness.size(); k-- > 0; depth -= at.thickness[k]) {
+  for (std::size_t k = 0; k < scene.strata.layers.size(); ++k) {
     const std::string law = word_of(scene.laws[k].kind);
+    scene.laws[k].failure_length_m = 2.0 * scene.numerics.cell_m;  // a shorter one is not resolved
     if (laws.insert(scene.laws[k].kind).second) {
-      scene.laws[k].failure_length_m = 2.0 * static_cast<double>(at.cell) / units_per_m;  // shorter ones are unresolved
       text += "\n# open: all but the law";
       add("interface." + law, "interface.NAME.", k);
     }
-    if (k > 0) interfaces += fmt::format("{}\"{}\"", interfaces.empty() ? "" : ", ", law);
-    const Layer& layer = scene.strata.layers[k];
-    layers += fmt::format("  {{rock = \"{}\", thickness_m = {}, horizontal_Pa = {}}},    # up from {} m\n",
-                          rocks[layer.rock].name, metres(at.thickness[k]), number_text(layer.horizontal_Pa->number),
-                          metres(depth));
+    layers += fmt::format("  {{{}}},    # up from {} m\n", fmt::join(lines_of("strata.layers[].", scene, k), ", "),
+                          metres(bottom_m - scene.strata.layers[k].from_m));
+    if (k + 1 < scene.strata.layers.size()) interfaces += fmt::format("{}\"{}\"", k > 0 ? ", " : "", law);
   }
   return fmt::format("{}\n[strata]\nlayers = [    # upwards, with their depths\n{}]\ninterfaces = [{}]", text, layers,
                      interfaces);
 }
 
 // The scene: a fracture in the layer of least stress, the thickest of such, under a pressure that no layer withstands.
-std::string scene_text(Scene& scene, const Lengths& at) {
-  const auto stress = [&](std::size_t k) { return scene.strata.layers[k].horizontal_Pa->number; };
-  std::size_t least = 0, most = 0;
-  for (std::size_t k = 0; k < at.thickness.size(); ++k) {
-    if (std::pair(stress(k), -at.thickness[k]) < std::pair(stress(least), -at.thickness[least])) least = k;
-    if (stress(k) > stress(most)) most = k;
-  }
-  const auto below = at.thickness.begin() + static_cast<long>(least) + 1;
-  const long y = std::accumulate(below, at.thickness.end(), 0L), margin = at.thickness[least] / at.cell / 4 * at.cell;
-  const long low = y + margin, high = y + at.thickness[least] - margin;
-  const long width = 2 * at.cell * ((at.height + 4 * at.cell - 1) / (4 * at.cell));
-  const double half_m = static_cast<double>(high - low) / units_per_m / 2.0;
+std::string scene_text(Scene& scene) {
+  const double bottom_m = stack(scene), cell = scene.numerics.cell_m, height = scene.domain.height_m;
+  const auto stress = [](const Layer& layer) { return layer.horizontal_Pa->number; };
+  const auto [from, to, start] = [&] {
+    const Layer& layer = *std::ranges::min_element(
+        scene.strata.layers, {}, [&](const Layer& l) { return std::pair(stress(l), l.from_m - l.to_m); });
+    const double margin =
+        cell * std::floor((layer.to_m - layer.from_m) / cell / 4.0 + 0.1);  // a quarter, in whole cells
+    return std::tuple(layer.from_m + margin, layer.to_m - margin, stress(layer));
+  }();
+  const double x = cell * std::ceil(height / cell / 4.0 - 0.1),
+               most = stress(std::ranges::max(scene.strata.layers, {}, stress));
   const double toughest = std::ranges::max(scene.rocks, {}, &Rock::toughness_Pa_sqrt_m).toughness_Pa_sqrt_m;
-  const double middle_m = static_cast<double>(2 * at.bottom - at.height) / units_per_m / 2.0;
   return fmt::format(
       R"(# A well log. SI units, each in its key. "open": the log does not say; look at it.
 # y = 0 is the log's bottom: a depth d is at y = {bottom} - d.
@@ -260,14 +262,14 @@ cell_m = {cell}    # divides all layers
 far_cell_m = {far}
 
 [stop]
-inlet_Pa = {stop:.4e}    # open: the largest stress, and what starts the fracture in the toughest rock
+inlet_Pa = {stop:.4e}    # open: above the largest stress by 1 % and what starts the fracture in the toughest rock
 )",
-      fmt::arg("bottom", metres(at.bottom)), fmt::arg("width", metres(width)), fmt::arg("height", metres(at.height)),
-      fmt::arg("beyond", metres(20 * at.height)), fmt::arg("vertical", 25e3 * middle_m),
-      fmt::arg("strata", strata_text(scene, at)), fmt::arg("x", metres(width / 2)), fmt::arg("low", metres(low)),
-      fmt::arg("high", metres(high)), fmt::arg("cell", metres(at.cell)), fmt::arg("pair", metres(2 * at.cell)),
-      fmt::arg("start", number_text(stress(least))), fmt::arg("far", metres(8 * at.cell)),
-      fmt::arg("stop", stress(most) + toughest / std::sqrt(std::numbers::pi * half_m)));
+      fmt::arg("bottom", metres(bottom_m)), fmt::arg("width", metres(2.0 * x)), fmt::arg("height", metres(height)),
+      fmt::arg("beyond", metres(20.0 * height)), fmt::arg("vertical", 25e3 * (bottom_m - height / 2.0)),
+      fmt::arg("strata", strata_text(scene, bottom_m)), fmt::arg("x", metres(x)), fmt::arg("low", metres(from)),
+      fmt::arg("high", metres(to)), fmt::arg("cell", metres(cell)), fmt::arg("pair", metres(2.0 * cell)),
+      fmt::arg("start", number_text(start)), fmt::arg("far", metres(8.0 * cell)),
+      fmt::arg("stop", 1.01 * most + toughest / std::sqrt(std::numbers::pi / 2.0 * (to - from))));
 }
 
 }  // namespace
@@ -278,8 +280,8 @@ LogResult scene_of_log_text(std::string_view text, const std::string& file_name)
   const std::size_t end = log.faults.empty() ? log.rows.size() : 0;
   if (end > 0) check_header(log);
   for (std::size_t row = 1; row < end; ++row) read_row(log, row);
-  const Lengths lengths = log.faults.empty() ? lengths_of(log) : Lengths();
-  return log.faults.empty() ? LogResult{scene_text(log.scene, lengths), {}} : LogResult{"", as_lines(log.faults)};
+  if (log.faults.empty()) choose_cell(log);
+  return log.faults.empty() ? LogResult{scene_text(log.scene), {}} : LogResult{"", as_lines(log.faults)};
 }
 
 LogResult scene_of_log(const std::filesystem::path& file) {

@@ -72,7 +72,7 @@ TEST_CASE("A log is stacked upwards, with equal rocks once and a fracture in the
   CHECK(scene.fracture->path_m.back()[1] == 5.5);
   CHECK(scene.fluid.start_Pa == 2.0e6);
   CHECK(scene.in_situ.vertical_Pa.number == 25e3 * 106.0);
-  CHECK(*scene.stop.inlet_Pa == Approx(3.0e6 + 1.4e6 / std::sqrt(3.14159265 * 0.5)).epsilon(1e-4));
+  CHECK(*scene.stop.inlet_Pa == Approx(1.01 * 3.0e6 + 1.4e6 / std::sqrt(3.14159265 * 0.5)).epsilon(1e-4));
 }
 
 TEST_CASE("A rock that changes keeps its name with a number, and takes what it leaves out from the one above") {
@@ -96,14 +96,20 @@ TEST_CASE("Cells divide every layer, the thinnest into four at least") {
                                "3.01 m. Round depths to 0.1 m."});
 }
 
+TEST_CASE("Of layers of one stress the thickest has the fracture") {
+  const auto path = scene_of(layers({8.0, 4.0, 12.0, 4.0})).fracture->path_m;  // from the bottom 4 to 16 m
+  CHECK((path.front()[1] == 7.0 && path.back()[1] == 13.0));
+}
+
 TEST_CASE("All mistakes of a log are said in one pass, each with its place") {
   const auto said = errors_of(
       "top_m,rok,rock,youngs_modulus_Pa,poisson_ratio,horizontal_Pa,interface\n"
       "-5,,sa nd,30 GPa,0.5,2e6,soft\n"
       "# comment\n"
       "10,,shale,18e9,0.2,,wek\n"
-      "8,,,0,0.2,nan,,7\n"
-      "12,,,,,2e6\n");
+      "8,,,0,1e999,nan,,7\n"
+      "12,,,,,2e6\n"
+      "#13\n");
   const std::vector<std::string> wanted = {
       "well.csv:1:1: the column toughness_Pa_sqrt_m is missing. A log needs top_m, youngs_modulus_Pa, poisson_ratio, "
       "toughness_Pa_sqrt_m, horizontal_Pa.",
@@ -121,8 +127,9 @@ TEST_CASE("All mistakes of a log are said in one pass, each with its place") {
       "you mean weak?",
       "well.csv:5:1: top_m = 8 is not below the row above, at 10 m. Sort rows by depth.",
       "well.csv:5:5: youngs_modulus_Pa = 0.0 is outside (0, inf).",
-      "well.csv:5:11: horizontal_Pa = nan is not finite. Write a finite number.",
-      "well.csv:5:16: the row has more cells than the header. Remove them.",
+      "well.csv:5:7: poisson_ratio = 1e999 is not a number. Write digits as in 1.5e6, without a unit.",
+      "well.csv:5:13: horizontal_Pa = nan is not finite. Write a finite number.",
+      "well.csv:5:18: the row has more cells than the header. Remove them.",
       "well.csv:6:8: horizontal_Pa = 2e6: the last row holds the depth where the last layer ends, alone. Add it."};
   CHECK(said == wanted);
 }
