@@ -19,9 +19,9 @@ const std::string header = "top_m,rock,youngs_modulus_Pa,poisson_ratio,toughness
 const std::string three = header +
                           "# depths below ground\r\n"
                           "100, shale, 18e9, 0.28, 1.4e6, 3.0e6,\r\n"
-                          "106, sand, 30e9, 0.2, 1.2e6, 2.0e6, soft\r\n"
+                          "106, sand, 30e9, 0.2, 1.2e6, 2.0e6, perfect\r\n"
                           "\r\n"
-                          "108, shale, , , , 2.5e6, perfect\r\n"
+                          "108, shale, , , , 2.5e6, soft\r\n"
                           "112,,,,,,\r\n";
 
 Scene scene_of(const std::string& csv) {
@@ -64,8 +64,8 @@ TEST_CASE("A log is stacked upwards, with equal rocks once and a fracture in the
     CHECK(scene.rocks[layer.rock].youngs_modulus_Pa == modulus[k]);
   }
   CHECK(scene.rocks.size() == 2);
-  CHECK(scene.laws[scene.strata.interfaces[0].law].kind == InterfaceLaw::Kind::perfect);
-  CHECK(scene.laws[scene.strata.interfaces[1].law].kind == InterfaceLaw::Kind::soft);
+  CHECK(scene.laws[scene.strata.interfaces[0].law].kind == InterfaceLaw::Kind::soft);
+  CHECK(scene.laws[scene.strata.interfaces[1].law].kind == InterfaceLaw::Kind::perfect);
   CHECK(scene.domain.height_m == 12.0);
   CHECK(scene.numerics.cell_m == 0.5);  // a quarter of the thinnest layer
   CHECK(scene.fracture->path_m.front()[1] == 4.5);
