@@ -253,7 +253,7 @@ increment_m = {cell}
 crossing_increment_m = {pair}    # open: two cells, as failure_length_m
 
 [fluid]
-law = "uniform"    # open: or "reynolds", with viscosity_Pa_s and inlet = {{rate_m2_s = 1e-4}}
+law = "uniform"    # open: or "reynolds", with viscosity_Pa_s, inlet = {{rate_m2_s = 1e-4}} and stop.time_s
 inlet = {{start_Pa = {start}, rate_Pa_s = 0.1e6}}    # from the stress that closes the fracture
 
 [numerics]
