@@ -232,6 +232,19 @@ std::string scene_text(Scene& scene) {
   const double x = cell * std::ceil(height / cell / 4.0 - 0.1),
                most = stress(std::ranges::max(scene.strata.layers, {}, stress));
   const double toughest = std::ranges::max(scene.rocks, {}, &Rock::toughness_Pa_sqrt_m).toughness_Pa_sqrt_m;
+  std::string
+      fluid =
+          R"(law = "uniform"    # open: or "reynolds", with viscosity_Pa_s, inlet = {rate_m2_s = 1e-4} and stop.time_s)",
+      stop = fmt::format(
+          "inlet_Pa = {:.4e}    # open: above the largest stress by 1 % and what starts the fracture in the toughest "
+          "rock",
+          1.01 * most + toughest / std::sqrt(std::numbers::pi / 2.0 * (to - from)));
+  fluid += fmt::format("\ninlet = {{start_Pa = {}, rate_Pa_s = 0.1e6}}    # from the stress that closes the fracture",
+                       number_text(start));
+  if (scene.leaks()) {  // which needs a law that conserves the fluid
+    fluid = "law = \"reynolds\"\nviscosity_Pa_s = 0.1    # open\ninlet = {rate_m2_s = 1e-4}    # open";
+    stop = "time_s = 100.0    # open";
+  }
   return fmt::format(
       R"(# A well log. SI units, each in its key. "open": the log does not say; look at it.
 # y = 0 is the log's bottom: a depth d is at y = {bottom} - d.
@@ -253,8 +266,7 @@ increment_m = {cell}
 crossing_increment_m = {pair}    # open: two cells, as failure_length_m
 
 [fluid]
-law = "uniform"    # open: or "reynolds", with viscosity_Pa_s, inlet = {{rate_m2_s = 1e-4}} and stop.time_s
-inlet = {{start_Pa = {start}, rate_Pa_s = 0.1e6}}    # from the stress that closes the fracture
+{fluid}
 
 [numerics]
 mechanics = "quasistatic"
@@ -262,14 +274,13 @@ cell_m = {cell}    # divides all layers
 far_cell_m = {far}
 
 [stop]
-inlet_Pa = {stop:.4e}    # open: above the largest stress by 1 % and what starts the fracture in the toughest rock
+{stop}
 )",
       fmt::arg("bottom", metres(bottom_m)), fmt::arg("width", metres(2.0 * x)), fmt::arg("height", metres(height)),
       fmt::arg("beyond", metres(20.0 * height)), fmt::arg("vertical", 25e3 * (bottom_m - height / 2.0)),
       fmt::arg("strata", strata_text(scene, bottom_m)), fmt::arg("x", metres(x)), fmt::arg("low", metres(from)),
       fmt::arg("high", metres(to)), fmt::arg("cell", metres(cell)), fmt::arg("pair", metres(2.0 * cell)),
-      fmt::arg("start", number_text(start)), fmt::arg("far", metres(8.0 * cell)),
-      fmt::arg("stop", 1.01 * most + toughest / std::sqrt(std::numbers::pi / 2.0 * (to - from))));
+      fmt::arg("far", metres(8.0 * cell)), fmt::arg("fluid", fluid), fmt::arg("stop", stop));
 }
 
 }  // namespace

@@ -96,6 +96,16 @@ TEST_CASE("Cells divide every layer, the thinnest into four at least") {
                                "3.01 m. Round depths to 0.1 m."});
 }
 
+TEST_CASE("A log with leak-off is fed by a law that conserves the fluid") {
+  std::string csv = layers({6.0, 4.0});
+  csv = "leakoff_m_sqrt_s," + csv;
+  for (std::size_t at = csv.find("\n1"); at != csv.npos; at = csv.find("\n1", at + 2)) csv.insert(at + 1, "2e-5,");
+  csv.replace(csv.rfind("2e-5,"), 4, "");  // the bottom
+  const Scene scene = scene_of(csv);
+  CHECK((scene.rocks.size() == 1 && scene.rocks[0].leakoff_m_sqrt_s == 2e-5));
+  CHECK((scene.fluid.law == Fluid::Law::reynolds && scene.stop.time_s && !scene.stop.inlet_Pa));
+}
+
 TEST_CASE("Of layers of one stress the thickest has the fracture") {
   const auto path = scene_of(layers({8.0, 4.0, 12.0, 4.0})).fracture->path_m;  // from the bottom 4 to 16 m
   CHECK((path.front()[1] == 7.0 && path.back()[1] == 13.0));
@@ -114,7 +124,8 @@ TEST_CASE("All mistakes of a log are said in one pass, each with its place") {
       "well.csv:1:1: the column toughness_Pa_sqrt_m is missing. A log needs top_m, youngs_modulus_Pa, poisson_ratio, "
       "toughness_Pa_sqrt_m, horizontal_Pa.",
       "well.csv:1:7: rok is no column of a well log, which has top_m, rock, horizontal_Pa, interface, "
-      "youngs_modulus_Pa, poisson_ratio, density_kg_m3, toughness_Pa_sqrt_m, with commas between. Did you mean rock?",
+      "youngs_modulus_Pa, poisson_ratio, density_kg_m3, toughness_Pa_sqrt_m, leakoff_m_sqrt_s, with commas between. "
+      "Did you mean rock?",
       "well.csv:2:1: top_m = -5.0 is outside [0, 100000]. Depths grow downwards from the ground.",
       "well.csv:2:5: rock = sa nd: a name is made of letters, digits, _ and -, at most 60.",
       "well.csv:2:11: youngs_modulus_Pa = 30 GPa is not a number. Write digits as in 1.5e6, without a unit.",
