@@ -18,6 +18,7 @@
 #include "scene/keys.hpp"
 #include "scene/messages.hpp"
 #include "scene/toml_reader.hpp"
+#include "scene/well_log.hpp"
 
 namespace {
 
@@ -59,6 +60,12 @@ int resolve(const Arguments& arguments) {
   return report(read.errors);
 }
 
+int log(const Arguments& arguments) {
+  const strata::LogResult result = strata::scene_of_log(arguments.file);
+  fmt::print("{}", result.toml);
+  return report(result.errors);
+}
+
 int list_variants(const Arguments& arguments) {
   const strata::VariantList list = strata::list_variants(arguments.file);
   for (const std::string& name : list.names) fmt::print("{}\n", name);
@@ -94,6 +101,8 @@ int parse_and_do(int argc, char** argv) {
         ->check(CLI::NonNegativeNumber);
     command->add_flag("--quiet", arguments.options.quiet, "no progress on the terminal");
   }
+  CLI::App* log_command = app.add_subcommand("log", "a scene of a well log, to be looked over");
+  log_command->add_option("csv", arguments.file, strata::log_help())->required();
   CLI::App* keys_command = app.add_subcommand("keys", "all keys of a scene as a table in Markdown");
   try {
     app.parse(argc, argv);
@@ -107,6 +116,7 @@ int parse_and_do(int argc, char** argv) {
   if (check_command->parsed()) return report(strata::check(arguments.files));
   if (resolve_command->parsed()) return resolve(arguments);
   if (variants_command->parsed()) return list_variants(arguments);
+  if (log_command->parsed()) return log(arguments);
   if (resume_command->parsed()) return resume(arguments);
   if (keys_command->parsed()) fmt::print("{}", strata::keys_as_markdown());
   return done;

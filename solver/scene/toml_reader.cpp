@@ -15,23 +15,6 @@
 namespace strata {
 namespace {
 
-// A file's text; why there is none goes to `errors`.
-std::string text_of_file(const std::filesystem::path& file, std::vector<std::string>& errors) {
-  std::error_code code;
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  const char* error = !std::filesystem::exists(file, code)        ? "there is no such file. Check the path."
-                      : std::filesystem::is_directory(file, code) ? "this is a folder. Give the path of a scene file."
-                      : !in                                       ? "the file cannot be read. Check its permissions."
-                                                                  : nullptr;
-  if (error != nullptr) {
-    errors.push_back(shortened(file.string(), 1000) + ": " + error);
-    return {};
-  }
-  text << in.rdbuf();
-  return text.str();
-}
-
 toml::table parse(std::string_view text) {
   constexpr int most_dots = 1000;  // the parser goes from a key's name into the next, and overflows at several 10,000
   toml::source_position at{1, 1};
@@ -199,6 +182,22 @@ ReadResult read_scene_text(std::string_view text, const std::string& file_name, 
   start_at_symmetry_line(scene);
   scene.resolved_toml = resolved_toml(scene, claims_text(parsed.table));
   return {std::move(scene), {}};
+}
+
+std::string text_of_file(const std::filesystem::path& file, std::vector<std::string>& errors) {
+  std::error_code code;
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  const char* error = !std::filesystem::exists(file, code)        ? "there is no such file. Check the path."
+                      : std::filesystem::is_directory(file, code) ? "this is a folder. Give the path of a file."
+                      : !in                                       ? "the file cannot be read. Check its permissions."
+                                                                  : nullptr;
+  if (error != nullptr) {
+    errors.push_back(shortened(file.string(), 1000) + ": " + error);
+    return {};
+  }
+  text << in.rdbuf();
+  return text.str();
 }
 
 ReadResult read_scene(const std::filesystem::path& file, const std::string& variant,

@@ -24,6 +24,9 @@ struct VariantList {
   std::vector<std::string> errors;
 };
 
+/// A file's text; why there is none goes to `errors`.
+std::string text_of_file(const std::filesystem::path& file, std::vector<std::string>& errors);
+
 /// Reads a scene file and applies a variant, then settings. variant: name of one of its variants, "" for none; set:
 /// texts "key.path=value" whose value is TOML or a bare word, the later ones above the earlier.
 ReadResult read_scene(const std::filesystem::path& file, const std::string& variant,
