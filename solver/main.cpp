@@ -34,7 +34,7 @@ struct Arguments {
 
 int report(const std::vector<std::string>& errors) {
   constexpr std::size_t longest = 2000;  // of a path that no system takes, or of an argument
-  for (const std::string& error : errors) fmt::print(stderr, "{}\n", strata::shortened(error, longest));
+  for (const std::string& error : errors) strata::tell("{}\n", strata::shortened(error, longest));
   return errors.empty() ? done : bad_input;
 }
 
@@ -136,15 +136,14 @@ int main(int argc, char** argv) {
   try {
     return parse_and_do(argc, argv);
   } catch (const strata::OutputFailure& failure) {
-    fmt::print(stderr, "{}\n", failure.what());
+    strata::tell("{}\n", failure.what());
     return bad_input;
   } catch (const std::bad_alloc&) {
-    fmt::print(
-        stderr,
+    strata::tell(
         "strata: out of memory: the machine, or a limit set for this process, gives no more. Use larger cells.\n");
     return bad_input;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "strata: a bug: {}\n", error.what());
+    strata::tell("strata: a bug: {}\n", error.what());
     return bug;
   }
 }

@@ -26,6 +26,7 @@
 #include "quasistatic/resting_rock.hpp"
 #include "scene/derived.hpp"
 #include "scene/inlet.hpp"
+#include "scene/messages.hpp"
 #include "scene/toml_reader.hpp"
 
 namespace strata {
@@ -264,16 +265,16 @@ int run_to_end(Run run) {
       remove_file(run.folder.all_fields());
     }
   } catch (const OutputFailure& failure) {
-    fmt::print(stderr,
-               "{}.\nThe run ends at step {}, t = {:.6g} s. What was written before is whole: once its folder is there "
-               "and can be written, {}.\n",
-               failure.what(), run.state.step, run.state.time, resume_text(run));
+    tell(
+        "{}.\nThe run ends at step {}, t = {:.6g} s. What was written before is whole: once its folder is there "
+        "and can be written, {}.\n",
+        failure.what(), run.state.step, run.state.time, resume_text(run));
     return bad_input;
   }
   if (!run.options.quiet) {
-    fmt::print(stderr, "{}", closing_lines(run.scene, run.state, record, run.folder.path));
+    tell("{}", closing_lines(run.scene, run.state, record, run.folder.path));
   } else if (exit != done) {
-    fmt::print(stderr, "{}{}\n", exit == interrupted ? "interrupted; " : "", record.reason);
+    tell("{}{}\n", exit == interrupted ? "interrupted; " : "", record.reason);
   }
   return exit;
 }
@@ -325,8 +326,7 @@ int run_scene(const Scene& scene, const RunOptions& options) {
   const RunFolder folder{options.out};
   make_folder(folder.path);
   const Descriptor lock = lock_folder(folder.path);
-  if (!options.quiet)
-    fmt::print(stderr, "{:.2g} points, {:.2g} GB by estimate\n", points_of(scene), 1e-9 * memory_need(scene));
+  if (!options.quiet) tell("{:.2g} points, {:.2g} GB by estimate\n", points_of(scene), 1e-9 * memory_need(scene));
   return run_anew(scene, options, folder, options.replace, start);
 }
 
@@ -335,19 +335,18 @@ int resume_run(const std::filesystem::path& dir, const RunOptions& options) {
   const RunFolder folder{dir};
   const Descriptor lock = lock_folder(dir);
   const ReadResult read = read_scene(folder.scene(), "", {});
-  for (const std::string& error : read.errors) fmt::print(stderr, "{}\n", error);
+  for (const std::string& error : read.errors) tell("{}\n", error);
   if (!read.scene) return bad_input;
   const Scene& scene = *read.scene;
   require_unchanged_scene(folder, scene);
   if (std::filesystem::exists(folder.summary())) {
     remove_file(folder.all_fields());  // of a process that was killed after its last word
-    if (!options.quiet) fmt::print(stderr, "{}\n", how_it_ended(folder));
+    if (!options.quiet) tell("{}\n", how_it_ended(folder));
     return done;
   }
   const std::string begun_by = made_with(folder).version;
   if (!begun_by.empty() && begun_by != version()) {
-    fmt::print(stderr, "{}: begun by strata {}, goes on with {}, whose digits may differ\n", dir.string(), begun_by,
-               version());
+    tell("{}: begun by strata {}, goes on with {}, whose digits may differ\n", dir.string(), begun_by, version());
   }
   set_up(scene, options);
   std::optional<Run> run;
@@ -358,7 +357,7 @@ int resume_run(const std::filesystem::path& dir, const RunOptions& options) {
   } catch (const OutputFailure&) {
     throw;
   } catch (const std::runtime_error& error) {  // nothing to go on from, or fields are missing
-    fmt::print(stderr, "{} The run starts anew.\n", error.what());
+    tell("{} The run starts anew.\n", error.what());
     return run_anew(scene, options, folder, true, start);
   }
   return run_to_end(std::move(*run));

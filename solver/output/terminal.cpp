@@ -13,6 +13,7 @@
 
 #include "output/history.hpp"
 #include "output/suspect.hpp"
+#include "scene/messages.hpp"
 
 namespace strata {
 
@@ -120,12 +121,12 @@ void Progress::show(const Scene& scene, const State& state) {
   const double left = done > 0.0 ? elapsed * (1.0 - fraction) / done : std::numeric_limits<double>::quiet_NaN();
   const std::string text = progress_text(state, fraction, left);
   if (!terminal_) {
-    fmt::print(stderr, "{}\n", text);
+    tell("{}\n", text);
     return;
   }
   constexpr int width = 24;
   const int full = static_cast<int>(width * fraction);
-  fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {}\x1b[K", "", full, "", width - full, text);
+  tell("\r[{:#<{}}{:.<{}}] {}\x1b[K", "", full, "", width - full, text);
   std::fflush(stderr);
   drawn_ = true;
 }

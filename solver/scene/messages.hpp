@@ -2,6 +2,9 @@
 // Nothing here throws but std::bad_alloc.
 #pragma once
 
+#include <fmt/format.h>
+
+#include <cstdio>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,5 +48,12 @@ struct Fault {
 /// The faults as lines "file:line:column: what", in the order of the input and each once. A text of more than 1000
 /// bytes is shortened in the middle, control characters are written out.
 std::vector<std::string> as_lines(std::vector<Fault> faults);
+
+/// Writes to the standard error output; where that takes nothing more (a full disc), nobody is told and the run goes
+/// on.
+template <class... Values>
+void tell(fmt::format_string<const Values&...> text, const Values&... values) {
+  std::fputs(fmt::format(text, values...).c_str(), stderr);
+}
 
 }  // namespace strata

@@ -225,3 +225,13 @@ def test_two_hundred_kills_and_every_run_the_same() -> None:
         assert scene["kills"] >= 30 and scene["problems"] == []
         assert scene["identical"] == scene["trials"] > 10
         assert sum(scene[key] for key in ("from_checkpoint", "from_start", "before_folder", "after_end")) == scene["kills"]
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full")
+def test_an_error_output_that_takes_nothing_changes_no_exit_status(tmp_path: Path) -> None:
+    """A message that cannot be written is lost, and that is all: a run ends as it would, and is whole."""
+    with open("/dev/full", "w") as full:
+        refused = subprocess.run([solver(), "check", "nowhere.toml"], stderr=full, check=False)
+        done = subprocess.run(run_words(LONG, tmp_path / "X", 60.0), stderr=full, check=False)
+    assert (refused.returncode, done.returncode) == (2, 0)
+    assert torn(tmp_path / "X") == [] and summary_of(tmp_path / "X")["status"] == "completed"
