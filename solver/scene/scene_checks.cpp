@@ -19,7 +19,7 @@ bool is_whole(double value) {
 
 // Whether the cells divide the block.
 bool check_cells(Reading& reading) {
-  const auto& [width_m, height_m, bottom, sides, top, beyond_m] = reading.scene.domain;
+  const double width_m = reading.scene.domain.width_m, height_m = reading.scene.domain.height_m;
   const double cell_m = reading.scene.numerics.cell_m, columns = width_m / cell_m, rows = height_m / cell_m;
   if (is_whole(columns) && is_whole(rows) && columns > 0.5 && rows > 0.5) return true;
   const auto fit = [&](double n) {

@@ -159,7 +159,7 @@ def test_a_study_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFix
     settings = [word for one in ("stop.tip_y_m=9", "fracture.increment_m=2.0", "fluid.law=uniform") for word in ("--set", one)]
     arguments = ["exp5", "--variants", "near", "--cells", "5,4,2.5", *settings, "--heights", "8", "--out", str(tmp_path)]
     assert main(arguments) == 3
-    assert "42.5 m, neither on a grid line nor at mid-cell of cells of 4.0 m" in capsys.readouterr().out
+    assert "42.5 m, neither on a grid line nor at mid-cell of cells of 4 m" in capsys.readouterr().out
     study = json.loads((tmp_path / "exp5_parallel_interface" / "refine.json").read_text())["studies"][0]
     assert [one["status"] for one in study["levels"]] == ["completed", "refused", "completed"] and study["increment_m"] == 2.0
     row = next(row for row in study["rows"] if row["name"] == "start_Pa")
