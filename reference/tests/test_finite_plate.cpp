@@ -25,7 +25,6 @@ Block study_block(double a) {
 }  // namespace
 
 TEST_CASE("the study's block, tractions on all edges") {
-  const Rock stiff;
   CHECK(BlockCrack(study_block(5)).F() == near(1.01805, 1e-5));
   CHECK(BlockCrack(study_block(10)).F() == near(1.07076, 1e-5));
   CHECK(BlockCrack(study_block(20)).F() == near(1.26505, 1e-5));

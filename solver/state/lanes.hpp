@@ -28,8 +28,7 @@ typedef double UnalignedLane __attribute__((vector_size(8 * most_lanes), aligned
 // Lanes moved up by some, or down by -by; zeros where none comes from.
 template <int by, std::size_t... l>
 inline Lane moved_up(const Lane& value, std::index_sequence<l...>) {
-  constexpr int W = most_lanes;
-  constexpr auto from = [](int k) { return k >= 0 && k < W ? k : W; };
+  constexpr auto from = [](int k) { return k >= 0 && k < most_lanes ? k : most_lanes; };
   return __builtin_shufflevector(value, Lane{}, from(static_cast<int>(l) - by)...);
 }
 using EachLane = std::make_index_sequence<most_lanes>;
