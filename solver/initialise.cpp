@@ -66,10 +66,9 @@ void make_fracture(const Scene& scene, State& state) {
 Surface make_interface(const Scene& scene, const Grid& grid, const InterfacePlace& place, int bit) {
   const bool along_x = scene.strata.along == Strata::Along::y;
   const std::vector<double>& knots = along_x ? grid.x_knots : grid.y_knots;
-  const Stretch rock = along_x ? scene.domain.along_x() : scene.domain.along_y();
-  const double from = place.from_m.value_or(rock.from), to = place.to_m.value_or(rock.to);
+  const auto [from, to] = scene.held_by(place);
   std::vector<Vec2> path;
-  const auto add = [&](double s) {
+  const auto add = [&, from = from, to = to](double s) {
     s = std::clamp(s, from, to);
     const Vec2 x = along_x ? Vec2{s, place.at_m} : Vec2{place.at_m, s};
     if (path.empty() || (x - path.back()).norm() > 1e-6 * grid.h) path.push_back(x);
@@ -94,9 +93,9 @@ void make_interfaces(const Scene& scene, State& state) {
       const bool along_x = scene.strata.along == Strata::Along::y;
       const auto column_of = [&](double x) { return along_x ? state.grid.column_at(x) : state.grid.row_at(x); };
       // An end stands on a grid line, whose node stays whole as that of a fracture's tip does.
-      const Stretch rock = along_x ? scene.domain.along_x() : scene.domain.along_y();
-      const int low = place.from_m > rock.from ? column_of(*place.from_m) + 1 : 0,
-                high = place.to_m && *place.to_m < rock.to ? column_of(*place.to_m) - 1 : state.grid.nodes();
+      const Stretch rock = scene.along_interfaces(), held = scene.held_by(place);
+      const int low = held.from > rock.from ? column_of(held.from) + 1 : 0,
+                high = held.to < rock.to ? column_of(held.to) - 1 : state.grid.nodes();
       s.column = std::clamp(column_of(along_x ? s.x.x() : s.x.y()), low, high);
       s.split = scene.laws[place.law].apart_at_start();
     }

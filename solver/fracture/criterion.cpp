@@ -22,13 +22,13 @@ bool apart_at(const Surface& surface, const Vec2& x, double h) {
 // Distance (m) from a tip to the nearest real interface ahead of it (sign 1) or behind (-1); one it stands on is both.
 double to_interface(const Scene& scene, const State& state, const Tip& tip, double sign) {
   const Vec2 x = tip_position(state, tip);
-  const double at = stacking(scene, x), along = x.x() + x.y() - at;
+  const double at = stacking(scene, x);
   const double way = stacking(scene, tip_direction(state.fracture(), tip.at_back));
   double nearest = HUGE_VAL;
   for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
     const double off = scene.strata.interfaces[k].at_m - at;
-    const bool beside = std::abs(way) < 1e-6, on = std::abs(off) < ahead_cells * state.grid.h;
-    if (scene.changes_at(k, along) && (beside || on || sign * off * way > 0.0))
+    const bool level = std::abs(way) < 1e-6, on = std::abs(off) < ahead_cells * state.grid.h;
+    if (scene.changes_at(k, beside(scene, x)) && (level || on || sign * off * way > 0.0))
       nearest = std::min(nearest, std::abs(off));
   }
   return nearest;

@@ -7,7 +7,7 @@
 namespace strata {
 
 /// What decides about a tip: with growth = "energy" always energy, with crossing = "J" always J. Else, of interfaces
-/// with a law or another rock beyond:
+/// with a law or another stiffness beyond:
 ///   one whose faces are apart at the tip itself: energy, since a tip there has no length in the rock ahead;
 ///   one ahead, nearer than the crossing increment: energy;
 ///   one behind whose faces are apart, nearer than rings need: K or, within three cells, where K is some per cent off
@@ -16,9 +16,12 @@ namespace strata {
 /// In place of J, K where the in-situ stress jumps within the tip's rings. Throws nothing.
 Criterion criterion_of(const Scene& scene, const State& state, const Tip& tip);
 
-/// Coordinate of a place (m) along which layers are stacked. Throws nothing.
+/// Coordinate of a place (m) along which layers are stacked, and that along interfaces. Throws nothing.
 inline double stacking(const Scene& scene, const Vec2& x) {
   return scene.stacking(x.x(), x.y());
+}
+inline double beside(const Scene& scene, const Vec2& x) {
+  return scene.beside(x.x(), x.y());
 }
 
 /// How far a tip grows at once (m): by what decides about it. Throws nothing.

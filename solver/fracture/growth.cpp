@@ -35,7 +35,7 @@ double increment_to_interface(const Scene& scene, const State& state, const Vec2
     if (std::abs(rate) < 1e-6) continue;
     const double to_it = distance / rate;
     const Vec2 met = tip + to_it * direction;
-    const bool changes = scene.changes_at(k, met.x() + met.y() - stacking(scene, met));
+    const bool changes = scene.changes_at(k, beside(scene, met));
     if (!changes && before.rock == beyond.rock && before.has_stress_of(beyond)) continue;
     if (to_it <= 0.0 || to_it >= length) continue;
     const bool apart = apart_at(scene, state, k, met);

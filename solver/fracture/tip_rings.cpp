@@ -73,7 +73,7 @@ void keep_off_interfaces(const Scene& scene, const State& state, const Vec2& at,
   }
   for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
     const InterfacePlace& place = scene.strata.interfaces[k];
-    if (!scene.changes_at(k, at.x() + at.y() - stacking(scene, at))) continue;
+    if (!scene.changes_at(k, beside(scene, at))) continue;
     const double distance = std::abs(stacking(scene, at) - place.at_m);
     room.keep_off(distance);
     if (scene.stiffness_changes_at(k)) room.note(distance, Obstacle::rock_border, trusted_cells_at_interface);

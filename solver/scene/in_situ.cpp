@@ -49,7 +49,7 @@ const std::optional<Field>& own_stress(const Scene& scene, const Layer& layer) {
   return scene.strata.along == Strata::Along::y ? layer.horizontal_Pa : layer.vertical_Pa;
 }
 
-// A field that is looked at for equilibrium: where its values are to be found, and its key.
+// A key of the scene and what it was given.
 struct Looked {
   std::string key;
   const Field& field;
@@ -126,10 +126,11 @@ std::vector<InSituStress> in_situ_stress(const Scene& scene, const std::vector<P
     const auto& own = own_stress(scene, scene.strata.layers[k]);
     if (!own) continue;
     const std::vector<double> values = values_of(*own, at);
+    const char own_weighs = scene.in_situ.weight && !has_Y(*own) ? 1 : 0;
     for (std::size_t q = 0; q < places.size(); ++q) {
       if (layer_at(scene, places[q]) != k) continue;
       (upwards ? horizontal : vertical)[q] = values[q];
-      if (!upwards) weighs[q] = scene.in_situ.weight && !has_Y(*own) ? 1 : 0;
+      if (!upwards) weighs[q] = own_weighs;
     }
   }
   std::vector<InSituStress> out;
@@ -146,10 +147,9 @@ double largest_in_situ(const Scene& scene) {
     const double inside = 1e-9 * (layer.to_m - layer.from_m);
     for (const double along : {layer.from_m, layer.to_m - inside}) {
       for (const double share : {0.0, 1.0}) {
-        if (scene.strata.along == Strata::Along::y)
-          ends.push_back({share * scene.domain.width_m, along});
-        else
-          ends.push_back({along, share * scene.domain.height_m});
+        const bool upwards = scene.strata.along == Strata::Along::y;
+        ends.push_back(upwards ? Point{share * scene.domain.width_m, along}
+                               : Point{along, share * scene.domain.height_m});
       }
     }
   }

@@ -305,7 +305,15 @@ struct Scene {
     return std::ranges::any_of(rocks, [](const Rock& rock) { return rock.leakoff_m_sqrt_s > 0.0; });
   }
 
-  // Coordinate of a place (m) along which layers are stacked.
+  // From edge to edge of the rock along interfaces, and where the law of one holds (m).
+  Stretch along_interfaces() const { return strata.along == Strata::Along::y ? domain.along_x() : domain.along_y(); }
+  Stretch held_by(const InterfacePlace& place) const {
+    const Stretch rock = along_interfaces();
+    return {place.from_m.value_or(rock.from), place.to_m.value_or(rock.to)};
+  }
+
+  // Coordinates of a place (m): along interfaces, and that along which layers are stacked.
+  double beside(double x, double y) const { return strata.along == Strata::Along::y ? x : y; }
   double stacking(double x, double y) const { return strata.along == Strata::Along::y ? y : x; }
   bool operator==(const Scene&) const = default;
 };

@@ -71,11 +71,11 @@ void check_interfaces(Reading& reading) {
 void check_ends(Reading& reading) {
   const Scene& scene = reading.scene;
   const double h = scene.numerics.cell_m;
-  const Stretch rock = scene.strata.along == Strata::Along::y ? scene.domain.along_x() : scene.domain.along_y();
+  const Stretch rock = scene.along_interfaces();
   for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
-    const InterfacePlace& place = scene.strata.interfaces[k];
+    const Stretch held = scene.held_by(scene.strata.interfaces[k]);
+    const double from = held.from, to = held.to;
     const std::string path = fmt::format("strata.interfaces[{}].", k);
-    const double from = place.from_m.value_or(rock.from), to = place.to_m.value_or(rock.to);
     for (const auto& [key, end] : {std::pair{path + "from_m", from}, std::pair{path + "to_m", to}}) {
       reading.refuse_if(end < rock.from || end > rock.to, key, "is outside the rock, from {} to {} m.", rock.from + 0.0,
                         rock.to);

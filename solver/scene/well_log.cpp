@@ -48,7 +48,8 @@ struct Cell {
 };
 
 // A log while it is read. The scene's rocks, laws and layers are those of the rows, from the top.
-struct Log : Reading {
+struct Log {
+  Reading reading;
   std::vector<std::vector<Cell>> rows;  // the header first; the last one is the bottom
 
   // The cell of a row in a column; empty where there is none.
@@ -72,21 +73,21 @@ void split_rows(Log& log, std::string_view text, const std::string& file) {
       where.column += static_cast<unsigned>(cell.size()) + 1;
     }
   }
-  if (log.rows.size() < 3) log.fault({file, 0, 1, 1}, "this is no well log: {}", log_help());
+  if (log.rows.size() < 3) log.reading.fault({file, 0, 1, 1}, "this is no well log: {}", log_help());
 }
 
 void check_header(Log& log) {
   const std::vector<std::string> known = column_names();
   for (const auto& [name, where] : log.rows[0]) {
     if (column(name) == nullptr)
-      log.fault(where, "{} is no column of a well log, which has {}, with commas between.{}", name,
-                fmt::format("{}", fmt::join(known, ", ")), did_you_mean(name, known));
+      log.reading.fault(where, "{} is no column of a well log, which has {}, with commas between.{}", name,
+                        fmt::format("{}", fmt::join(known, ", ")), did_you_mean(name, known));
     if (log.cell(0, name).where.column != where.column)
-      log.fault(where, "the column {} is there twice. Remove one.", name);
+      log.reading.fault(where, "the column {} is there twice. Remove one.", name);
   }
   for (const std::string& name : split(needed, ", "))
     if (log.cell(0, name).text != name)
-      log.fault(log.rows[0][0].where, "the column {} is missing. A log needs {}.", name, needed);
+      log.reading.fault(log.rows[0][0].where, "the column {} is missing. A log needs {}.", name, needed);
 }
 
 // Writes a cell to its member of the scene.
@@ -97,16 +98,16 @@ void read_cell(Log& log, std::size_t row, const std::string& name) {
   double number = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (!is_word && (error != std::errc() || end != text.data() + text.size()))
-    return log.fault(where, "{} = {} is not a number. Write digits as in 1.5e6, without a unit.", name, text);
+    return log.reading.fault(where, "{} = {} is not a number. Write digits as in 1.5e6, without a unit.", name, text);
   const toml::value<double> as_number(number);
   const toml::value<std::string> as_word(text);
   const toml::node& node = is_word ? static_cast<const toml::node&>(as_word) : as_number;
-  key.member.read({name, key, node, where, log.faults}, log.scene, row - 1);
+  key.member.read({name, key, node, where, log.reading.faults}, log.reading.scene, row - 1);
 }
 
 // A row of the log. What a layer leaves out of its rock is that of the last row above with the rock's name.
 void read_row(Log& log, std::size_t row) {
-  Scene& scene = log.scene;
+  Scene& scene = log.reading.scene;
   const Cell named = log.cell(row, "rock"), top = log.cell(row, "top_m");
   const auto above = std::ranges::find(scene.rocks.rbegin(), scene.rocks.rend(), named.text, &Rock::name);
   const bool is_bottom = row + 1 == log.rows.size(), is_known = !named.text.empty() && above != scene.rocks.rend();
@@ -119,24 +120,28 @@ void read_row(Log& log, std::size_t row) {
     const auto [text, where] = log.cell(row, name);
     const bool from_above = is_known && column(name)->path.starts_with("rock."), is_depth = name == "top_m";
     if (!text.empty() && is_bottom && !is_depth) {
-      log.fault(where, "{} = {}: the last row holds the depth where the last layer ends, alone. Add it.", name, text);
+      log.reading.fault(where, "{} = {}: the last row holds the depth where the last layer ends, alone. Add it.", name,
+                        text);
       break;
     } else if (!text.empty()) {
       read_cell(log, row, name);
     } else if (std::ranges::count(must, name) > 0 && (is_depth || !is_bottom) && !from_above) {
-      log.fault(where, "{} is missing. Give it{}.", name, is_depth ? "" : ", or the name of a rock above that has it");
+      log.reading.fault(where, "{} is missing. Give it{}.", name,
+                        is_depth ? "" : ", or the name of a rock above that has it");
     }
   }
   const double above_m = row > 1 ? scene.strata.layers[row - 2].to_m : -std::numeric_limits<double>::infinity();
   if (scene.strata.layers.back().to_m < above_m + 1.0 / units_per_m)
-    log.fault(top.where, "top_m = {} is not below the row above, at {} m. Sort rows by depth.", top.text, above_m);
+    log.reading.fault(top.where, "top_m = {} is not below the row above, at {} m. Sort rows by depth.", top.text,
+                      above_m);
   constexpr std::size_t longest = 60;  // of 64 in a scene, with room for a number
   if (!named.text.empty() && (!is_plain_name(named.text) || named.text.size() > longest))
-    log.fault(named.where, "rock = {}: a name is made of letters, digits, _ and -, at most {}.", named.text, longest);
+    log.reading.fault(named.where, "rock = {}: a name is made of letters, digits, _ and -, at most {}.", named.text,
+                      longest);
   if (row == 1 && scene.laws[0].kind != InterfaceLaw::Kind::perfect)
-    log.fault(log.cell(row, "interface").where, "interface: no layer lies above the first. Leave it out.");
+    log.reading.fault(log.cell(row, "interface").where, "interface: no layer lies above the first. Leave it out.");
   if (log.rows[row].size() > log.rows[0].size())
-    log.fault(log.rows[row][log.rows[0].size()].where, "the row has more cells than the header. Remove them.");
+    log.reading.fault(log.rows[row][log.rows[0].size()].where, "the row has more cells than the header. Remove them.");
 }
 
 std::string metres(double length) {
@@ -146,7 +151,7 @@ std::string metres(double length) {
 // The largest cell that divides all layers, and the thinnest into four at least.
 void choose_cell(Log& log) {
   constexpr long fewest = 4, most = 40;
-  const std::vector<Layer>& layers = log.scene.strata.layers;
+  const std::vector<Layer>& layers = log.reading.scene.strata.layers;
   long step = 0, thinnest = std::numeric_limits<long>::max();
   for (std::size_t k = 1; k < layers.size(); ++k) {
     const long thickness = std::lround((layers[k].to_m - layers[k - 1].to_m) * units_per_m);
@@ -156,12 +161,13 @@ void choose_cell(Log& log) {
   long parts = (fewest * step + thinnest - 1) / thinnest;
   while (step % parts != 0 && parts < step) ++parts;
   const long cell = step / parts;
-  const double cell_m = log.scene.numerics.cell_m = static_cast<double>(cell) / units_per_m;
+  const double cell_m = log.reading.scene.numerics.cell_m = static_cast<double>(cell) / units_per_m;
   const double thinnest_m = static_cast<double>(thinnest) / units_per_m;
   if (cell * most < thinnest || cell * fewest > thinnest)
-    log.fault(log.cell(0, "top_m").where,
-              "top_m: cells that divide all layers have {} m, and the thinnest layer {} m. Round depths to {} m.",
-              metres(cell_m), metres(thinnest_m), std::pow(10.0, std::floor(std::log10(thinnest_m / fewest))));
+    log.reading.fault(
+        log.cell(0, "top_m").where,
+        "top_m: cells that divide all layers have {} m, and the thinnest layer {} m. Round depths to {} m.",
+        metres(cell_m), metres(thinnest_m), std::pow(10.0, std::floor(std::log10(thinnest_m / fewest))));
 }
 
 // The index of an equal rock; a new one of a name that is taken becomes NAME_2, NAME_3, ...
@@ -288,11 +294,12 @@ far_cell_m = {far}
 LogResult scene_of_log_text(std::string_view text, const std::string& file_name) {
   Log log;
   split_rows(log, text, file_name);
-  const std::size_t end = log.faults.empty() ? log.rows.size() : 0;
+  const std::size_t end = log.reading.faults.empty() ? log.rows.size() : 0;
   if (end > 0) check_header(log);
   for (std::size_t row = 1; row < end; ++row) read_row(log, row);
-  if (log.faults.empty()) choose_cell(log);
-  return log.faults.empty() ? LogResult{scene_text(log.scene), {}} : LogResult{"", as_lines(log.faults)};
+  if (log.reading.faults.empty()) choose_cell(log);
+  return log.reading.faults.empty() ? LogResult{scene_text(log.reading.scene), {}}
+                                    : LogResult{"", as_lines(log.reading.faults)};
 }
 
 LogResult scene_of_log(const std::filesystem::path& file) {

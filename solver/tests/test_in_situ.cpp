@@ -69,6 +69,39 @@ TEST_CASE("weight adds what stands above, and a formula that has it already is l
   CHECK(faults(scene).empty());
 }
 
+// In one rock the elastic stress by edges is that of in_situ's numbers everywhere, so that loaded and uniform are one.
+TEST_CASE("a loaded state in one rock is the prescribed stress, in particles and on interfaces") {
+  Scene scene = test::block(8, 12);
+  scene.rocks[0].density_kg_m3 = 2500.0;
+  scene.in_situ = {3e6, 2e6, InSitu::Initialise::loaded};
+  scene.in_situ.weight = true;
+  scene.in_situ.shear_Pa = 0.2e6;
+  scene.strata.layers = {{0, 0.0, 4.0}, {0, 4.0, 8.0}, {0, 8.0, 12.0}};
+  scene.strata.layers[1].horizontal_Pa = 2.7e6;
+  InterfaceLaw weak;
+  weak.name = "weak", weak.kind = InterfaceLaw::Kind::weak;
+  scene.laws = {InterfaceLaw{}, weak};
+  scene.strata.interfaces = {{1, 4.0}, {1, 8.0}};
+  const State state = initialise(scene, make_elasticities(scene));
+  const Particles& p = state.particles;
+  double off = 0.0;
+  for (std::size_t q = 0; q < p.size(); ++q) {
+    const InSituStress wanted = at(scene, p.x[q], p.y[q]);
+    off = std::max({off, std::abs(p.in_situ[q].xx + wanted.horizontal), std::abs(p.in_situ[q].yy + wanted.vertical),
+                    std::abs(p.in_situ[q].xy - 0.2e6)});
+  }
+  CHECK(off < 1e-9 * 3e6);
+  CHECK(at(scene, 1.0, 6.0).horizontal == 2.7e6);
+  REQUIRE(state.surfaces.size() == 2);
+  for (const Surface& surface : state.surfaces) {
+    for (const SurfacePoint& s : surface.points) {
+      const double depth = 12.0 - s.x.y();
+      CHECK(s.closing_stress() == Approx(3e6 + 9.80665 * 2500.0 * depth).epsilon(1e-9));
+      CHECK(s.in_situ.dot(tangent_of(s.n)) * s.n.y() == Approx(-0.2e6).epsilon(1e-9));
+    }
+  }
+}
+
 TEST_CASE("what nothing balances is refused with its place and size") {
   Scene scene = stack();
   SECTION("along X") {

@@ -45,7 +45,7 @@ def K_linear(sign: float) -> Callable[[Run], float]:
     """K_I of the upper (1) or lower (-1) tip under p + g y: (p + sign g a/2) sqrt(pi a), by Griffith's integral."""
 
     def exact(run: Run) -> float:
-        a, g = half_length(run), 20e3
+        a, g = half_length(run), 20e3  # the scene's "40e6 - 20e3*(Y - 55)", with the crack's middle at 55 m
         return (run.summary.inlet_Pa - 40e6 + sign * 0.5 * g * a) * math.sqrt(math.pi * a)
 
     return exact
