@@ -6,7 +6,7 @@ import pytest
 
 from verification.harness.reference import value
 from verification.ladder import gates
-from verification.ladder.cases import crossing, freund, interfaces, paths
+from verification.ladder.cases import crossing, freund, heights, interfaces, junction, paths
 
 BONDED, SPRINGS = {"4 cells": 0.01, "8 cells": 0.005, "16 cells": 0.005}, {"4 cells": 0.01, "8 cells": 0.01}
 MARKS = (
@@ -22,8 +22,13 @@ MARKS = (
     ("crossing", "on|on_mid_cell", "stored energy", {"1 m": 0.005, "0.5 m": 0.0025}),  # what the block cut through has stored
     ("crossing", "slides", "work of friction", {"0.5 m": 0.10, "0.25 m": 0.05}),
     ("crossing", "loaded_(2|5|10)", "mean normal traction", {"0.5 m": 1e-3}),
+    *(("heights", "barrier", f"net pressure that holds {height} m", {"0.5 m": 0.01}) for height in (22, 40, 100)),
+    ("heights", "six_layers", "upper tip at the end", {"0.5 m": 1.0}),  # an increment of 0.5 m, in which errors are counted
+    ("heights", "six_layers", "lower tip at the end", {"0.5 m": 1.0}),
+    ("junction", "t_crack", "largest difference in normal traction", {"1 m": 1.0, "0.5 m": 1.0}),  # of 3 MPa
+    ("junction", "t_crack", "largest difference in slip", {"1 m": 1.0, "0.5 m": 1.0}),  # of 1.5 mm
 )
-CASES = {"interfaces": interfaces.CASES, "freund": freund.CASES, "paths": paths.CASES, "crossing": crossing.CASES}
+CASES = {"interfaces": interfaces.CASES, "freund": freund.CASES, "paths": paths.CASES, "crossing": crossing.CASES, "heights": heights.CASES, "junction": junction.CASES}
 
 
 @pytest.mark.parametrize(("family", "cases", "quantity", "bounds"), MARKS, ids=lambda given: given if isinstance(given, str) else "")

@@ -81,7 +81,7 @@ CASES = (
          tuple(passing(f"net pressure that holds {2.0 * y:g} m", y) for y in HALF_TALL_M)),
     case("six_layers", "both tips through six layers of unlike stress and toughness", cell_levels(1.0, 0.5),
          (passing("net pressures that pass seven heights", *UNLIKE_M),
-          Quantity("upper tip at the end", "m", end_of(upper, "top_m"), STEPS), Quantity("lower tip at the end", "m", end_of(lower, "bottom_m"), STEPS)),
+          Quantity("upper tip at the end, in increments", "m", end_of(upper, "top_m"), STEPS), Quantity("lower tip at the end, in increments", "m", end_of(lower, "bottom_m"), STEPS)),
          smoke=1),
     case("sloped", "closing stress that falls with height", cell_levels(1.0, 0.5, 0.25, variant="sloped"),
          (Quantity.of("K_I of the upper tip", K_UNIT, tip("K_I_Pa_sqrt_m", upper), K_linear(1.0), RINGS),
