@@ -48,12 +48,12 @@ def table(rows: list[dict[str, Any]]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def with_table(readme: str, new: str) -> str:
-    """The README with another table between its two marks; raises ValueError where these are not there."""
-    before, mark, rest = readme.partition(START)
-    _, end, after = rest.partition(END)
+def with_table(readme: str, new: str, start: str = START, stop: str = END) -> str:
+    """A README with another table between its two marks; raises ValueError where these are not there."""
+    before, mark, rest = readme.partition(start)
+    _, end, after = rest.partition(stop)
     if not (mark and end):
-        raise ValueError(f"README.md has no table between {START.strip()} and {END}")
+        raise ValueError(f"README.md has no table between {start.strip()} and {stop}")
     return before + mark + new + end + after
 
 
