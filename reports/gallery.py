@@ -14,7 +14,7 @@ import numpy as np
 from reports.charts.gallery import draw_gallery
 from reports.charts.style import save
 from reports.shown import Shown
-from verification import gallery
+import verification.gallery as gallery
 from verification.harness.column import column
 from verification.harness.front_table import with_table
 from verification.harness.given import given, net_Pa, rock
