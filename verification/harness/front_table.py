@@ -1,4 +1,4 @@
-"""The README's table of accuracy, from what the ladder measured: a row a kind of problem, errors from coarse to fine.
+"""The README's table of accuracy: a row a kind of problem, errors from coarse to fine, from what the ladder measured; then the kept errors beside an experiment.
 
 usage: python3 -m verification.harness.front_table LADDER.json [--write]     (LADDER.json as ci/verify leaves it; --write puts it into README.md)
 """
@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from verification.harness.command import command
 from verification.harness.paths import ROOT
+from verification.measured import rubin
 
 README = ROOT / "README.md"
 START, END = "<!-- ladder -->\n", "<!-- end of ladder -->"
@@ -48,6 +49,16 @@ def table(rows: list[dict[str, Any]]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def measured_row(record: rubin.Record | None) -> str:
+    """The table's last row, mean errors from 15 s on beside Rubin's experiment in the smallest cells; raises ValueError where they are not kept."""
+    if record is None:
+        raise ValueError(f"there is no {rubin.RECORD}: run python3 -m verification.measured --accept")
+    plain, zeroed = (min((one for one in record.results if one.name == name), key=lambda one: one.cell_m) for name in ("plain", "gauges_from_zero"))
+    length, opening, pressure = (f"{100.0 * plain.errors[name].late:.2g} %" for name in (rubin.LENGTH, rubin.OPENING, rubin.WELL))
+    return (f"| length, opening, pressure of a fracture of oil in PMMA | an experiment, Rubin 1983, nothing fitted (`verification/measured`) | {length}, {opening}, {pressure} "
+            f"({100.0 * zeroed.errors[rubin.WELL].late:.2g} % less a zero of the gauges) | {plain.wall_s:.1f} |\n")
+
+
 def with_table(readme: str, new: str, start: str = START, stop: str = END) -> str:
     """A README with another table between its two marks; raises ValueError where these are not there."""
     before, mark, rest = readme.partition(start)
@@ -64,7 +75,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--write", action="store_true")
     options = parser.parse_args(arguments)
     try:
-        new = table(json.loads(options.ladder.read_text(encoding="utf-8"))["rows"])
+        new = table(json.loads(options.ladder.read_text(encoding="utf-8"))["rows"]) + measured_row(rubin.kept())
     except (OSError, ValueError, KeyError) as error:
         print(error, file=sys.stderr)
         return 1

@@ -4,8 +4,9 @@ import re
 
 import pytest
 
-from verification.harness.front_table import END, LINES, README, START, Line, table, with_table
+from verification.harness.front_table import END, LINES, README, START, Line, measured_row, table, with_table
 from verification.ladder import gates
+from verification.measured import rubin
 
 
 # The largest error that passes, by case, quantity and level, of all families; and rows of a ladder with half of it.
@@ -36,6 +37,20 @@ def test_a_table_from_the_ladder() -> None:
         assert errors(made, line) == pytest.approx(half, rel=0.05)
     with pytest.raises(ValueError, match="no K_I of graded at 1 m"):
         table([row for row in ROWS if row["case"] != "graded"])
+
+
+def test_the_last_row_is_what_is_kept_beside_the_experiment() -> None:
+    """Its errors are the record's of the plain run in 1 mm cells, and of its pressure less the gauges' zero; without a record there is no row."""
+    record = rubin.kept()
+    assert record is not None
+    row = measured_row(record)
+    assert row.rpartition("|")[0].rpartition("|")[0] in README.read_text(encoding="utf-8").partition(END)[0]  # but for the seconds
+    kept = {(one.name, one.cell_m): one.errors for one in record.results}
+    plain = [kept["plain", 0.001][name].late for name in (rubin.LENGTH, rubin.OPENING, rubin.WELL)]
+    told = [float(number) / 100.0 for number in re.findall(r"([\d.]+) %", row)]
+    assert told == pytest.approx([*plain, kept["gauges_from_zero", 0.001][rubin.WELL].late], rel=0.05)
+    with pytest.raises(ValueError, match="no .*rubin.json"):
+        measured_row(None)
 
 
 def test_only_the_table_changes() -> None:
