@@ -9,9 +9,11 @@ verification/measured/records/rubin.json, which --accept writes anew. Exit statu
 import sys
 from pathlib import Path
 
+import numpy as np
+
 from verification.harness import paths, store
 from verification.harness.command import aligned, command, number
-from verification.harness.load import load
+from verification.harness.load import Run, load
 from verification.harness.plan import make_all
 from verification.harness.run import Job
 from verification.measured import rubin
@@ -49,6 +51,20 @@ def text(record: rubin.Record) -> str:
     return "\n".join(aligned(rows, range(2, len(rows[0]))))
 
 
+def where_as_long(run: Run) -> str:
+    """Where a run is as long as the fracture was: how much sooner (s), and its opening (%) and pressures (MPa) less those measured; a line a reading."""
+    found = rubin.courses(run)
+    times, lengths = rubin.measured(rubin.LENGTH)
+    reached = rubin.read((found[rubin.LENGTH][1], found[rubin.LENGTH][0]), lengths)
+    columns = [1e3 * lengths, times - reached]
+    for name in (rubin.OPENING, *rubin.PRESSURES):
+        at, values = rubin.measured(name)
+        off = rubin.read(found[name], reached[-at.size :]) - values
+        columns.append(np.pad(100.0 * off / values if name == rubin.OPENING else 1e-6 * off, (times.size - at.size, 0), constant_values=np.nan))
+    heads = ["length, mm", "sooner by, s", f"{rubin.OPENING}, %", *(f"{name}, MPa" for name in rubin.PRESSURES)]
+    return "\n".join(aligned([heads, *([number(value, 3) for value in row] for row in zip(*columns))], range(len(heads))))
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Run, print, compare with the record or write it."""
     parser = command("python3 -m verification.measured", __doc__, "smoke", "jobs", "accept", "runs", runs=RUNS)
@@ -64,6 +80,9 @@ def main(arguments: list[str] | None = None) -> int:
     runs = {key: load(one.out) for key, one in jobs.items()}
     record = rubin.Record(next(iter(runs.values())).summary.version, tuple(rubin.result(one, runs[one.scene, cell_m]) for one, cell_m in wanted))
     print(text(record))
+    plain = record.results[0]
+    print("plain, all readings:", ", ".join(f"{name} {100 * error.every:.1f} %" for name, error in plain.errors.items()))
+    print(where_as_long(runs["", plain.cell_m if options.smoke else FINE_M]))
     if options.accept and not options.smoke:
         print(f"written: {store.write(record, rubin.RECORD, lines=('results',), digits=4)}")
         return 0
