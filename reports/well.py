@@ -1,4 +1,4 @@
-"""The picture of the example well, experiments/well/heights.svg: the depth that a fracture's upper tip reaches, and what moduli and a bedding plane add.
+"""The picture of the example well, experiments/well/heights.svg: its layers, the fracture in them, the depth of its upper tip, and what moduli and a bedding plane add.
 
 usage: python3 -m reports.well [--out experiments/well]     (makes its three runs, half a minute)
 """
@@ -14,7 +14,7 @@ from reports.charts.style import save
 from reports.charts.well import draw_well
 from reports.shown import Shown
 from verification.harness.column import EDGE_M, column, pressure_beyond
-from verification.harness.load import Run
+from verification.harness.load import Run, frames
 from verification.harness.paths import EXPERIMENTS, RUNS
 from verification.harness.plan import make_all
 from verification.harness.reference import values
@@ -23,6 +23,15 @@ from verification.harness.run import Job
 SCENE = EXPERIMENTS / "well" / "well.toml"
 BOTTOM_M = 2500.0  # depth of y = 0, the log's last row
 VARIANTS = {"one_modulus": "strata, one modulus", "perfect": "strata, moduli of the log", "": "strata, moduli and bedding of the log"}
+
+
+def fractures_of(run: Run) -> list[tuple[float, float, float]]:
+    """The fracture at seven outputs, evenly apart until the upper tip is where it ends: pressure (MPa), depths of its lower and its upper end (m)."""
+    stored = frames(run, "fracture")
+    last = next(k for k, (_, fields) in enumerate(stored) if fields["y_m"].max() > stored[-1][1]["y_m"].max() - 1e-3)
+    chosen = [stored[k] for k in np.linspace(0, last, 7).round().astype(int)]
+    return [(float(np.interp(time_s, run.history["time_s"], run.history["inlet_Pa"])) / 1e6, BOTTOM_M - float(fields["y_m"].min()),
+             BOTTOM_M - float(fields["y_m"].max())) for time_s, fields in chosen]  # fmt: skip
 
 
 def heights_of(runs: list[Run]) -> Shown:
@@ -46,7 +55,8 @@ def heights_of(runs: list[Run]) -> Shown:
     shown = [Shown(rock=layer["rock"], top_m=top, thickness_m=bottom - top, stress_MPa=layer["horizontal_Pa"] / 1e6,
                    modulus_GPa=full.scene["rock"][layer["rock"]]["youngs_modulus_Pa"] / 1e9) for layer, top, bottom in zip(layers, tops, bottoms)]
     beds = [(top, name) for top, name in zip(tops, full.scene["strata"]["interfaces"]) if name != "perfect"]
-    return Shown(title=title, layers=shown, curves=curves, bedding=beds, bottom_m=BOTTOM_M, least_MPa=min(column_of["stress_Pa"]) / 1e6 - 0.5, stop_MPa=stop_Pa / 1e6)
+    return Shown(title=title, layers=shown, curves=curves, bedding=beds, fractures=fractures_of(full), bottom_m=BOTTOM_M,
+                 least_MPa=min(column_of["stress_Pa"]) / 1e6 - 0.5, stop_MPa=stop_Pa / 1e6)
 
 
 def main(arguments: list[str] | None = None) -> int:

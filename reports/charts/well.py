@@ -1,29 +1,44 @@
-"""Draws a well's layers and the depth of a fracture's upper tip against its pressure."""
+"""Draws a well: its layers with the fracture in them, their closing stress, and the depth of the fracture's upper tip against its pressure."""
 
 import matplotlib.pyplot as plt
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from reports.charts.style import DASHED, INK, PALE, entry, interface_lines, new_figure, put_legend
+from reports.charts.style import DASHED, FLAG, FLUID, INK, entry, interface_lines, new_figure, put_legend
 from reports.shown import Shown
 
 _LOOKS = ((INK, "-", 5.0, 0.3), ("#0067a5", "-", 1.5, 1.0), ("#00845f", "-", 1.5, 1.0), ("#d04a00", DASHED, 1.5, 1.0))
 
 
-def draw_well(data: Shown) -> Figure:
-    """Left the closing stress of each layer, darker the stiffer its rock; right a line a way to compute the tip's depth."""
-    figure = new_figure(9.4, 6.4, data.title, 98)
-    left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1.0, 2.2))
+def _draw_layout(axes: Axes, stress: Axes, data: Shown) -> None:
+    """The layers as they lie, darker the stiffer, with what their borders are and the fracture at some pressures; beside them their closing stresses."""
     shade = plt.get_cmap("Greys")
     for layer in data.layers:
-        colour = shade(0.1 + 0.5 * layer.modulus_GPa / max(other.modulus_GPa for other in data.layers))
-        left.barh(layer.top_m, layer.stress_MPa, layer.thickness_m, align="edge", color=colour, edgecolor="white", linewidth=0.6)
-        left.text(data.least_MPa, layer.top_m + layer.thickness_m / 2.0, f" {layer.rock}, {layer.modulus_GPa:g} GPa", va="center", fontsize=7.5)
-    left.set(xlabel="closing stress (MPa)", ylabel="depth (m)", xlim=(data.least_MPa, data.stop_MPa), ylim=(data.bottom_m, data.layers[-1].top_m))
+        colour = shade(0.05 + 0.45 * layer.modulus_GPa / max(other.modulus_GPa for other in data.layers))
+        for panel, left, right in ((axes, 0.0, 1.0), (stress, data.least_MPa, layer.stress_MPa)):
+            panel.barh(layer.top_m, right - left, layer.thickness_m, left=left, align="edge", color=colour, edgecolor="white", linewidth=0.6)
+        axes.text(0.01, layer.top_m + 0.5 * layer.thickness_m, f"{layer.rock}, {layer.modulus_GPa:g} GPa", va="center", fontsize=7.0)
+    for place, name in data.bedding:
+        for panel in (axes, stress):
+            panel.axhline(place, color=FLAG, linewidth=1.8)
+        stress.text(data.stop_MPa, place, name, color=FLAG, fontsize=8, ha="right", va="bottom")
+    places = [0.42 + 0.54 * k / (len(data.fractures) - 1) for k in range(len(data.fractures))]
+    for x, (_, bottom, top) in zip(places, data.fractures):
+        axes.plot((x, x), (bottom, top), color=FLUID, linewidth=2.2, solid_capstyle="butt")
+    axes.set_xticks(places, [f"{pressure:.1f}" for pressure, _, _ in data.fractures], fontsize=7.0)
+    axes.set(xlabel="layers, and the fracture at pressures (MPa)", ylabel="depth (m)", xlim=(0.0, 1.0), ylim=(data.bottom_m, data.layers[-1].top_m))
+    stress.set(xlabel="closing stress (MPa)", xlim=(data.least_MPa, data.stop_MPa))
+
+
+def draw_well(data: Shown) -> Figure:
+    """Left the layout and the closing stress of each layer; right a line a way to compute the tip's depth."""
+    figure = new_figure(11.4, 6.4, data.title, 118)
+    layout, stress, right = figure.subplots(1, 3, sharey=True, width_ratios=(1.3, 0.8, 2.2))
+    _draw_layout(layout, stress, data)
     right.grid(True)
     interface_lines(right, [layer.top_m for layer in data.layers])
-    for place, name in data.bedding:
-        right.axhline(place, color=PALE, linewidth=1.8)
-        right.annotate(name, (data.stop_MPa, place), ha="right", va="bottom", fontsize=8)
+    for place, _ in data.bedding:
+        right.axhline(place, color=FLAG, linewidth=1.8, alpha=0.6)
     for (_, pressures, depths), (colour, dashes, width, alpha) in zip(data.curves, _LOOKS, strict=True):
         right.plot(pressures, depths, drawstyle="steps-post", color=colour, linestyle=dashes, linewidth=width, alpha=alpha)
     right.set(xlabel="pressure in the fracture (MPa)", xlim=(data.least_MPa, data.stop_MPa))

@@ -80,9 +80,9 @@ def main(arguments: list[str] | None = None) -> int:
     runs = {key: load(one.out) for key, one in jobs.items()}
     record = rubin.Record(next(iter(runs.values())).summary.version, tuple(rubin.result(one, runs[one.scene, cell_m]) for one, cell_m in wanted))
     print(text(record))
-    plain = record.results[0]
-    print("plain, all readings:", ", ".join(f"{name} {100 * error.every:.1f} %" for name, error in plain.errors.items()))
-    print(where_as_long(runs["", plain.cell_m if options.smoke else FINE_M]))
+    plain = min((one for one in record.results if one.name == "plain"), key=lambda one: one.cell_m)
+    print(f"plain, {1e3 * plain.cell_m:g} mm, all readings:", ", ".join(f"{name} {100 * error.every:.1f} %" for name, error in plain.errors.items()))
+    print(where_as_long(runs["", plain.cell_m]))
     if options.accept and not options.smoke:
         print(f"written: {store.write(record, rubin.RECORD, lines=('results',), digits=4)}")
         return 0
