@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Callable, Collection, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
@@ -26,7 +26,6 @@ GARBAGE = "garbage"  # completed, not marked, and the check does not hold (or a 
 OUTCOMES = (STABLE, MARKED, REFUSED, FAILED, GARBAGE)
 SAFE = (STABLE, MARKED, REFUSED, FAILED)  # what a family may declare of its points beyond the edge
 
-STRATA = "strata"  # the program of a point that is run through the command line
 
 KINEMATICS = {"total": "points in their places", "updated": "points that move"}
 
@@ -74,16 +73,14 @@ def at_most(value: float, bound: float, words: str = "") -> Checked:
 
 @dataclass(frozen=True)
 class Point:
-    """A scene with settings, at a value of the walked parameter. program: STRATA, or the name of another measured way (Family.ways). smoke: run in
-    ci/test too; of each family two or three fast ones, on both sides of its edge. beyond: whether it is beyond the edge, where that does not follow
-    from the value."""
+    """A scene with settings, at a value of the walked parameter. smoke: run in ci/test too; of each family two or three fast ones, on both sides of its
+    edge. beyond: whether it is beyond the edge, where that does not follow from the value."""
 
     label: str  # unique in its family, as in a file name
     value: float
     scene: Path
     settings: tuple[str, ...] = ()
     variant: str = ""
-    program: str = STRATA
     smoke: bool = False
     beyond: bool | None = None
 
@@ -138,8 +135,7 @@ def tip_is_near(run: Run) -> str:
 class Family:
     """A known failure, walked across. beyond: what strata does beyond the edge, any of SAFE; without an edge all points must be so. section: families
     of the same section (of words.toml) share a heading, what is said below it, and a figure. check_name: what is on the figure's vertical axis. flag:
-    words for a completed run that is marked otherwise than by `suspect`. ways: other programs than strata by name, each giving what the check
-    would."""
+    words for a completed run that is marked otherwise than by `suspect`."""
 
     name: str  # unique over all families, as in a file name
     title: str
@@ -152,7 +148,6 @@ class Family:
     section: str = ""
     check_name: str = "relative error"
     flag: Callable[[Run], str] = lambda _: ""
-    ways: Mapping[str, Callable[[Point], Checked]] = field(default_factory=dict)
     before: tuple[str, ...] = (STABLE,)  # outcomes of points before the edge, which bisection takes as sound: with MARKED only for a reason
 
     @property

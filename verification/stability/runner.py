@@ -10,7 +10,7 @@ from verification.harness.load import OF_SPEEDS, LoadError, Run, load
 from verification.harness.paths import ROOT
 from verification.harness.run import Job, Outcome, run, timed
 from verification.harness.side_by_side import Tell
-from verification.stability.family import FAILED, GARBAGE, MARKED, REFUSED, STABLE, STRATA, Checked, Family, Point, bisected
+from verification.stability.family import FAILED, GARBAGE, MARKED, REFUSED, STABLE, Checked, Family, Point, bisected
 from verification.stability.store import EdgeFound, PointFound, Record
 
 RUNS = paths.RUNS / "atlas"
@@ -61,9 +61,6 @@ def of_run(family: Family, point: Point, run: Run, cpu_s: float) -> PointFound:
 
 def found(family: Family, point: Point, runs: Path = RUNS) -> PointFound:
     """How a point ends."""
-    if point.program != STRATA:
-        checked = family.ways[point.program](point)
-        return PointFound(point.label, point.value, STABLE if checked.holds else GARBAGE, checked, "")
     folder = folder_of(family, point, runs)
     outcome, cpu_s = make(point, folder)
     if not outcome.ok:

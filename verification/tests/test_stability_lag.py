@@ -10,7 +10,7 @@ import pytest
 
 from verification.stability.families import lagging
 from verification.stability.theory import flow
-from verification.stability.theory.flow import BULK_PA, E_PRIME_PA, FLOOR_M, HALF_LENGTH_M, compliance, diffused, doubling, paper, reynolds
+from verification.stability.theory.flow import BULK_PA, E_PRIME_PA, FLOOR_M, HALF_LENGTH_M, compliance, diffused, paper, reynolds
 
 CELLS = 20
 DS = HALF_LENGTH_M / CELLS
@@ -45,21 +45,10 @@ def test_the_crack_takes_up_what_comes_in(monkeypatch: pytest.MonkeyPatch) -> No
     assert reynolds([0.01] * 10, 3e5, 1e6, CELLS)[0] == pytest.approx(quick, rel=2e-2)
 
 
-def test_long_steps_lag_and_short_ones_agree() -> None:
-    """Halving short steps changes nothing to speak of; doubling ones end a fracture of 1 Pa s at a fifth of its pressure."""
+def test_short_steps_agree() -> None:
+    """Halving them changes nothing to speak of."""
     fine, finer = (float(paper([2.0 / n] * n, 0.05e6, 0.35e6, 1.0)[-1]) for n in (1000, 2000))
     assert fine == pytest.approx(finer, rel=1e-3)
-    assert float(paper(doubling(2.0, 2.0), 0.05e6, 0.35e6, 1.0)[-1]) == pytest.approx(0.19 * finer, rel=0.05)
-
-
-def test_doubling_steps() -> None:
-    """They fill the time, end at each output, and never grow by more than two."""
-    for every in (0.02, 0.5, 2.0):
-        steps = np.array(doubling(2.0, every))
-        ends = np.cumsum(steps)
-        assert ends[-1] == pytest.approx(2.0)
-        assert all(np.min(np.abs(ends - k * every)) < 1e-9 for k in range(1, round(2.0 / every) + 1))
-        assert np.all(steps[1:] <= 2.0 * steps[:-1] * (1.0 + 1e-12))
 
 
 def made(monkeypatch: pytest.MonkeyPatch, tip_Pa: float, opened_m: float) -> Any:

@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -14,7 +15,7 @@ from verification.stability.family import (
     FAILED, GARBAGE, MARKED, REFUSED, STABLE, BadFamily, Checked, Edge, Family, Parameter, Point, at_most, bisected, close,
 )  # fmt: skip
 from verification.stability.judge import changes, differs, problems
-from verification.stability.runner import found, of_failure, walk
+from verification.stability.runner import of_failure, of_run
 from verification.stability.store import EdgeFound, PointFound, Record
 
 SCENE = Path(__file__)
@@ -100,7 +101,7 @@ def test_families_are_checked() -> None:
         replace(family, points=(*family.points, family.points[0])), replace(family, beyond=(GARBAGE,)), replace(family, beyond=()), replace(family, before=(FAILED,)),
         replace(family, points=tuple(replace(point, smoke=False) for point in family.points)), replace(family, says=""),
         replace(family, points=(*family.points, Point("3", 3.0, Path("no/such.toml")))),
-        replace(family, points=(*family.points, Point("3", 3.0, SCENE, program="abacus"))), replace(family, edge=Edge("Made up.")),
+        replace(family, edge=Edge("Made up.")),
     )  # fmt: skip
     for one in wrong:
         with pytest.raises(BadFamily):
@@ -133,17 +134,13 @@ def test_changes_are_told() -> None:
     assert not differs(math.nan, math.nan) and differs(math.nan, 0.0) and differs(0.1, math.nan)
 
 
-def test_other_ways_and_killed_runs() -> None:
-    """Another measured way is checked as a run is; a run that died without the solver's word is garbage."""
-    way = {"sum": lambda point: at_most(point.value, 1.0, "as is")}
-    family = a_walk(ways=way, beyond=(STABLE,), edge=None)
-    points = tuple(replace(point, program="sum") for point in family.points)
-    outcomes = [found(family, point).outcome for point in points]
-    assert outcomes == [STABLE, STABLE, GARBAGE, GARBAGE]
-    assert len(walk(replace(family, points=points), smoke=True).points) == 2
+def test_what_a_run_is_and_one_that_was_killed() -> None:
+    """Sound, wrong, or marked by itself; a run that died without the solver's word is garbage."""
+    family, mark = a_walk(), SimpleNamespace(monitor="momentum", why="it drifted")
+    for value, suspect, outcome in ((0.9, (), STABLE), (1.1, (), GARBAGE), (math.nan, (), GARBAGE), (1.1, (mark,), MARKED)):
+        run: Any = SimpleNamespace(summary=SimpleNamespace(suspect=suspect))
+        assert of_run(replace(family, check=lambda _, value=value: at_most(value, 1.0)), family.points[0], run, 0.0).outcome == outcome
     died = Outcome("scene", "", "failed", -9, "killed by signal 9", 1.0, "")
     for exit_status, outcome in ((-9, GARBAGE), (1, GARBAGE), (124, GARBAGE), (2, REFUSED), (3, FAILED)):
-        assert of_failure(points[0], replace(died, exit_status=exit_status), 0.0).outcome == outcome
-    assert of_failure(points[0], replace(died, exit_status=3, reason=""), 0.0).outcome == GARBAGE
-
-
+        assert of_failure(family.points[0], replace(died, exit_status=exit_status), 0.0).outcome == outcome
+    assert of_failure(family.points[0], replace(died, exit_status=3, reason=""), 0.0).outcome == GARBAGE

@@ -155,7 +155,7 @@ ENDLESS = (
     Quantity.of("fracture volume", "m^2", VOLUME, exact("volume_m2", 0.5, endless, "pressurised_crack")),
 )
 START = (Quantity.of("critical net pressure", "Pa", start_Pa, exact("critical_net_pressure_Pa", settings=block), RINGS),)
-CLOSED = (nothing("J", "N/m", tip("J_N_m"), "J_N_m"), nothing("mouth opening", "m", MOUTH, "mouth_opening_m"))
+CLOSED = (nothing("J", "N/m", lambda run: max(abs(tip.J_N_m) for tip in run.summary.tips), "J_N_m"), nothing("mouth opening", "m", MOUTH, "mouth_opening_m"))
 
 
 def levels(cells_m: tuple[float, ...], variant: str = "", *of: Keys) -> tuple[Level, ...]:
@@ -225,4 +225,6 @@ CASES = (
     settled("settled_closed", "fluid that just carries the in-situ stress", levels(FINE, "closed"), CLOSED, 1),
     settled("settled_closed_mid_cell", "the same between two grid lines", levels(FINE, "closed", mid_cell(20.0)), CLOSED, 1),
     *(case for degrees in (10.0, 30.0, 45.0) for case in inclined(degrees)),
+    case_of(INCLINED, "quasistatic", CLOSED, 1)("inclined_30_closed", "fluid that just carries the in-situ stress, the crack turned by 30 degrees",
+            levels(FINE, "", turned(30.0, 400.0), graded, lambda _: ("stop.time_s=0", "fluid.inlet={start_Pa=2.0e6, rate_Pa_s=0}"))),
 )  # fmt: skip

@@ -8,7 +8,7 @@ from verification.harness.given import given
 from verification.harness.load import LoadError, Run, frames
 from verification.stability.cracks import CRACK
 from verification.stability.family import STABLE, Checked, Family, Parameter, Point, at_values, close, walked
-from verification.stability.theory.flow import compliance, doubling, growth, paper, reynolds
+from verification.stability.theory.flow import compliance, paper, reynolds
 
 
 START_PA, RATE_PA_S, TIME_S = 0.05e6, 0.35e6, 2.0  # net pressure at the start, its rise at the inlet (the study's), and for how long
@@ -29,14 +29,6 @@ def tip_pressure(run: Run) -> Checked:
     return close(found, resolved(given(run, "fluid.viscosity_Pa_s")), 0.015, f"{run.summary.steps} steps; net pressure at the tip {found:.0f} Pa")
 
 
-def held_by_nothing(point: Point) -> Checked:
-    """The model with steps that double until the next output: off by a twentieth and more, which the model must show."""
-    steps = doubling(TIME_S, point.value)
-    found, expected = float(paper(steps, START_PA, RATE_PA_S, 1.0)[-1]), resolved(1.0)
-    off = abs(found / expected - 1.0)
-    return Checked(found, expected, off, 0.05 < off < 1.0, f"{len(steps)} steps; net pressure at the tip {found:.0f} Pa")
-
-
 def lagging(viscosity_Pa_s: float, every_s: float, smoke: bool = False) -> Point:
     """A run of a viscosity with outputs so far apart."""
     keys = ("fluid.law=paper", f"fluid.viscosity_Pa_s={viscosity_Pa_s!r}", f"fluid.inlet={{start_Pa={CLOSING_PA + START_PA!r},rate_Pa_s={RATE_PA_S!r}}}",
@@ -49,11 +41,8 @@ LAG = Family(
     "lag", "Permeability that is foreseen: outputs far apart",
     "Steps are held back by what an opening foreseen wrong does to the pressure, so that the tip's is within 1.5 % however far outputs are apart.",
     Parameter("time between outputs, the longest step", "s", log=True),
-    (
-        *(lagging(1.0, every, every == 2.0) for every in INTERVALS_S), *(lagging(viscosity, 2.0) for viscosity in VISCOSITIES_PA_S[:-1]),
-        *(Point(f"model, steps held back by nothing, {every:g} s", every, CRACK, program="model", smoke=every == 2.0) for every in (0.5, 2.0)),
-    ),
-    tip_pressure, check_name="net pressure at the tip, relative difference", ways={"model": held_by_nothing}, section="Permeability while the fracture opens",
+    (*(lagging(1.0, every, every == 2.0) for every in INTERVALS_S), *(lagging(viscosity, 2.0) for viscosity in VISCOSITIES_PA_S[:-1])),
+    tip_pressure, check_name="net pressure at the tip, relative difference", section="Permeability while the fracture opens",
 )  # fmt: skip
 
 
@@ -68,14 +57,12 @@ def opened(time_s: float) -> float:
 
 
 def mean_opening(run: Run) -> Checked:
-    """Growth of the mean opening against the model, and how a lagged step would have let an error grow."""
+    """Growth of the mean opening against the model."""
     every = frames(run, "fracture")
     found = float(every[-1][1]["opening_m"].mean() - every[0][1]["opening_m"].mean())
     if len(every) != MANY + 1:
         raise LoadError(f"{run.folder}: {len(every)} outputs")
-    step = every[-1][0] / MANY
-    words = f"{run.summary.steps} steps; one after the other an error would grow {growth(step):.3g} times in a step"
-    return close(found, opened(every[-1][0]), 0.08, words)
+    return close(found, opened(every[-1][0]), 0.08, f"{run.summary.steps} steps")
 
 
 def coupled(step_s: float) -> tuple[str, ...]:
@@ -87,7 +74,7 @@ def coupled(step_s: float) -> tuple[str, ...]:
 
 TOGETHER = Family(
     "together", "Flow and rock in one system: runs with long steps",
-    "Runs under reynolds whose step control is off follow the crack within 8 % at steps by which a lagged scheme makes errors of 600 times their size.",
+    "Runs under reynolds whose step control is off follow the crack within 8 % at steps so long that flow and rock one after the other would let errors grow (solver/tests/test_reynolds.cpp).",
     Parameter("longest step", "s", log=True), walked(at_values(CRACK, coupled, "{:g} s"), (0.1, 1.0, 10.0, 100.0), smoke=(1.0,)), mean_opening, beyond=(STABLE,),
     check_name="growth of the mean opening, relative difference", section="Flow that conserves mass, with the rock",
 )  # fmt: skip

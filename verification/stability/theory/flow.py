@@ -1,11 +1,6 @@
 """Flow along a pressurised crack by both laws, with the rock's opening by Sneddon's compliance C, w = C p (p: net pressure), and along a channel.
 
-A lagged step, flow and rock one after the other, takes w from the last pressure and finds p from
-    (w/M) (p - p_old)/dt + (w(p_old) - w(p_older))/dt = d/ds(w^3/(12 mu) dp/ds).
-Its linear map of (p_old, p_older) errors to p has an eigenvalue whose size is the factor by which an error grows in a step.
-
-Where the inlet's pressure rises, half of the crack in cells, the inlet at its middle, steps given (short ones for the solution, long ones for what
-becomes of it where permeability lags):
+Where the inlet's pressure rises, half of the crack in cells, the inlet at its middle, steps given:
     paper     dP/dt = (M/mu) d/ds(k dP/ds), k = w^2/12 of the step's start (lagged), trapezoid between vertices, P given at the inlet
     reynolds  (w/M) dp/dt + dw/dt = d/ds(w^3/(12 mu) dp/ds), backward Euler, w of the step's end (Picard)
 
@@ -52,23 +47,6 @@ def conductances(w: Array, ds: float) -> Array:
     between = 2.0 * k[1:] * k[:-1] / (k[1:] + k[:-1]) / ds
     own = np.concatenate([[2.0 * k[0] / ds], between]) + np.concatenate([between, [0.0]])
     return np.diag(own) - np.diag(between, 1) - np.diag(between, -1)
-
-
-def growth(dt: float, net_Pa: float = 0.3e6, cells: int = 20, lagged: bool = True) -> float:
-    """The factor by which the largest error of the pressure grows in a step of dt (s), lagged or solved together."""
-    C, x = compliance(cells)
-    ds = x[1] - x[0]
-    w = C @ np.full(cells, net_Pa)
-    L = conductances(w, ds)
-    stored = np.diag(w / BULK_PA) * ds / dt
-    opened = C * ds / dt
-    if not lagged:  # (stored + opened + L) p = (stored + opened) p_old
-        return float(np.max(np.abs(np.linalg.eigvals(np.linalg.solve(stored + opened + L, stored + opened)))))
-    # (stored + L) p = (stored - opened) p_old + opened p_older
-    A = np.linalg.inv(stored + L)
-    first, second = A @ (stored - opened), A @ opened
-    step = np.block([[first, second], [np.eye(cells), np.zeros((cells, cells))]])
-    return float(np.max(np.abs(np.linalg.eigvals(step))))
 
 
 def diffused(P: Array, w: Array, ds: float, dt: float, viscosity_Pa_s: float, inlet_Pa: tuple[float, float]) -> Array:
@@ -121,19 +99,6 @@ def reynolds(steps_s: Sequence[float], start_Pa: float, rate_Pa_s: float, cells:
         else:
             raise ArithmeticError(f"no pressures found at {time:g} s: the last change was {change:g} Pa")
     return p, C @ p
-
-
-def doubling(time_s: float, every_s: float, first_s: float = 1e-3) -> list[float]:
-    """Steps that begin with first_s, each twice the one before, cut off at every output time: those of a run that nothing else holds back."""
-    steps: list[float] = []
-    t, dt, output = 0.0, first_s, every_s
-    while t < time_s * (1.0 - 1e-12):
-        steps.append(min(dt, output - t))
-        t += steps[-1]
-        dt = 2.0 * steps[-1]
-        if t >= output * (1.0 - 1e-12):
-            output = min(output + every_s, time_s)
-    return steps
 
 
 def fastest(segments: int) -> tuple[float, Array]:
