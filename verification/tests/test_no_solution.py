@@ -72,7 +72,6 @@ BLOCK = """\
 domain = {width_m = 8, height_m = 8}
 in_situ = {vertical_Pa = 1e6, horizontal_Pa = 1e6}
 rock.r.youngs_modulus_Pa = 10e9
-interface.cut = {law = "friction", coefficient = 0}
 strata = {layers = [{rock = "r", thickness_m = 4}, {rock = "r"}], interfaces = ["perfect"]}
 body.acceleration_m_s2 = ["sin(pi*X/8)*cos(pi*Y/8)*sqrt(0.02 - t)", "0"]
 numerics.cell_m = 1
@@ -83,13 +82,6 @@ updated = {}
 total.numerics.kinematics = "total"
 quasistatic.numerics.mechanics = "quasistatic"
 overflow = {numerics.mechanics = "quasistatic", body.acceleration_m_s2 = ["sin(pi*X/8)*cos(pi*Y/8)*exp(20000*t)", "0"]}
-[variants.mechanism]
-body.acceleration_m_s2 = ["0", "0"]
-numerics.mechanics = "quasistatic"
-domain.sides = "traction"
-strata.interfaces = ["cut"]
-fracture.path_m = [[4, 0], [4, 2]]
-fluid.inlet = {start_Pa = 1.2e6, rate_Pa_s = 1e6}
 """
 
 
@@ -105,14 +97,6 @@ def test_energies_that_are_no_longer_finite_end_the_run(tmp_path: Path) -> None:
     rows = check_failed(tmp_path, run_in(tmp_path, BLOCK, variant="overflow"), "energies of the ledger are no finite numbers: strain, body_work")
     assert 0.016 <= float(rows[-1]["time_s"]) < 0.0185
     assert (tmp_path / "X" / "checkpoint.bin").exists()
-
-
-def test_a_mechanism_ends_the_run_with_the_reason_in_its_summary(tmp_path: Path) -> None:
-    done = run_in(tmp_path, BLOCK, variant="mechanism")
-    assert done.returncode == 3, done.stderr
-    summary = summary_of(tmp_path / "X")
-    assert summary["status"] == "failed" and summary["reason"] in done.stderr
-    assert torn(tmp_path / "X") == []
 
 
 def test_a_limit_of_memory_is_bad_input_and_no_bug(tmp_path: Path) -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from verification.harness.crack_paths import exact_path, farthest, first_kink_deg, rise_at
+from verification.harness.crack_paths import farthest, rise_at
 from verification.harness.load import LoadError
 from verification.harness.reference import values
 from verification.ladder.fields import at_points, lattice
@@ -18,15 +18,6 @@ def test_farthest_and_rise_of_paths() -> None:
     assert rise_at(path, 1.0) == pytest.approx(2.5)
     with pytest.raises(LoadError, match="never"):
         rise_at(path, 3.0)
-
-
-def test_experiments_turn_as_the_parallel_crack_says() -> None:
-    assert first_kink_deg(5) == pytest.approx(2.82, abs=0.005)
-    assert first_kink_deg(6) == pytest.approx(-3.31, abs=0.005)
-    away, to_it = exact_path(5, 1.0, "corrected", 3.0), exact_path(6, 1.0, "forward", 3.0)
-    assert away.shape == to_it.shape == (4, 2)
-    assert np.all(np.diff(away[:, 0]) < 0.0) and np.all(np.diff(to_it[:, 0]) > 0.0)
-    assert np.allclose(np.hypot(*np.diff(to_it, axis=0).T), 1.0)
 
 
 def test_places_return_to_the_lattice_that_single_precision_left() -> None:

@@ -196,7 +196,7 @@ def crossing(increment_m: float, cells_m: tuple[float, ...], E_GPa: float = 10.0
     name = f"crosses_{increment_m:g}" + ("" if E_GPa == 10.0 else f"_E_{E_GPa:g}")
     says = f"tip on the soft interface below rock of {E_GPa:g} GPa: when it crosses by {increment_m:g} m at once"
     own = levels("grows", cells_m, f"fracture.increment_m={increment_m!r}", rock_above(E_GPa))
-    return case(name, says, own, crosses_by(increment_m, cells_m))
+    return case(name, says, own, crosses_by(increment_m, cells_m), smoke=2)
 
 
 CASES = (
