@@ -9,7 +9,6 @@ from typing import Any
 import pytest
 
 from verification.harness.run import Outcome
-from verification.stability import store
 from verification.stability.families import check
 from verification.stability.family import (
     FAILED, GARBAGE, MARKED, REFUSED, STABLE, BadFamily, Checked, Edge, Family, Parameter, Point, at_most, bisected, close,
@@ -106,19 +105,6 @@ def test_families_are_checked() -> None:
     for one in wrong:
         with pytest.raises(BadFamily):
             check(one)
-
-
-def test_records_are_read_back(tmp_path: Path) -> None:
-    """All of it but the digits beyond seven; numbers that are not finite stay so."""
-    record = replace(recorded(), points=(*recorded().points, PointFound("3", 3.0, MARKED, Checked(math.nan, 1.0, math.inf, False, "w"), "why", 0.5)))
-    store.write(record, tmp_path)
-    again = store.read("walk", tmp_path)
-    assert again is not None and again.edge == record.edge and again.points[:4] == record.points[:4]
-    assert math.isnan(again.points[4].checked.value) and again.points[4].reason == "why"  # type: ignore[union-attr]
-    assert store.read("stroll", tmp_path) is None
-    (tmp_path / "torn.json").write_text('{"family": "torn"', encoding="utf-8")
-    with pytest.raises(ValueError):
-        store.read("torn", tmp_path)
 
 
 def test_changes_are_told() -> None:
