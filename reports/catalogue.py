@@ -1,52 +1,40 @@
-"""The figures of the page of the experiments: which data each is made from, what draws it, and which words are its caption."""
+"""The figures of the page of the experiments, numbered as in the study: which data each is made from, what draws it, and which words are its caption."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import partial
+from pathlib import Path
 
 from reports.charts.cracks import draw_copies, draw_pressure
-from reports.charts.energies import draw_ledger, draw_variants
-from reports.charts.experiments import draw_choice, draw_heights, draw_paths, draw_profiles
-from reports.choices import choice_figure
+from reports.charts.experiments import draw_heights, draw_paths, draw_profiles
 from reports.crack import copies_figure, divided, index_when_tip_passes, pressure_figure
-from reports.curves import height_figure, path_figure, profile_figure
+from reports.curves import drawn_of, height_figure, path_figure, profile_figure
 from reports.figures import Figure
 from reports.layout import layout_of
-from reports.ledger import ledger_figure, variant_figure
-from reports.runs import NotAvailable, Run, lead_of, mechanics_in, output_times
+from reports.runs import NotAvailable, Run, load_run, output_times
 from reports.shown import Shown
 from reports.words import listed, plain
-from verification.harness.choices import Point
+from verification.harness.plan import make
+from verification.harness.run import Job
 
 MAGNIFIED = 300.0  # of openings in Fig 1: a millimetre becomes a third of a 1 m cell
+FINE_TIP_M = 10.0
+# Of the run that Fig 2 shows: cells small enough for a smooth field, until the tip has doubled its height; 5 s.
+FINE = ("numerics.mechanics=quasistatic", "numerics.cell_m=0.25", "numerics.far_cell_m=0.5", f"stop.tip_y_m={FINE_TIP_M}", "output.fields_every_s=0.02")
 
 
-def catalogue(runs: list[Run], points: Sequence[Point] = ()) -> list[Figure]:
-    """Every figure of the page, in order; those after the study's eight are numbered as they come."""
-    of: dict[int, list[Run]] = {}
-    for run in runs:
-        of.setdefault(run.number, []).append(run)
-    of = {number: of[number] for number in sorted(of) if number > 0}
-    one, four, sideways = of.get(1, []), of.get(4, []), [of.get(number, []) for number in (5, 6)]
-    figures = [
-        Figure("fig1", lambda: copies_figure(_crack_choices(one), MAGNIFIED), draw_copies, "fig1", part="method"),
-        Figure("fig2", partial(_pressure_choice, one), draw_pressure, "fig2", part="method"),
-        *(Figure(f"fig{number + 2}", partial(height_figure, own), draw_heights, "heights", experiment=number, part="experiment", runs=_drawn(own))
-          for number in (1, 2, 3, 4) for own in (of.get(number, []),)),
-        Figure("fig7", partial(profile_figure, four), draw_profiles, "fig7", experiment=4, part="experiment", runs=_drawn(four)),
-        Figure("fig8", partial(path_figure, sideways), draw_paths, "fig8", experiment=5, part="experiment", runs=_drawn(sum(sideways, []))),
-        *(Figure(f"choice_{point.id}", partial(choice_figure, point, runs), draw_choice, "choice", part="choice") for point in points),
-        *(Figure(f"variants_{mechanics}", partial(variant_figure, list(of.values()), mechanics), draw_variants, "variants", part="variants")
-          for mechanics in mechanics_in(runs) or (lead_of(runs),)),
-        *(Figure(f"energy{number}_{mechanics}", partial(ledger_figure, own, mechanics), draw_ledger, "energy", experiment=number, part="energy",
-                 runs=_drawn(own, mechanics)) for number, own in of.items() for mechanics in mechanics_in(run for run in own if run.drawable)),
-    ]
-    return [replace(figure, label=f"Figure {number}") for number, figure in enumerate(figures, 1)]
-
-
-def _drawn(runs: Sequence[Run], mechanics: str = "") -> list[Run]:
-    """The runs that a figure of an experiment draws: its main variants with a history, of one mechanics or of all."""
-    return [run for run in runs if run.is_main and run.drawable and mechanics in ("", run.mechanics)]
+def catalogue(runs: list[Run], root: Path, experiments: Path) -> list[Figure]:
+    """The study's eight figures, from runs below a root folder."""
+    of = {number: [run for run in runs if run.number == number] for number in range(1, 7)}
+    upward, sideways = [of[number] for number in (1, 2, 3, 4)], [of[5], of[6]]
+    first = partial(Figure, command="ci/reproduce --only exp1")
+    return [
+        first("fig1", lambda: copies_figure(_crack_choices(of[1]), MAGNIFIED), draw_copies, "fig1", label="Figure 1"),
+        first("fig2", partial(_pressure_choice, of[1], root, experiments), draw_pressure, "fig2", label="Figure 2"),
+        *(Figure(f"fig{number + 2}", partial(height_figure, of[number], sum(upward, [])), draw_heights, "heights", f"ci/reproduce --only exp{number}",
+                 f"Figure {number + 2}", drawn_of(of[number])) for number in (1, 2, 3, 4)),
+        Figure("fig7", partial(profile_figure, of[4]), draw_profiles, "fig7", "ci/reproduce --only exp4", "Figure 7", drawn_of(of[4])),
+        Figure("fig8", partial(path_figure, sideways), draw_paths, "fig8", "ci/reproduce --only exp5,exp6", "Figure 8", drawn_of(sum(sideways, []))),
+    ]  # fmt: skip
 
 
 def _with_fields(runs: list[Run], variants: tuple[str, ...]) -> Run:
@@ -70,9 +58,11 @@ def _crack_choices(group: list[Run]) -> list[tuple[Run, int, str]]:
     return choices
 
 
-def _pressure_choice(group: list[Run]) -> Shown:
-    """Experiment 1 with a perfect interface when the tip has doubled its height."""
+def _pressure_choice(group: list[Run], root: Path, experiments: Path) -> Shown:
+    """Experiment 1 with a perfect interface just before the tip has doubled its height: in small cells, or where that cannot be run as it is."""
     run = _with_fields(group, ("perfect", "friction", "weak", "soft"))
+    outcome, _ = make(Job(experiments / f"{run.experiment}.toml", "perfect", root / "figure2" / run.experiment / "perfect", FINE))
+    run = load_run(root / "figure2" / run.experiment / "perfect") if outcome.ok else run
     if output_times(run).size == 0:
         raise NotAvailable("no output times")
-    return pressure_figure(run, index_when_tip_passes(run, 2.0 * max(layout_of(run).fracture_y_m)))
+    return pressure_figure(run, max(0, index_when_tip_passes(run, 2.0 * max(layout_of(run).fracture_y_m)) - 1))

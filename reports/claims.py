@@ -18,15 +18,25 @@ def claim_rows(claims: Sequence[ClaimResult]) -> list[Shown]:
     return [_claim_row([one for one in claims if one.id == id_]) for id_ in sorted({one.id for one in claims})]
 
 
-def mechanics_of_rows(rows: Sequence[Shown]) -> list[str]:
-    """The mechanics that verdicts were given in, in words."""
-    return list(dict.fromkeys(one.mechanics for row in rows for one in row.verdicts))
+def columns_of(rows: Sequence[Shown]) -> list[Shown]:
+    """The columns of verdicts, finest cells and no inertia first: key, words, size of cells where the mechanics names one, and mechanics in words."""
+    found = dict.fromkeys(one.mechanics for row in rows for one in row.verdicts)
+    parts = sorted((key.partition(" ") for key in found), key=lambda part: (not part[2], part[2], part[0] != mechanics_name("quasistatic")))
+    named = [(name, cells or "1 m", "with inertia" if name == "explicit" else "without inertia", name + space + cells) for name, space, cells in parts]
+    return [Shown(key=key, cells=cells, inertia=inertia, words=f"{cells} cells, {inertia}") for _, cells, inertia, key in named]
+
+
+def differing(rows: Sequence[Shown], cells: str) -> list[str] | None:
+    """Ids of the claims on which runs with and without inertia in cells of a size (" 0.5 m"; "": the scenes' own) differ; None where these were not judged."""
+    pairs = {row.id: [one.verdict for one in row.verdicts if one.mechanics in (f"explicit{cells}", f"quasi-static{cells}")] for row in rows}
+    pairs = {id_: found for id_, found in pairs.items() if len(found) == 2}
+    return [id_ for id_, found in pairs.items() if found[0] != found[1]] if pairs else None
 
 
 def counts(rows: Sequence[Shown]) -> list[tuple[str, list[tuple[str, str, int]]]]:
     """For each mechanics and verdict: the verdict's name, its colour's kind and how many claims have it."""
     given = [(one.mechanics, one.verdict) for row in rows for one in row.verdicts]
-    return [(mechanics, [(name, kind, given.count((mechanics, name))) for name, kind in KINDS.items()]) for mechanics in mechanics_of_rows(rows)]
+    return [(mechanics, [(name, kind, given.count((mechanics, name))) for name, kind in KINDS.items()]) for mechanics in dict.fromkeys(name for name, _ in given)]
 
 
 def _claim_row(results: Sequence[ClaimResult]) -> Shown:

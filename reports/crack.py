@@ -8,7 +8,7 @@ from reports.runs import Arrays, NotAvailable, Run, fields_at, interfaces_at, ou
 from reports.shown import Shown
 from reports.words import metres, mpa, number, plain
 
-SQUARES = 100  # of Fig 2 along either side
+SQUARES = 160  # of Fig 2 along either side
 WINDOW_CELLS = 9  # width of Fig 1's panels: few enough for single nodes and particles to be told apart
 REACH: dict[str, float] = {"bspline2": 1.5, "linear": 1.0, "gimp": 1.25}  # half support of a node, cells
 
@@ -137,8 +137,8 @@ def pressure_figure(run: Run, index: int) -> Shown:
     return Shown(
         title=title, edges_x_m=edges_x, edges_y_m=edges_y, s_xx_MPa=field, centre_MPa=-layout.horizontal_Pa / 1e6,
         range_MPa=max(float(np.percentile(change, 99.0)), abs(inlet - layout.horizontal_Pa) / 1e6), view_m=(left, left + size, 0.0, size),
-        crack_x_m=x_m, crack_y_m=y_m, interfaces_m=layout.heights_m, arc_m=arc, pressure=pressure_Pa / inlet, opening_mm=opening_mm,
-        permeability_m2=fracture["permeability_m2"], inlet_MPa=inlet / 1e6, time_s=float(output_times(run)[index]),
+        crack_x_m=x_m, crack_y_m=y_m, arc_m=arc, pressure=pressure_Pa / inlet, opening_mm=opening_mm,
+        permeability_m2=fracture["permeability_m2"], inlet_MPa=inlet / 1e6, cell_m=layout.cell_m, time_s=float(output_times(run)[index]),
         source=f"Experiment {run.number}, {plain(run.variant)}",
     )
 

@@ -1,4 +1,4 @@
-"""The crossing map from its tables: verification/crossing_map/records/crossing_map.png (the SVG is not kept), and the table of where strata and the criteria part.
+"""The crossing map from its tables: verification/crossing_map/records/crossing_map.png, and the table of where strata and the criteria part.
 
 usage: python3 -m reports.crossing_map [--records DIR]      (after python3 -m verification.crossing_map)
 """
@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from reports.charts.crossing_map import draw_crossing_map
-from reports.charts.style import save
+from reports.charts.style import TWO_COLUMNS, save
+from reports.figures import Figure, Table, Topic, words_of
 from reports.shown import Shown
 from verification.crossing_map.criteria import blanton, first_slip, griffith_means, gu_weng, mean_slip, renshaw_pollard
 from verification.crossing_map.maps import INCLINED_MPa, MAPS, RECORDS, Verdicts, read_table
@@ -70,15 +71,32 @@ def parting(folder: Path) -> str:
     return "\n".join("| " + " | ".join(row) + " |" for row in (next(iter(found.values())), *rows))
 
 
+def map_figure(folder: Path) -> Shown:
+    """All maps of a folder as they are drawn."""
+    panels = [panel_of(name, folder) for name in MAPS if (folder / f"{name}.csv").is_file()]
+    border = crosses_above(read_table(MAPS["friction"], folder), 0.4)
+    asked = renshaw_pollard(0.4, STRENGTH_MPa, CLOSING_MPa)
+    title = f"At friction 0.4 the fracture crosses from {border:.2g} MPa on, where Renshaw & Pollard ask for {asked:.2g} MPa"
+    return Shown(title="Verdicts" if math.isnan(border) else title, panels=panels, runs=sum(len(panel.runs) for panel in panels))
+
+
+def topic(folder: Path = RECORDS) -> Topic | None:
+    """The section of the front page from the kept tables; None where there are none."""
+    data = map_figure(folder)
+    if not data.panels:
+        return None
+    header, _, *rows = [line.strip("| ").split(" | ") for line in parting(folder).splitlines()]
+    return Topic("crossing", "Where a fracture crosses an interface", [f"{data.title}.", words_of("crossing")], "ci/crossing_map", "",
+                 Figure("crossing_map", data, draw_crossing_map, "crossing_map", "ci/crossing_map"),
+                 [Table("Stress normal to the interface, MPa, from which on a fracture crosses, by friction", header, rows)])
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Draw the map and print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--records", type=Path, default=RECORDS)
     folder = parser.parse_args(arguments).records
-    panels = [panel_of(name, folder) for name in MAPS if (folder / f"{name}.csv").is_file()]
-    border, asked = crosses_above(read_table(MAPS["friction"], folder), 0.4), renshaw_pollard(0.4, STRENGTH_MPa, CLOSING_MPa)
-    title = f"At friction 0.4 the fracture crosses from {border:.2g} MPa on, where Renshaw & Pollard ask for {asked:.2g} MPa"
-    save(draw_crossing_map(Shown(title="Verdicts" if math.isnan(border) else title, panels=panels)), folder, "crossing_map")
+    save(draw_crossing_map(map_figure(folder), TWO_COLUMNS), folder / "crossing_map.png")
     if (folder / "friction.csv").is_file():
         print(parting(folder))
     return 0

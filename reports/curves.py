@@ -1,41 +1,80 @@
-"""Prepares Figures 3 to 8 for drawing: heights, openings and paths from run folders."""
+"""Prepares Figures 3 to 8 for drawing: heights, openings and paths from run folders; runs that would lie on one another are drawn once."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
+from reports.comparison import path_distance, shift_Pa
 from reports.layout import layout_of
-from reports.outcome import Arrest, finding, held, outcome_of, outcomes_of
+from reports.outcome import finding, held, outcome_of, outcomes_of
 from reports.runs import NotAvailable, Run, fields_at, lead_of, mechanics_in, output_times
 from reports.shown import Shown
 from reports.words import listed, mechanics_name, metres, metres_signed, number, plain
 
 OPENING_INSTANTS = 7  # profiles a panel of Fig 7: as many as stay distinguishable in one colour scale
-MARKED: tuple[str, ...] = ("start", "reach_interface", "arrest", "restart", "stop")
+MARKED: tuple[str, ...] = ("start", "arrest", "restart", "stop")
 PANEL_ASPECT = 1.15  # height over width of a panel of Fig 8
 LOWEST_ASPECT = 0.75  # of a panel for a path that turns sideways: room for its legend and inset
+# Runs nearer than this lie within a line's width on one another: 1.5 MPa or 4 m over a panel of 90 mm, lines of 0.4 mm.
+SAME_PA, SAME_M = 5e3, 0.02
 
 
-def height_figure(runs: list[Run]) -> Shown:
-    """Height (m) against inlet pressure (MPa) for the study's variants of one experiment; zoom is the range of both about the interfaces."""
-    drawn = [run for run in runs if run.is_main and run.drawable]
+def drawn_of(runs: Sequence[Run]) -> list[Run]:
+    """The study's variants that have a history."""
+    return [run for run in runs if run.is_main and run.drawable]
+
+
+def grouped(runs: Sequence[Run], same: Callable[[Run, Run], bool]) -> list[list[Run]]:
+    """Runs of one mechanics that are the same to the eye, together."""
+    groups: list[list[Run]] = []
+    for run in runs:
+        own = next((group for group in groups if group[0].mechanics == run.mechanics and group[0].status == run.status and same(group[0], run)), None)
+        if own is None:
+            groups.append([run])
+        else:
+            own.append(run)
+    return groups
+
+
+def same_climb(run: Run, other: Run) -> bool:
+    """Whether two runs come to every height at the same pressure, and end at the same height."""
+    ends = [float(one.history["height_m"][-1]) for one in (run, other)]
+    return abs(ends[0] - ends[1]) < 0.5 * run.cell_m and shift_Pa(run, other) < SAME_PA
+
+
+def same_path(run: Run, other: Run) -> bool:
+    """Whether two paths are the same."""
+    apart = path_distance(run, other)
+    return apart is not None and apart < SAME_M
+
+
+def names_of(group: Sequence[Run]) -> str:
+    """The variants of a group in words."""
+    return listed([plain(run.variant) for run in group])
+
+
+def pressure_span(runs: Sequence[Run]) -> tuple[float, float]:
+    """The range of inlet pressures (MPa) from a little before the first growth to the last end of all runs, for axes that experiments share."""
+    drawn = drawn_of(runs)
+    first = min((run.history["inlet_Pa"][_first_growth(run.history["height_m"], run.cell_m)] for run in drawn), default=2e6) / 1e6
+    last = max((run.history["inlet_Pa"][-1] for run in drawn), default=4e6) / 1e6
+    return (float(first) - 0.06 * (last - first) - 0.01, float(last) + 0.03 * (last - first) + 0.01)
+
+
+def height_figure(runs: list[Run], every: Sequence[Run] = ()) -> Shown:
+    """Height (m) against inlet pressure (MPa) for the study's variants of one experiment, on the axes of `every` run."""
+    drawn = drawn_of(runs)
     if not drawn:
         raise NotAvailable("no run of this experiment has a history")
-    layout, lead = layout_of(drawn[0]), lead_of(drawn)
-    curves = [_height_curve(run, runs, run.mechanics != lead) for run in drawn]
-    last = max(float(curve.inlet_MPa[-1]) for curve in curves)
-    first = min(*(float(curve.inlet_MPa[_first_growth(curve.height_m, layout.cell_m)]) for curve in curves), last)
-    foot = min(float(curve.height_m[0]) for curve in curves)
-    top = max(layout.heights_m, default=foot) + 8.0 * layout.cell_m
-    near = max(float(curve.inlet_MPa[curve.height_m <= top].max()) for curve in curves)
+    lead = lead_of(drawn)
+    groups = sorted(grouped(drawn, same_climb), key=lambda group: group[0].mechanics != lead)
+    curves = [_height_curve(group, group[0].mechanics != lead) for group in groups]
     told = [run for run in drawn if run.mechanics == lead]
     return Shown(
-        title=lead_words(drawn) + finding([outcome_of(run, runs) for run in told]), layout=layout, curves=curves,
-        stays=[f"{plain(run.variant)} {stay}" for run in told if (stay := held(run, runs))],
-        beside=list(dict.fromkeys(curve.mechanics for curve in curves if curve.beside)),
-        zoom_m=(foot - layout.cell_m, top), pressure_MPa=_span(first, last), zoom_MPa=_span(first, near),
-        flagged=any(mark.flag for curve in curves for mark in curve.marks),
+        title=lead_words(drawn) + finding([outcome_of(run, runs) for run in told]), name=f"Experiment {drawn[0].number}", layout=layout_of(drawn[0]),
+        curves=curves, stays=[f"{plain(run.variant)} {stay}" for run in told if (stay := held(run, runs))],
+        beside=list(dict.fromkeys(curve.mechanics for curve in curves if curve.beside)), pressure_MPa=pressure_span(every or runs), same_kPa=SAME_PA / 1e3,
     )
 
 
@@ -44,34 +83,21 @@ def lead_words(drawn: Sequence[Run]) -> str:
     return "" if len(mechanics_in(drawn)) < 2 else f"{mechanics_name(lead_of(drawn)).capitalize()}: "
 
 
-def _span(first_MPa: float, last_MPa: float) -> tuple[float, float]:
-    """A range of pressures with some room before and after, MPa."""
-    return (first_MPa - 0.12 * (last_MPa - first_MPa) - 0.01, last_MPa + 0.04 * (last_MPa - first_MPa) + 0.01)
-
-
 def _first_growth(height_m: np.ndarray, cell_m: float) -> int:
     """Index of the last row before the height first rises by more than the motion of its tip: a quarter of a cell."""
     grown = np.flatnonzero(height_m > height_m[0] + 0.25 * cell_m)
     return max(0, int(grown[0]) - 1) if grown.size else height_m.size - 1
 
 
-def _height_curve(run: Run, runs: Sequence[Run], beside: bool) -> Shown:
-    """One run's curve with its marked events; beside: of the mechanics that is shown for comparison."""
-    arrests = outcome_of(run, runs).arrests
+def _height_curve(group: Sequence[Run], beside: bool) -> Shown:
+    """The curve of runs that are alike, with its marked events; beside: of the mechanics that is shown for comparison."""
+    run = group[0]
     keep = np.isfinite(run.history["inlet_Pa"]) & np.isfinite(run.history["height_m"])
-    return Shown(
-        variant=run.variant, mechanics=mechanics_name(run.mechanics), beside=beside,
-        label=plain(run.variant) + ("" if run.status == "completed" else f" ({run.status})"), inlet_MPa=run.history["inlet_Pa"][keep] / 1e6,
-        height_m=run.history["height_m"][keep], marks=[_mark(arrests, event) for event in run.events if event.get("kind") in MARKED],
-        failed=run.status == "failed",
-    )
-
-
-def _mark(arrests: tuple[Arrest, ...], event: dict[str, Any]) -> Shown:
-    """An event as a mark; an arrest by J at an interface, unless energy confirms it, carries its flag."""
-    y_m, kind, inlet = float(event["tip_y_m"]), str(event["kind"]), float(event["inlet_Pa"])
-    flags = [arrest.flag for arrest in arrests if (arrest.height_m, arrest.from_Pa) == (y_m, inlet) and kind == "arrest"]
-    return Shown(kind=kind, inlet_MPa=inlet / 1e6, height_m=y_m, flag=flags[0] if flags else "")
+    label = names_of(group) + (f", {mechanics_name(run.mechanics)}" if beside else "") + ("" if run.status == "completed" else f" ({run.status})")
+    marks = [Shown(kind=str(event["kind"]), inlet_MPa=float(event["inlet_Pa"]) / 1e6, height_m=float(event["tip_y_m"]))
+             for event in run.events if event.get("kind") in MARKED]
+    return Shown(variant=run.variant, mechanics=mechanics_name(run.mechanics), beside=beside, label=label, inlet_MPa=run.history["inlet_Pa"][keep] / 1e6,
+                 height_m=run.history["height_m"][keep], marks=marks, failed=run.status == "failed")
 
 
 def profile_figure(runs: list[Run], variants: tuple[str, ...] = ("perfect", "weak")) -> Shown:
@@ -84,7 +110,8 @@ def profile_figure(runs: list[Run], variants: tuple[str, ...] = ("perfect", "wea
     wanted = np.linspace(first, max(float(value[-1]) for value in times.values()), OPENING_INSTANTS)
     present = mechanics_in(chosen.values())
     order = [(mechanics, name) for mechanics in reversed(present) for name in variants if (mechanics, name) in chosen]
-    panels = [_profile_panel(chosen[key], times[key], wanted, len(present) > 1) for key in order]
+    groups = grouped([chosen[key] for key in order], same_climb)
+    panels = [_profile_panel(group, times[group[0].mechanics, group[0].variant], wanted, len(present) > 1) for group in groups]
     profiles = [profile for panel in panels for profile in panel.profiles]
     return Shown(
         title=lead_words(list(chosen.values())) + finding(outcomes_of([chosen[key] for key in order if key[0] == present[-1]])), panels=panels,
@@ -93,8 +120,9 @@ def profile_figure(runs: list[Run], variants: tuple[str, ...] = ("perfect", "wea
     )
 
 
-def _profile_panel(run: Run, times_s: np.ndarray, wanted_s: np.ndarray, named: bool) -> Shown:
-    """The profiles of one run at the output times nearest to those wanted, each once; shade: 0 first to 1 last."""
+def _profile_panel(group: Sequence[Run], times_s: np.ndarray, wanted_s: np.ndarray, named: bool) -> Shown:
+    """The profiles of runs that are alike at the output times nearest to those wanted, each once; shade: 0 first to 1 last."""
+    run = group[0]
     reached = wanted_s[wanted_s <= times_s[-1] * (1.0 + 1e-9)]
     profiles = []
     for index in sorted({int(np.argmin(np.abs(times_s - time))) for time in reached} | {times_s.size - 1}):
@@ -105,7 +133,7 @@ def _profile_panel(run: Run, times_s: np.ndarray, wanted_s: np.ndarray, named: b
                               shade=float(shade)))
     end = profiles[-1]
     heading = (
-        f"{plain(run.variant)}{f', {mechanics_name(run.mechanics)}' if named else ''}: at the end {metres(float(end.height_m.max()))} high,"
+        f"{names_of(group)}{f', {mechanics_name(run.mechanics)}' if named else ''}: at the end {metres(float(end.height_m.max()))} high,"
         f" {number(float(end.opening_mm.max()), 2)}\u00a0mm wide"
     )
     return Shown(variant=run.variant, mechanics=run.mechanics, heading=heading, profiles=profiles, interfaces_m=layout_of(run).heights_m)
@@ -113,13 +141,11 @@ def _profile_panel(run: Run, times_s: np.ndarray, wanted_s: np.ndarray, named: b
 
 def path_figure(groups: list[list[Run]]) -> Shown:
     """Final fracture paths of several experiments, zoomed so that their deviations are visible."""
-    panels = [_path_panel(runs) for runs in groups if any(run.is_main and run.drawable for run in runs)]
+    panels = [_path_panel(runs) for runs in groups if drawn_of(runs)]
     if not panels:
         raise NotAvailable("no run of these experiments has a history")
-    drawn = [run for runs in groups for run in runs if run.is_main and run.drawable]
-    kinks = {panel.name: [f"{plain(path.variant)} {path.kink_deg:.2g}°" for path in panel.paths if not path.beside] for panel in panels}
-    return Shown(title=lead_words(drawn) + "; ".join(panel.heading for panel in panels), panels=panels,
-                 turns=[f"{name} {listed(each)}" for name, each in kinks.items()])
+    drawn = drawn_of([run for runs in groups for run in runs])
+    return Shown(title=lead_words(drawn) + "; ".join(panel.heading for panel in panels), panels=panels, same_cm=100.0 * SAME_M)
 
 
 def _path_panel(runs: list[Run]) -> Shown:
@@ -128,11 +154,12 @@ def _path_panel(runs: list[Run]) -> Shown:
     magnified: horizontal over vertical scale; aspect: height over width of the panel; lean: +1 where the paths end to the right of their start, -1 to
     the left (the other corners are free); aside: where the interface is when it is outside the window.
     """
-    drawn = [run for run in runs if run.is_main and run.drawable]
+    drawn = drawn_of(runs)
     layout, lead = layout_of(drawn[0]), lead_of(drawn)
     softer_left = layout.along == "x" and len(layout.layers) > 1 and not layout.layers[-1].stiffness < layout.layers[0].stiffness
     side = -1.0 if softer_left else 1.0  # the softer rock lies at smaller or larger x of the interface
-    paths = [_path(run, side, run.mechanics != lead) for run in sorted(drawn, key=lambda run: run.mechanics != lead)]
+    groups = sorted(grouped(drawn, same_path), key=lambda group: group[0].mechanics != lead)
+    paths = [_path(group, side, group[0].mechanics != lead) for group in groups]
     window = _window(paths)
     steep = (window[3] - window[2]) / (window[1] - window[0])
     magnified, name = max(1.0, steep / PANEL_ASPECT), f"Experiment {drawn[0].number}"
@@ -141,29 +168,27 @@ def _path_panel(runs: list[Run]) -> Shown:
                  aside=_aside(layout, window))
 
 
-def _path(run: Run, side: float, beside: bool) -> Shown:
-    """The last path of a run, its largest turn and where that is; beside: of the mechanics shown for comparison."""
+def _path(group: Sequence[Run], side: float, beside: bool) -> Shown:
+    """The last path of runs that are alike and its largest turn; beside: of the mechanics shown for comparison."""
+    run = group[0]
     fields = fields_at(run, "fracture", output_times(run).size - 1)
     x_m, y_m = fields["x_m"], fields["y_m"]
-    kink, at = largest_turn(x_m, y_m)
-    name = plain(run.variant) + (f", {mechanics_name(run.mechanics)}" if beside else "")
+    kink = largest_turn(x_m, y_m)
+    name = names_of(group) + (f", {mechanics_name(run.mechanics)}" if beside else "")
     label = f"{name}: {metres_signed(side * float(x_m[-1] - x_m[0]))}, {number(kink, 2)}°"
-    return Shown(variant=run.variant, beside=beside, label=label, x_m=x_m, y_m=y_m, kink_deg=kink, kink_at_m=at)
+    return Shown(variant=run.variant, beside=beside, name=names_of(group), label=label, x_m=x_m, y_m=y_m, kink_deg=kink)
 
 
-def largest_turn(x_m: np.ndarray, y_m: np.ndarray) -> tuple[float, tuple[float, float]]:
-    """The largest angle in degrees between neighbouring segments of a polyline, and its place in m."""
+def largest_turn(x_m: np.ndarray, y_m: np.ndarray) -> float:
+    """The largest angle in degrees between neighbouring segments of a polyline."""
     step_x, step_y = np.diff(x_m), np.diff(y_m)
-    length = np.hypot(step_x, step_y)
-    step_x, step_y = step_x[length > 0], step_y[length > 0]
+    long = np.hypot(step_x, step_y) > 0
+    step_x, step_y = step_x[long], step_y[long]
     if step_x.size < 2:
-        return 0.0, (float(x_m[0]), float(y_m[0]))
+        return 0.0
     cross = step_x[:-1] * step_y[1:] - step_y[:-1] * step_x[1:]
     along = step_x[:-1] * step_x[1:] + step_y[:-1] * step_y[1:]
-    turn = np.abs(np.degrees(np.arctan2(cross, along)))
-    worst = int(np.argmax(turn))
-    corners_x, corners_y = x_m[1:][length > 0], y_m[1:][length > 0]
-    return float(turn[worst]), (float(corners_x[worst]), float(corners_y[worst]))
+    return float(np.max(np.abs(np.degrees(np.arctan2(cross, along)))))
 
 
 def _window(paths: Sequence[Shown]) -> tuple[float, float, float, float]:
@@ -189,10 +214,10 @@ def _aside(layout: Shown, window: tuple[float, float, float, float]) -> str:
 
 def _drift(paths: Sequence[Shown], side: float) -> str:
     """Which way each path ends, and how far, like paths told together."""
-    toward = {path.variant: side * float(path.x_m[-1] - path.x_m[0]) for path in paths if not path.beside}
+    toward = {path.name: side * float(path.x_m[-1] - path.x_m[0]) for path in paths if not path.beside}
     parts = []
     for sign, where in ((1.0, "towards the soft rock"), (-1.0, "towards the stiff rock")):
-        each = [f"{number(abs(shift), 2)}\u00a0m ({plain(name)})" for name, shift in toward.items() if sign * shift > 0]
+        each = [f"{number(abs(shift), 2)}\u00a0m ({name})" for name, shift in toward.items() if sign * shift > 0]
         parts += [f"{where} by {listed(each)}"] if each else []
-    still = [plain(name) for name, shift in toward.items() if shift == 0]
+    still = [name for name, shift in toward.items() if shift == 0]
     return "the fracture goes " + ", ".join(parts + ([f"straight ({listed(still)})"] if still else []))

@@ -1,16 +1,19 @@
-"""What pages are made of, whichever page it is: figures as declarations, tables and parts as plain data; and what writes them."""
+"""What pages are made of, whichever page it is: figures as declarations, and what writes them with their data, captions and commands."""
 
+import json
+import math
 import re
 import traceback
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, is_dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, NotRequired, TypedDict
+from typing import Any
 
 import jinja2
+import numpy as np
 
-from reports.charts.style import save
+from reports.charts.style import ONE_COLUMN, TWO_COLUMNS, save
 from reports.runs import NotAvailable, Run
 from reports.shown import Shown
 from reports.words import listed, mechanics_name, metres, mpa, plain, share
@@ -21,36 +24,43 @@ OUT, TEMPLATES = (Path(__file__).resolve().parent / name for name in ("out", "te
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure: files out/figures/NAME.svg and .png, what is drawn (with the finding as its title) or prepares that, what draws it,
-    and the part of templates/words.md that is its caption."""
+    """A figure: what is drawn (with the finding as its title) or prepares that, what draws it at a width in mm, the part of templates/words.md that is
+    its caption, and the command that makes what it shows. Its files are out/figures/NAME.svg, .pdf and .json, and NAME_one_column.svg and .pdf."""
 
     name: str
     data: Shown | Callable[[], Shown]
-    draw: Callable[[Shown], Any]
+    draw: Callable[[Shown, float], Any]
     caption: str
+    command: str
     label: str = ""
-    experiment: int = 0  # 0: of no single experiment
-    part: str = ""  # where on the page of the experiments: "method", "experiment", "energy", "choice" or "variants"
     runs: Sequence[Run] = ()  # those drawn, whose marks the caption tells
+    narrow: bool = True  # whether it is drawn one column wide as well
 
 
-class Table(TypedDict):
-    """A table in words. `marked`: numbers of the rows (from 0) that fall short; `note` stands below the table."""
-
-    title: str
-    header: list[str]
-    rows: list[list[str]]
-    marked: NotRequired[list[int]]
-    note: NotRequired[str]
-
-
-class Section(TypedDict):
-    """A part of a page: what was found (a sentence or two, from the data) in `intro`, then figures, then tables."""
+@dataclass(frozen=True)
+class Table:
+    """A table in words behind a click."""
 
     title: str
-    intro: str
-    figures: list[Figure]
-    tables: list[Table]
+    header: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Topic:
+    """A short section of the front page, from records that are kept: what was found, a figure, tables behind a click, and which version and command
+    the records are of; `page` is the page that has all of it."""
+
+    name: str
+    title: str
+    says: Sequence[str]
+    command: str
+    version: str
+    figure: Figure | None = None
+    tables: Sequence[Table] = ()
+    shown: Table | None = None  # that stands in the open
+    page: str = ""
 
 
 @lru_cache(maxsize=None)
@@ -67,19 +77,37 @@ def words_of(name: str, **given: Any) -> str:
     return re.sub(r"[ \n]+", " ", _texts()[name].render(given)).strip(" ")
 
 
-def suspect_words(runs: Sequence[Run]) -> str:
-    """A sentence that names the runs of a figure that mark themselves as suspect, with why; nothing where none does."""
-    words = [f"Experiment {run.number} {plain(run.variant)}, {mechanics_name(run.mechanics)}: {'; '.join(run.marks)}" for run in runs if run.marks]
-    return f" Suspect runs: {'. '.join(words)}." if words else ""
+def suspect_words(runs: Sequence[Run]) -> list[str]:
+    """The runs of a figure that mark themselves as suspect, each with why."""
+    return [f"Experiment {run.number} {plain(run.variant)}, {mechanics_name(run.mechanics)}: {'; '.join(run.marks)}" for run in runs if run.marks]
+
+
+def plain_data(value: Any) -> Any:
+    """What is drawn as JSON has it: numbers to seven digits, null for what is none."""
+    if isinstance(value, Shown):
+        return plain_data(vars(value))
+    if isinstance(value, np.ndarray):
+        return plain_data(value.tolist())
+    if is_dataclass(value):
+        return plain_data(asdict(value))
+    if isinstance(value, dict):
+        return {str(key): plain_data(one) for key, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain_data(one) for one in value]
+    if isinstance(value, (float, np.floating)):
+        return float(f"{value:.7g}") if math.isfinite(value) else None
+    return value if value is None or isinstance(value, (str, int, bool)) else str(value)
 
 
 def make(figure: Figure, out: Path) -> Shown:
     """Write a figure's files below a page's folder; whatever is missing or wrong is told on the page and stops nothing."""
-    made = Shown(name=figure.name, label=figure.label, experiment=figure.experiment, part=figure.part, title="", caption="", lack="", defect="")
+    made = Shown(name=figure.name, label=figure.label, command=figure.command, narrow=figure.narrow, title="", caption="", suspect=[], lack="", defect="")
     try:
         data = figure.data() if callable(figure.data) else figure.data
-        save(figure.draw(data), out / "figures", figure.name)
-        made.title, made.caption = data.title, words_of(figure.caption, data=data) + suspect_words(figure.runs)
+        for width_mm, ending in ((TWO_COLUMNS, ""), (ONE_COLUMN, "_one_column"))[: 1 + figure.narrow]:
+            save(figure.draw(data, width_mm), *(out / "figures" / f"{figure.name}{ending}.{kind}" for kind in ("svg", "pdf")))
+        (out / "figures" / f"{figure.name}.json").write_text(json.dumps(plain_data(data)), encoding="utf-8")
+        made.title, made.caption, made.suspect = data.title, words_of(figure.caption, data=data), suspect_words(figure.runs)
     except NotAvailable as missing:
         made.lack = str(missing)
     except Exception as error:  # a defect in one figure must not cost the reader all the others
@@ -88,12 +116,12 @@ def make(figure: Figure, out: Path) -> Shown:
 
 
 def write_page(out: Path, name: str, content: dict[str, Any]) -> Path:
-    """Write a page from the template of its name (index.html: page.html)."""
+    """Write a page from the template of its name."""
     loader = jinja2.FileSystemLoader(TEMPLATES)
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
     environment.filters |= FILTERS
     out.mkdir(parents=True, exist_ok=True)
-    (out / name).write_text(environment.get_template("page.html" if name == "index.html" else name).render(content), encoding="utf-8")
+    (out / name).write_text(environment.get_template(name).render(content), encoding="utf-8")
     return out / name
 
 

@@ -45,7 +45,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, default=EXPERIMENTS, help="folder of heights.svg")
     options = parser.parse_args(arguments)
     claims = read_claims(options.runs / "claims.json")
-    save(draw_front_picture([panel_of(options.runs, claims, *shown) for shown in SHOWN]), options.out, "heights")
+    save(draw_front_picture([panel_of(options.runs, claims, *shown) for shown in SHOWN]), options.out / "heights.svg")
     print(options.out / "heights.svg")
     return 0
 

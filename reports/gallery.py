@@ -124,7 +124,7 @@ def main(arguments: list[str] | None = None) -> int:
         if len(runs) < len(made):
             print(f"{scene.name}: {made[0][0].reason}", file=sys.stderr)
             return 3
-        save(draw_gallery(shown(scene.name, runs)), options.out, scene.name)
+        save(draw_gallery(shown(scene.name, runs)), options.out / f"{scene.name}.svg")
         rows.append(row(scene, runs[0], cpu_s))
         print(rows[-1], flush=True)
     readme = gallery.FOLDER / "README.md"

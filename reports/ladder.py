@@ -1,4 +1,4 @@
-"""The accuracy ladder's ladder.json as plain data: what its charts draw, and the words of its tables."""
+"""The accuracy ladder as plain data, from ladder.json or what was last accepted: what its charts draw, and the words of its tables."""
 
 import json
 import math
@@ -7,25 +7,62 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
+from reports.figures import Table, Topic, words_of
 from reports.shown import Shown
 from reports.words import NONE, mechanics_name, number, order_words, plain, relative, sentence, share, thousands
+from verification.harness.front_table import LINES
+from verification.harness.paths import ROOT
 
 ROUND_OFF = "round-off"  # as in verification/ladder/gates.py: how the reason of what holds to rounding begins
+ROUND_OFF_MOST = 1e-6  # the widest gate of what holds to rounding, as there
 SAME_AS_ROUNDING = 1e-13  # errors below it are not drawn
 UNIT = re.compile(r"\d (m|s)\b")  # of a level's size, in its label
+SIZE = re.compile(r"(?:dt )?([\d.]+) [ms](?:,.*)?")
+GATES = ROOT / "verification" / "ladder" / "gates"
 
 
-def load_ladder(path: Path) -> Shown | None:
-    """Read ladder.json: rows, families with what they and their cases say, the tally of gates and mutants; None where there is none, ValueError
-    where it is not as the ladder leaves it."""
+def load_ladder(path: Path, gates: Path = GATES) -> Shown | None:
+    """Read ladder.json: rows, families with what they and their cases say, the tally of gates and mutants; without it what was last accepted, and None
+    where there is nothing. Raises ValueError where it is not as the ladder leaves it."""
     if not path.is_file():
-        return None
+        return accepted(gates)
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
         kept = ("tally", "stale", "part", "machine", "families")
-        return Shown(**{key: content[key] for key in kept}, rows=[_row(item) for item in content["rows"]])
+        return Shown(accepted=False, **{key: content[key] for key in kept}, rows=[_row(item) for item in content["rows"]])
     except (KeyError, TypeError) as error:
         raise ValueError(f"{path}: {error}") from error
+
+
+def accepted(folder: Path) -> Shown | None:
+    """What the gates were made of: errors and orders by case, quantity and level, without values and costs; None without gates."""
+    rows: list[dict[str, Any]] = []
+    unknown = {"mechanics": "", "unit": "", "values": 2, "scale": None, "value": None, "reference": None, "reference_error": 0.0, "cost": None,
+               "failure": "", "problems": [], "verdict": "pass"}  # fmt: skip
+    for path in sorted(folder.glob("*.json")):
+        book = json.loads(path.read_text(encoding="utf-8"))
+        for case, quantities in book["cases"].items():
+            for quantity, levels in quantities.items():
+                for k, (level, gate) in enumerate(levels.items()):
+                    found = SIZE.fullmatch(level)
+                    why = ROUND_OFF if gate["error"] <= ROUND_OFF_MOST else "" if gate.get("order") is not None else "not judged"
+                    rows.append({**unknown, "family": book["family"], "case": case, "quantity": quantity, "level": level, "gate": gate, "no_order": why,
+                                 "size": float(found[1]) if found else 0.5**k, "error": gate["measured"], "order": gate.get("measured_order")})  # fmt: skip
+    cases = dict.fromkeys((row["family"], row["case"]) for row in rows)
+    families = [{"name": name, "says": "", "cases": [{"name": case, "says": ""} for family, case in cases if family == name]}
+                for name in dict.fromkeys(name for name, _ in cases)]
+    return Shown(accepted=True, tally=None, stale=[], part=False, machine="", families=families, rows=list(map(_row, rows))) if rows else None
+
+
+def topic(ladder: Shown | None) -> Topic | None:
+    """The section of the front page: the comparisons that README.md names as well, errors from coarse to fine."""
+    if ladder is None:
+        return None
+    error = {(row.case, row.quantity, row.level): abs(row.error) for row in ladder.rows}
+    rows = [[line.says, line.against.replace("`", ""), ", ".join(f"{share(error[line.case, line.quantity, level])} ({level})" for level in line.levels)]
+            for line in LINES if all((line.case, line.quantity, level) in error for level in line.levels)]
+    return Topic("accuracy", "How accurate the numbers are", [words_of("accuracy")], "ci/verify", "", page="verification.html",
+                 shown=Table("", ["What", "Against", "Error"], rows) if rows else None)
 
 
 def _row(item: dict[str, Any]) -> Shown:
@@ -84,7 +121,7 @@ def convergence_figure(rows: Sequence[Shown]) -> Shown | None:
 
 def case_words(case: str, mechanics: str) -> str:
     """A case's name in words with its mechanics, unless the name has it."""
-    return plain(case) if mechanics in case.split("_") else f"{plain(case)}, {mechanics_name(mechanics)}"
+    return plain(case) if not mechanics or mechanics in case.split("_") else f"{plain(case)}, {mechanics_name(mechanics)}"
 
 
 def convergence_words(curves: Sequence[Shown]) -> str:

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes the page of the experiments with those beside it, or one of these alone: make_page.py --runs runs --out reports/out [--page NAME]."""
+"""Writes the front page with those behind it, or one of these alone: make_page.py --runs runs --out reports/out [--page NAME]."""
 
 import argparse
 import sys
@@ -12,11 +12,10 @@ sys.path.insert(0, str(ROOT))
 
 from reports.catalogue import catalogue  # noqa: E402  (after the path to the project is known)
 from reports.figures import OUT, make  # noqa: E402
-from reports.page import write_index  # noqa: E402
-from reports.precision import write_precision  # noqa: E402
+from reports.page import topic_shown, topics, write_index  # noqa: E402
 from reports.runs import add_missing, load_runs  # noqa: E402
 from reports.stability import write_stability  # noqa: E402
-from reports.verification import write_verification  # noqa: E402
+from reports.verification import LADDER, write_verification  # noqa: E402
 from verification.harness.choices import read_points  # noqa: E402
 from verification.harness.claim_data import read_claims  # noqa: E402
 from verification.harness.paths import RUNS  # noqa: E402
@@ -27,7 +26,7 @@ from verification.stability.store import RECORDS  # noqa: E402
 def main(arguments: list[str] | None = None) -> int:
     """Write the pages; 1 where a page asked for alone has nothing to show, or where --strict is given and something met a defect."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--page", default="index", choices=("index", "verification", "precision", "stability"))
+    parser.add_argument("--page", default="index", choices=("index", "verification", "stability"))
     parser.add_argument("--runs", type=Path, default=RUNS, help="folder of runs/<mechanics>/<scene>/<variant>/")
     parser.add_argument("--out", type=Path, default=OUT, help="folder for the page")
     parser.add_argument("--experiments", type=Path, default=ROOT / "experiments", help="scenes whose variants without a run are shown as not run")
@@ -37,8 +36,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--strict", action="store_true", help="exit 1 if something could not be drawn for a defect")
     options = parser.parse_args(arguments)
     out, alone = options.out, options.page != "index"
-    makers = {"verification": partial(write_verification, options.runs, out, options.ladder, not alone),
-              "precision": partial(write_precision, out, options.precision), "stability": partial(write_stability, out, options.stability)}
+    makers = {"verification": partial(write_verification, options.runs, out, options.ladder), "stability": partial(write_stability, out, options.stability)}
     if alone:
         made = makers[options.page]()
         pages, told = [made], f"{out / made.name}: {made.words}"
@@ -46,10 +44,12 @@ def main(arguments: list[str] | None = None) -> int:
         points, runs = read_points(options.experiments), add_missing(load_runs(options.runs), options.experiments, options.runs)
         with ProcessPoolExecutor(max_workers=2) as pool:  # the other pages are drawn at the same time
             waiting = {name: pool.submit(maker) for name, maker in makers.items()}
-            figures = [make(figure, out) for figure in catalogue(runs, points)]
+            figures = [make(figure, out) for figure in catalogue(runs, options.runs, options.experiments)]
+            sections = [topic_shown(topic, out) for topic in topics(options.ladder or options.runs / LADDER, options.precision)]
             beside = {name: one.result() for name, one in waiting.items()}
-        page = write_index(out, runs, read_claims(options.runs / "claims.json"), figures, points, **beside)
-        pages = [*beside.values(), *figures]
+        claims = read_claims(options.runs / "claims.json")
+        page = write_index(out, runs, claims, figures, points, sections, **beside)
+        pages = [*beside.values(), *figures, *sections, *(one.made for one in sections if getattr(one, "made", None))]
         told = f"{page}: {sum(not one.lack for one in figures)} of {len(figures)} figures, {len(runs)} runs"
     for one in pages:
         if one.lack or one.defect:

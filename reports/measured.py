@@ -1,31 +1,51 @@
-"""The part of the page of verification on experiments: what runs gave beside what was measured, and what each thing that a run may lack is worth."""
+"""Beside experiments: what runs of Rubin's fracture gave beside what was measured, and which way Wu's fracture had to go."""
 
 import math
-from pathlib import Path
+from collections.abc import Sequence
+
+import numpy as np
 
 from reports.charts.measured import draw_measured
-from reports.figures import Figure, Section, Table, words_of
+from reports.figures import Figure, Table, Topic, words_of
 from reports.shown import Shown
-from reports.words import NONE, minus, plain, share, wall_time
-from verification.harness import store
+from reports.words import NONE, minus, mpa, plain, share, wall_time
+from verification.harness.reference import NoReference, reference
 from verification.measured import rubin
 
 DRAWN = ("plain", "closing_stress", "tough")  # the finest run of each
 SCALES = {rubin.LENGTH: ("mm", 1e3), rubin.WELL: ("MPa", 1e-6), rubin.OPENING: ("µm", 1e6)}
+BORDERS_M, STRESS_PA, TOUGHNESS = [-0.025, 0.025], [5.0e6, 7.0e6, 11.2e6], 1.2e6  # Wu et al. 2008, as verification/measured/README.md has them
+HELD = 1e9  # a toughness that no tip passes
 
 
-def section(runs: Path) -> Section | None:
-    """The part of the page from the record beside the folder of runs; None where there is none."""
-    return section_of(store.read(rubin.Record, runs.parent / rubin.RECORD.relative_to(rubin.HERE.parents[1])))
-
-
-def section_of(record: rubin.Record | None) -> Section | None:
-    """The part of the page from a record."""
+def topic(record: rubin.Record | None = None) -> Topic | None:
+    """The section of the front page from the kept record; None where there is none."""
+    record = record or rubin.kept()
     if record is None:
         return None
     data = measured_figure(record)
-    return Section(title="Beside an experiment", intro=f"{data.title}. {words_of('measured_method')}",
-                   figures=[Figure("measured", data, draw_measured, "measured")], tables=[table_of(record)])
+    tables = [table_of(record)]
+    says = [f"{data.title}. {words_of('measured_method')}"]
+    try:
+        fronts = wu_fronts()
+        says.append(words_of("wu", fronts=fronts, margin=min(one.up_Pa - one.down_Pa for one in fronts)))
+        rows = [[minus(f"{one.bottom_mm:.0f} to {one.top_mm:.0f}"), mpa(one.down_Pa, 1), mpa(one.up_Pa, 1)] for one in fronts]
+        tables.append(Table("Wu et al. 2008: pressure at which each tip of a front goes on", ["Front (mm)", "lower tip, into 5 MPa", "upper tip, into 11.2 MPa"], rows))
+    except (NoReference, OSError):  # the program is not built: the rest is from records
+        pass
+    return Topic("measured", "Beside measurements", says, "ci/verify", record.version, Figure("measured", data, draw_measured, "measured", "ci/verify"), tables)
+
+
+def wu_fronts() -> Sequence[Shown]:
+    """Wu's fronts from the second on, lowest and highest points (mm), with the even pressures (Pa) at which a crack of plane strain between them goes on
+    downwards and upwards, by strata-reference."""
+    found = []
+    for y in list(rubin.table("wu2008_fronts_mm").values())[1::2][-2::-1]:
+        bottom, top = -float(np.nanmax(y)), -float(np.nanmin(y))
+        down, up = (reference("layered_height", border_m=BORDERS_M, stress_Pa=STRESS_PA, toughness_Pa_sqrt_m=tough, bottom_m=1e-3 * bottom, top_m=1e-3 * top)["start_Pa"]
+                    for tough in ([TOUGHNESS, HELD, HELD], [HELD, HELD, TOUGHNESS]))
+        found.append(Shown(bottom_mm=bottom, top_mm=top, down_Pa=down.value, up_Pa=up.value))
+    return found
 
 
 def measured_figure(record: rubin.Record) -> Shown:
@@ -56,4 +76,4 @@ def table_of(record: rubin.Record) -> Table:
         cells = [share(error.late) + (f" ({share(error.same_length)})" if math.isfinite(error.same_length) else "") for error in one.errors.values()]
         took = wall_time(one.wall_s) if math.isfinite(one.wall_s) else NONE
         rows.append([plain(one.name), one.says, f"{1e3 * one.cell_m:.2g} mm", *cells, minus(f"{one.early_s[0]:.1f} to {one.early_s[1]:.1f} s"), took])
-    return Table(title=f"Mean errors from {rubin.LATE_S:g} s on", header=header, rows=rows, note=words_of("measured_note", version=record.version))
+    return Table(f"Rubin 1983: mean errors from {rubin.LATE_S:g} s on", header, rows, words_of("measured_note"))

@@ -1,20 +1,19 @@
-"""The work-precision chart: error against wall time for every method, what follows for who uses the solver, and the page behind it."""
+"""The work-precision chart: error against wall time for every method, and what follows for who uses the solver."""
 
 import math
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from reports.charts.precision import draw_front, draw_full
-from reports.figures import Figure, make, told_of, words_of, write_page
+from reports.charts.precision import draw_front
+from reports.figures import Figure, Table, Topic, words_of
 from reports.shown import Shown
-from reports.words import NONE, listed, minus, number, share, thousands, wall_time
+from reports.words import listed, sentence, share, wall_time
 from verification.precision import store
 from verification.precision.judge import GROUPS, TOLERANCES, Dot, Panel, cheapest, choice_for, nearest, panel_of, pareto, run_at
 from verification.precision.problem import STRATA, Method
 from verification.precision.problems import PROBLEMS
 
-NAME = "precision.html"
 LEAST_SHOWN = 1e-5  # errors below are drawn there
 
 
@@ -25,7 +24,8 @@ def measurements(folder: Path = store.DATA) -> Shown | None:
         return None
     panels = tuple(panel_of(problem, wanted, sheet) for problem, sheet in sheets for wanted in problem.wanted)
     measured = [sheet for _, sheet in sheets]
-    return Shown(panels=panels, recipe=recipe(measured), notes=notes(measured))
+    version = listed(sorted({str(sheet.machine["version"]) for sheet in measured}))
+    return Shown(panels=panels, recipe=recipe(measured), notes=notes(measured), version=version)
 
 
 def recipe(sheets: Sequence[store.Sheet]) -> tuple[tuple[str, str], ...]:
@@ -153,26 +153,6 @@ def table_of(panels: Sequence[Panel]) -> list[Shown]:
             for panel in panels for group in GROUPS if (own := panel.of(group)) or group == GROUPS[0]]
 
 
-def point_rows(panel: Panel) -> list[list[str]]:
-    """Every measured point of a panel, by method and size."""
-    rows = []
-    for dot in panel.dots:
-        point, times = dot.point, dot.point.wall_s
-        flags = [word for word, on in (("disturbed", point.disturbed), ("one run", point.once), ("luck", dot.lucky)) if on]
-        rows.append([dot.method.label, point.level, thousands(point.particles or None), minus(f"{100.0 * dot.error:+.3g}\u00a0%"), share(dot.judged),
-                     number(dot.time_s, 3), f"{number(min(times), 3)} to {number(max(times), 3)}" if len(times) > 1 else NONE,
-                     number(min(point.cpu_s), 3) if point.cpu_s else NONE, f"{len(times)}", ", ".join(flags)])
-    return rows
-
-
-def lack_rows(panel: Panel) -> list[list[str]]:
-    """Every method and size that has nothing to show, with the reason; sizes of a method with the same reason together."""
-    groups: dict[tuple[str, str, str], list[str]] = {}
-    for lack in panel.lacks:
-        groups.setdefault((lack.method.label, lack.status, lack.reason), []).append(lack.level)
-    return [[label, listed(levels), status, reason] for (label, status, reason), levels in groups.items()]
-
-
 def recommendations(panels: Sequence[Panel]) -> list[str]:
     """What the chart says each experiment should be run with, and why, a sentence or two a problem."""
     told = []
@@ -202,26 +182,14 @@ def _shipped(panels: Sequence[Panel]) -> str:
     return f"The scenes' own setting ({label}, {level}) takes {wall_time(dots[0].time_s)}, with errors of {_errors(dots, panels)}; it has inertia."
 
 
-def write_precision(out: Path, folder: Path = store.DATA) -> Shown:
-    """Write the chart and the page of all settings below a page's folder; whatever is wrong with the data is told, not raised."""
-    return told_of(NAME, lambda: _write(out, folder), "The work-precision chart could not be made")
-
-
-def _write(out: Path, folder: Path) -> Shown:
-    """The page with every method and every point, and the chart with what the front page says of it."""
+def topic(folder: Path = store.DATA) -> Topic | None:
+    """The section of the front page; None without data, ValueError where they cannot be read."""
     found = measurements(folder)
     if found is None:
-        return Shown(lack="The work-precision chart has not been measured: ci/chart measures it, one run at a time on an idle machine.")
-    front = make(Figure("precision", front_figure(found.panels), draw_front, "precision"), out)
-    parts = []
-    for panel in found.panels:
-        wanted, lines = panel.wanted, advice_lines(panel)
-        data = Shown(title=f"{wanted.title}: {'; '.join(lines)}", panels=[panel_shown(panel)])
-        known = f" The reference is known to {share(panel.uncertainty)}." if panel.uncertainty > 0.0 else ""
-        parts.append(Shown(name=wanted.name, title=wanted.title, says=f"{panel.problem.says}. Errors are {wanted.says}.{known}", advice=lines,
-                           figure=make(Figure(f"precision_{wanted.name}", data, draw_full, "precision_full"), out), points=point_rows(panel),
-                           lacks=lack_rows(panel)))
-    write_page(out, NAME, {"parts": parts, "recipe": found.recipe, "notes": found.notes})
-    return Shown(figure=front, rows=table_of(found.panels), tolerances=[share(error) for error in TOLERANCES],
-                 recommendations=recommendations(found.panels), recipe=found.recipe, notes=found.notes, words=front.title,
-                 defect="\n".join(filter(None, [front.defect, *(part.figure.defect for part in parts)])))
+        return None
+    rows = [[row.title, row.group, *(f"{cell.words} ({cell.error})" if cell.ok else cell.words for cell in row.cells)] for row in table_of(found.panels)]
+    tables = [Table("Cheapest way to each accuracy", ["Quantity", "Method", *(f"within {share(error)}" for error in TOLERANCES)], rows),
+              Table("How it was measured", ["", ""], found.recipe, " ".join(sentence(note) for note in found.notes))]
+    data = front_figure(found.panels)
+    return Topic("precision", "Error against time: which method for which accuracy", [f"{data.title}.", *recommendations(found.panels)], "ci/chart", found.version,
+                 Figure("precision", data, draw_front, "precision", "ci/chart"), tables)

@@ -52,24 +52,24 @@ def outcomes_of(points: Iterable[PointFound]) -> str:
     return ", ".join(f"{tally[name]} {name}" for name in OUTCOMES if tally[name])
 
 
-def row_of(what: str, walks: Sequence[Shown], numbers: tuple[str, str, str], wrong: Sequence[str]) -> list[str]:
-    """A section's or a family's row: what is walked, edges predicted and measured, their difference, what strata does beyond, outcomes, verdict."""
+def row_of(what: str, walks: Sequence[Shown], numbers: tuple[str, str, str]) -> list[str]:
+    """A section's or a family's row: what is walked, edges predicted and measured, their difference, what strata does beyond, outcomes."""
     names = {name for walk in walks for name in walk.family.beyond}
     beyond = "stable by construction" if names == {STABLE} else " or ".join(OUTCOME_WORDS[name] for name in OUTCOMES if name in names)
     return [what, "; ".join(dict.fromkeys(walk.parameter for walk in walks)), *numbers, beyond,
-            outcomes_of(point for walk in walks for point in walk.points), f"{len(wrong)} NOT as they are to be" if wrong else "as it is to be"]
+            outcomes_of(point for walk in walks for point in walk.points)]
 
 
 def part_row(part: Shown) -> list[str]:
     """A section's row of the first table."""
     edges, off = part.edges, max(part.edges["difference"], key=abs, default=None)
-    return row_of(part.title, part.walks, (span(edges["predicted"]), span(edges["measured"]), percent(off)), part.wrong)
+    return row_of(part.title, part.walks, (span(edges["predicted"]), span(edges["measured"]), percent(off)))
 
 
 def walk_row(walk: Shown) -> list[str]:
     """A family's row of its section's table."""
     edge = walk.edge
-    return row_of(walk.title, [walk], (general(edge.predicted), general(edge.measured), percent(edge.difference)), walk.wrong)
+    return row_of(walk.title, [walk], (general(edge.predicted), general(edge.measured), percent(edge.difference)))
 
 
 def point_row(point: PointFound) -> list[str]:
@@ -100,11 +100,11 @@ def figures_of(part: Shown) -> list[Figure]:
     if len(part.walks) > MANY and len(rows) > 1:
         worst = max(abs(measured / predicted - 1.0) for _, predicted, measured in rows)
         edges = Shown(title=f"{len(rows)} edges measured within {100.0 * worst:.1f} % of what theory says", x_name=part.walks[0].parameter, rows=rows)
-        figures.append(Figure(f"stability_{part.anchor}_edges", edges, draw_edges, "stability_edges"))
+        figures.append(Figure(f"stability_{part.anchor}_edges", edges, draw_edges, "stability_edges", "ci/atlas", narrow=False))
     walks = [walk for walk in part.walks if walk.record is not None]
     if walks:
         data = Shown(title=finding(part), panels=[walk_panel(walk) for walk in walks[:: -(-len(walks) // MANY)]])
-        figures.append(Figure(f"stability_{part.anchor}", data, draw_part, "stability"))
+        figures.append(Figure(f"stability_{part.anchor}", data, draw_part, "stability", f"ci/atlas --family {walks[0].family.name}", narrow=False))
     return figures
 
 
@@ -141,5 +141,5 @@ def _write(out: Path, folder: Path) -> Shown:
         part.figures, part.row = [make(figure, out) for figure in figures_of(part)], part_row(part)
         for walk in part.walks:
             walk.row, walk.rows = walk_row(walk), list(map(point_row, walk.points))
-    write_page(out, NAME, {"headline": headline(every), "versions": ", ".join(versions), "parts": every})
-    return Shown(words=headline(every), defect="\n".join(made.defect for part in every for made in part.figures if made.defect))
+    write_page(out, NAME, {"headline": headline(every), "versions": ", ".join(versions), "parts": every, "wrong": [words for part in every for words in part.wrong]})
+    return Shown(words=headline(every), versions=", ".join(versions), rows=[part.row[:6] for part in every], defect="\n".join(made.defect for part in every for made in part.figures if made.defect))

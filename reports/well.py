@@ -68,7 +68,7 @@ def main(arguments: list[str] | None = None) -> int:
     runs = [run for outcome, run in made if outcome.ok and run is not None]
     if len(runs) < len(made):
         return 3
-    save(draw_well(heights_of(runs)), options.out, "heights")
+    save(draw_well(heights_of(runs)), options.out / "heights.svg")
     print(options.out / "heights.svg")
     return 0
 

@@ -5,7 +5,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Wedge
 
-from reports.charts.style import COLOURS, FLUID, INK, PALE, entry, interface_lines, new_figure, panel_rows, put_legend
+from reports.charts.style import COLOURS, FLUID, INK, ONE_COLUMN, PALE, entry, interface_lines, new_figure, panel_rows, put_legend
 from reports.shown import Shown
 
 # By side of the fracture (0: ahead of its tip), then below and above the first interface.
@@ -19,20 +19,21 @@ _SECTORS: dict[tuple[int, int | None], tuple[float, float]] = {
 }
 
 
-def draw_copies(data: Shown) -> Figure:
+def draw_copies(data: Shown, width_mm: float) -> Figure:
     """Fig 1: panels of nodes with their copies, particles by side, crack points and opened faces."""
-    count = len(data.panels)
-    figure = new_figure(6.2 * count + 0.6, 7.3, data.title, 62 * count)
-    for axes, panel, _ in panel_rows(figure, [data.panels]):
+    wide = width_mm > ONE_COLUMN
+    rows = [data.panels] if wide else [[panel] for panel in data.panels]
+    figure = new_figure(width_mm, 14.0 + len(rows) * (1.02 * width_mm / len(rows[0]) + 6.0))
+    for axes, panel, _ in panel_rows(figure, rows):
         _draw_panel(axes, panel)
     handles = [
-        entry("crack points, polyline", color=FLUID, marker="o", markersize=5, markerfacecolor="white"),
+        entry("crack points, polyline", color=FLUID, marker="o", markersize=4, markerfacecolor="white"),
         entry(f"faces, opening ×{data.magnified:g}", color=INK, linewidth=1.4), entry("interface", color=COLOURS["weak"], linewidth=1.6),
         entry("particles on the left", color=_SIDES[-1][0], marker=".", linestyle="none"),
         entry("on the right (lighter: above)", color=_SIDES[1][0], marker=".", linestyle="none"),
         entry("node; a sector a copy", color=PALE, marker="o", linestyle="none"),
     ]
-    put_legend(figure, handles, 6 if count > 1 else 3)
+    put_legend(figure, handles, 3 if wide else 1)
     return figure
 
 
@@ -42,14 +43,14 @@ def _draw_panel(axes: Axes, panel: Shown) -> None:
     axes.add_collection(LineCollection([((x, y0), (x, y1)) for x in panel.grid_x_m], colors="#dddddd", linewidths=0.7))
     axes.add_collection(LineCollection([((x0, y), (x1, y)) for y in panel.grid_y_m], colors="#dddddd", linewidths=0.7))
     for (side, level), (x_m, y_m) in panel.particles.items():
-        axes.plot(x_m, y_m, ".", markersize=3.2, color=_SIDES[side][min(level, 2)], zorder=2)
+        axes.plot(x_m, y_m, ".", markersize=2.2, color=_SIDES[side][min(level, 2)], zorder=2)
     for height in panel.interfaces_m:
         axes.plot([x0, x1], [height, height], color=COLOURS["weak"], linewidth=1.6, zorder=3)
     for x_m, y_m in panel.faces:
         axes.plot(x_m, y_m, color=INK, linewidth=1.4, zorder=4)
-    axes.plot(panel.points_x_m, panel.points_y_m, "-o", color=FLUID, linewidth=1.2, markersize=5.5, markerfacecolor="white", zorder=6)
+    axes.plot(panel.points_x_m, panel.points_y_m, "-o", color=FLUID, linewidth=1.2, markersize=4, markerfacecolor="white", zorder=6)
     for node in panel.nodes:
-        _draw_node(axes, node, 0.016 * (x1 - x0))
+        _draw_node(axes, node, 0.014 * (x1 - x0))
     axes.set(xlim=(x0, x1), ylim=(y0, y1))
     axes.set_aspect("equal")
     axes.set(title=panel.heading, xlabel="x (m)", ylabel="height above the symmetry line (m)")
@@ -58,7 +59,7 @@ def _draw_panel(axes: Axes, panel: Shown) -> None:
 def _draw_node(axes: Axes, node: Shown, radius_m: float) -> None:
     """A node: a small dot where it has one copy, a disc with a sector for each where it has more."""
     if len(node.copies) < 2:
-        axes.plot([node.x_m], [node.y_m], "o", markersize=2.6, color=PALE, zorder=3)
+        axes.plot([node.x_m], [node.y_m], "o", markersize=1.8, color=PALE, zorder=3)
         return
     split_by_crack = any(copy[0] != node.copies[0][0] for copy in node.copies)
     split_by_interface = any(copy[1:] != node.copies[0][1:] for copy in node.copies)
@@ -66,30 +67,29 @@ def _draw_node(axes: Axes, node: Shown, radius_m: float) -> None:
         second = copy[1] if split_by_interface and len(copy) > 1 else None
         colour = _SIDES[copy[0]][1 if len(copy) > 1 and copy[1] > 0 else 0]
         axes.add_patch(Wedge((node.x_m, node.y_m), 1.6 * radius_m, *_SECTORS[(copy[0] if split_by_crack else 0, second)], facecolor=colour,
-                             edgecolor="white", linewidth=0.8, zorder=5))
+                             edgecolor="white", linewidth=0.4, zorder=5))
 
 
-def draw_pressure(data: Shown) -> Figure:
+def draw_pressure(data: Shown, width_mm: float) -> Figure:
     """Fig 2: horizontal stress about the crack; pressure, opening and permeability along it."""
-    figure = new_figure(13.0, 6.2, data.title, 120)
-    left, right = figure.subfigures(1, 2, width_ratios=(1.15, 1.0))
+    wide = width_mm > ONE_COLUMN
+    figure = new_figure(width_mm, 92.0 if wide else 170.0)
+    left, right = figure.subfigures(1, 2, width_ratios=(1.2, 1.0)) if wide else figure.subfigures(2, 1, height_ratios=(1.0, 1.0))
     field = left.subplots()
     image = field.pcolormesh(data.edges_x_m, data.edges_y_m, data.s_xx_MPa, cmap="RdBu_r", rasterized=True,
                              vmin=data.centre_MPa - data.range_MPa, vmax=data.centre_MPa + data.range_MPa)
-    field.plot(data.crack_x_m, data.crack_y_m, color=INK, linewidth=1.6)
-    interface_lines(field, data.interfaces_m)
+    field.plot(data.crack_x_m, data.crack_y_m, color="#1c1c1d", linewidth=1.2)
     field.set_aspect("equal")
-    field.set(xlim=data.view_m[:2], ylim=data.view_m[2:], xlabel="x (m)", ylabel="height above the symmetry line (m)")
-    field.set_title(f"Horizontal stress, {data.source}, t = {data.time_s:.3f} s")
-    left.colorbar(image, ax=field, shrink=0.85, extend="both").set_label("total horizontal stress (MPa, tension positive; white: in situ)")
+    field.set(xlim=data.view_m[:2], ylim=data.view_m[2:], xlabel="x (m)", ylabel="height above the symmetry line (m)", title="Horizontal stress")
+    left.colorbar(image, ax=field, shrink=0.85, extend="both").set_label("total, MPa, tension positive; white: in situ")
     rows = right.subplots(3, 1, sharex=True)
     lines = (
-        (data.pressure, FLUID, f"pressure over inlet's\n{data.inlet_MPa:.2f} MPa (–)"), (data.opening_mm, COLOURS["soft"], "opening (mm)"),
+        (data.pressure, FLUID, "pressure over\nthat of the inlet"), (data.opening_mm, COLOURS["soft"], "opening (mm)"),
         (data.permeability_m2, COLOURS["weak"], "permeability\nw²/12 (m²)"),
     )
     for axes, (values, colour, label) in zip(rows, lines):
         axes.grid(True)
-        axes.plot(data.arc_m, values, "-o", color=colour, markersize=3.5, linewidth=1.5)
+        axes.plot(data.arc_m, values, "-o", color=colour, markersize=1.8, linewidth=1.2)
         axes.set_ylabel(label)
         axes.set_ylim(bottom=0)
     rows[0].set_title("Along the fracture")

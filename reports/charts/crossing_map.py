@@ -4,7 +4,7 @@ import math
 
 from matplotlib.figure import Figure
 
-from reports.charts.style import DASHED, DOTTED, FLAG, INK, PALE, entry, panel_grid, put_legend
+from reports.charts.style import DASHED, DOTTED, FLAG, INK, ONE_COLUMN, PALE, entry, panel_grid, put_legend
 from reports.shown import Shown
 
 _VERDICTS = {"crosses": ("#0067a5", "s"), "stops": ("#d9a400", "^"), "gives way": ("#d04a00", "o"), "failed": (FLAG, "x")}
@@ -14,17 +14,17 @@ _LINES = {
 }  # fmt: skip
 
 
-def draw_crossing_map(data: Shown) -> Figure:
+def draw_crossing_map(data: Shown, width_mm: float) -> Figure:
     """A panel a map: a mark a run, larger the more the inlet rose before the fracture was beyond; a line a criterion."""
-    figure, every, _ = panel_grid(data.title, len(data.panels), 3.6)
+    figure, every, _ = panel_grid(len(data.panels), 62.0, width_mm)
     for axes, panel in zip(every, data.panels, strict=True):
         for verdict, (colour, marker) in _VERDICTS.items():
-            chosen = [(x, y, 30.0 if math.isnan(rise) else 7.0 + 40.0 * min(rise, 1.0)) for x, y, word, rise in panel.runs if word == verdict]
+            chosen = [(x, y, 9.0 if math.isnan(rise) else 2.5 + 14.0 * min(rise, 1.0)) for x, y, word, rise in panel.runs if word == verdict]
             if chosen:
                 axes.scatter(*zip(*chosen), color=colour, marker=marker, linewidths=0.5)
         for name, (xs, ys) in panel.lines.items():
             colour, dashes = _LINES[name]
-            axes.plot(xs, ys, color=colour, linestyle=dashes, linewidth=1.4, marker="*" if len(xs) == 1 else None, markersize=13, zorder=4)
+            axes.plot(xs, ys, color=colour, linestyle=dashes, linewidth=1.4, marker="*" if len(xs) == 1 else None, markersize=9, zorder=4)
         axes.set_xscale("log" if panel.x.log else "linear")
         axes.set_yscale("log" if panel.y.log else "linear")
         margins = (0.85, 1.18) if panel.x.log else (0.9, 1.05)
@@ -33,5 +33,5 @@ def draw_crossing_map(data: Shown) -> Figure:
                if any(run[2] == word for panel in data.panels for run in panel.runs)]
     handles += [entry(name, color=_LINES[name][0], linestyle=_LINES[name][1], marker="*" if _LINES[name][1] == "none" else None)
                 for name in dict.fromkeys(name for panel in data.panels for name in panel.lines)]
-    put_legend(figure, handles, 5)
+    put_legend(figure, handles, 4 if width_mm > ONE_COLUMN else 2)
     return figure

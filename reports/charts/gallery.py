@@ -12,11 +12,11 @@ _LOOKS = {"source": {"color": INK, "linewidth": 4.5, "alpha": 0.25}, "run": {"co
 
 def draw_gallery(data: Shown) -> Figure:
     """A curve each of `data.curves`: name, look, x, y and whether it holds its value until the next."""
-    figure = new_figure(3.5, 2.4)
+    figure = new_figure(89.0, 61.0)
     axes = figure.subplots()
     axes.grid(True)
     for name, look, x, y, steps in data.curves:
         axes.plot(x, y, label=name, drawstyle="steps-post" if steps else "default", **_LOOKS[look])
     axes.set(xlabel=data.x, ylabel=data.y, ylim=data.y_range)
-    axes.legend(fontsize=7.5, handlelength=2.0)
+    axes.legend(fontsize=6.5, handlelength=2.0)
     return figure

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
-from reports.charts.style import FLAG, INK, PALE, entry, panel_grid, put_legend
+from reports.charts.style import FLAG, INK, PALE, entry, panel_grid, put_legend, wrapped
 from reports.shown import Shown
 from reports.words import order_words
 
@@ -20,12 +20,12 @@ _LOOKS: tuple[tuple[str, str], ...] = (
 _LABEL_GAP = 0.055  # of the axes' height, between order labels
 
 
-def draw_convergence(data: Shown) -> Figure:
+def draw_convergence(data: Shown, width_mm: float) -> Figure:
     """A panel a case on common scales of error; lines to orders 1 and 2 in a corner, the finest order beside each curve.
 
     A curve: its errors, its gates as dashes above, crosses where it falls short; dashed where no order is asked for.
     """
-    figure, every, columns = panel_grid(data.title, len(data.panels), 3.4, sharey=True)
+    figure, every, columns = panel_grid(len(data.panels), 56.0, width_mm, sharey=True)
     every_error = [error for panel in data.panels for curve in panel.curves for error in (*curve.errors, *curve.gates)]
     known = [error for error in every_error if math.isfinite(error) and error > 0.0]
     low, high = min(known) / 1.8, max(known) * 1.8
@@ -34,11 +34,11 @@ def draw_convergence(data: Shown) -> Figure:
         _size_axes(axes, panel, low, high)
         for curve in panel.curves:
             colour, mark = looks[curve.quantity]
-            axes.plot(curve.sizes, curve.gates, linestyle="none", marker="_", markersize=11, color=colour, alpha=0.45, zorder=2)
-            axes.plot(curve.sizes, curve.errors, color=colour, marker=mark, markersize=4.6, linewidth=1.5,
+            axes.plot(curve.sizes, curve.gates, linestyle="none", marker="_", markersize=7, color=colour, alpha=0.45, zorder=2)
+            axes.plot(curve.sizes, curve.errors, color=colour, marker=mark, markersize=3.2, linewidth=1.1,
                       linestyle="-" if curve.judged else (0, (2.5, 1.8)), zorder=3)
             wrong = [(size, error) for size, error, passed in zip(curve.sizes, curve.errors, curve.passed) if not passed]
-            axes.plot(*zip(*wrong), linestyle="none", marker="X", markersize=7 if len(curve.sizes) > 1 else 4.5, color=FLAG, zorder=5)
+            axes.plot(*zip(*wrong), linestyle="none", marker="X", markersize=5 if len(curve.sizes) > 1 else 3.5, color=FLAG, zorder=5)
         _order_labels(axes, panel, low, high, {name: colour for name, (colour, _) in looks.items()})
         _slopes(axes)
         if k % columns == 0:
@@ -47,7 +47,7 @@ def draw_convergence(data: Shown) -> Figure:
     handles += [entry("gate", color=PALE, marker="_", markersize=11, linestyle="none"),
                 entry("not as its gate asks", color=FLAG, marker="X", markersize=8, linestyle="none")]
     longest = max(len(str(handle.get_label())) for handle in handles)
-    put_legend(figure, handles, max(1, min(6, int(figure.get_figwidth() / (0.075 * longest + 0.7)))))  # as many columns as the longest allows
+    put_legend(figure, handles, max(1, min(6, int(figure.get_figwidth() / (0.058 * longest + 0.55)))))  # as many columns as the longest allows
     return figure
 
 
@@ -59,7 +59,7 @@ def _size_axes(axes: Axes, panel: Shown, low: float, high: float) -> None:
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set_xticks(sizes, [f"{size:.3g}" for size in sizes])
     axes.xaxis.set_minor_formatter(NullFormatter())
-    axes.set(title=panel.heading, xlabel={"m": "cell size (m)", "s": "step (s)"}.get(panel.unit, "size (m)"))
+    axes.set(title=wrapped(panel.heading, 34), xlabel={"m": "cell size (m)", "s": "step (s)"}.get(panel.unit, "size (m)"))
     axes.grid(True, which="major")
     axes.yaxis.set_major_locator(LogLocator(base=10.0, numticks=20))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100.0 * value:g} %" if value >= 1e-7 else f"{value:.0e}"))
@@ -75,7 +75,7 @@ def _order_labels(axes: Axes, panel: Shown, low: float, high: float, colours: di
     places = spread_apart([place for place, _ in wanted], _LABEL_GAP)
     for place, (_, curve) in zip(places, wanted):
         axes.annotate(order_words(curve.order), (curve.sizes[-1], low * math.exp(place * height)), xytext=(-7, 0), textcoords="offset points",
-                      ha="right", va="center", fontsize=8.5, color=colours[curve.quantity], fontweight="bold", zorder=6)
+                      ha="right", va="center", fontsize=6, color=colours[curve.quantity], fontweight="bold", zorder=6)
 
 
 def spread_apart(places: list[float], gap: float) -> list[float]:
@@ -106,4 +106,4 @@ def _slopes(axes: Axes) -> None:
         top = base * math.exp(order * across)
         if top <= high:
             axes.plot([x_start, x_end, x_end, x_start], [base, base, top, base], color=PALE, linewidth=0.8, zorder=1)
-            axes.annotate(f"{order}", (x_end, top), xytext=(2.5, 0), textcoords="offset points", fontsize=7.5, color=INK, va="center")
+            axes.annotate(f"{order}", (x_end, top), xytext=(2.5, 0), textcoords="offset points", fontsize=5.5, color=INK, va="center")

@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from reports.charts.style import DASHED, FLAG, INK, PALE, entry, new_figure, panel_grid, put_legend
+from reports.charts.style import DASHED, FLAG, INK, ONE_COLUMN, PALE, entry, panel_grid, put_legend
 from reports.shown import Shown
 
 _COLOURS = {"quasistatic": "#0067a5", "updated": "#d04a00", "total": "#a3397f", "elements": "#00845f"}
@@ -24,36 +24,21 @@ _DASHES = {"--": "16 points a cell", ":": "9 points a cell", "-.": "another tran
 _STRIP = 0.075  # height of the strip of failures, in shares of the axes
 
 
-def draw_front(data: Shown) -> Figure:
+def draw_front(data: Shown, width_mm: float) -> Figure:
     """All panels, three in a row; methods of the background pale."""
-    figure, every, columns = panel_grid(data.title, len(data.panels), 3.75)
+    figure, every, columns = panel_grid(len(data.panels), 66.0, width_mm)
     for k, (axes, panel) in enumerate(zip(every, data.panels, strict=True)):
-        _draw_panel(axes, panel, pale=True)
+        _draw_panel(axes, panel)
         _advice(axes, panel)
         if k % columns == 0:
             axes.set_ylabel("relative error")
         if k + columns >= len(data.panels):
             axes.set_xlabel("wall time (s)")
-    put_legend(figure, _legend(data.panels), 3)
+    put_legend(figure, _legend(data.panels), 3 if width_mm > ONE_COLUMN else 1)
     return figure
 
 
-def draw_full(data: Shown) -> Figure:
-    """One panel with every method named beside it."""
-    figure = new_figure(11.4, 6.4, data.title, 118)
-    (panel,) = data.panels
-    axes = figure.subplots()
-    _draw_panel(axes, panel, pale=False)
-    axes.set(xlabel="wall time (s)", ylabel="relative error")
-    handles = [_handle(curve, k) for k, curve in enumerate(panel.curves, 1)]
-    for k, curve in enumerate(panel.curves, 1):
-        axes.annotate(f"{k}", (curve.times_s[-1], curve.errors[-1]), xytext=(5, 4), textcoords="offset points", fontsize=7.2,
-                      color=_COLOURS[curve.look.family], zorder=7)
-    axes.legend(handles=handles, loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=7.6)
-    return figure
-
-
-def _draw_panel(axes: Axes, panel: Shown, pale: bool) -> None:
+def _draw_panel(axes: Axes, panel: Shown) -> None:
     """Axes, band, lines, curves, front, failures."""
     axes.set(xscale="log", yscale="log")
     axes.grid(True, which="major")
@@ -68,15 +53,15 @@ def _draw_panel(axes: Axes, panel: Shown, pale: bool) -> None:
     if panel.uncertainty > axes.get_ylim()[0]:
         axes.axhspan(axes.get_ylim()[0], panel.uncertainty, color="#c9d6e6", alpha=0.55, linewidth=0, zorder=0.5)
         axes.annotate("uncertainty of the reference", (0.985, panel.uncertainty), xycoords=("axes fraction", "data"), xytext=(0, -9),
-                      textcoords="offset points", ha="right", fontsize=6.8, color="#3b5878")
+                      textcoords="offset points", ha="right", fontsize=5.6, color="#3b5878")
     times, errors = panel.front
     if times:
-        axes.plot((*times, axes.get_xlim()[1]), (*errors, errors[-1]), drawstyle="steps-post", color=_FRONT, linewidth=6.5, alpha=0.75,
+        axes.plot((*times, axes.get_xlim()[1]), (*errors, errors[-1]), drawstyle="steps-post", color=_FRONT, linewidth=4.5, alpha=0.75,
                   solid_capstyle="butt", zorder=1.5)
     for curve in panel.curves:
-        _draw_curve(axes, curve, pale and not curve.main)
+        _draw_curve(axes, curve, not curve.main)
     for time, error in panel.chosen:
-        axes.plot([time], [error], marker="o", markersize=12, markerfacecolor="none", markeredgecolor=INK, markeredgewidth=1.4, zorder=6)
+        axes.plot([time], [error], marker="o", markersize=8, markerfacecolor="none", markeredgecolor=INK, markeredgewidth=1.4, zorder=6)
     _strip(axes, panel)
 
 
@@ -98,7 +83,7 @@ def _draw_curve(axes: Axes, curve: Shown, pale: bool) -> None:
         return
     colour = _COLOURS[curve.look.family]
     axes.plot(curve.times_s, curve.errors, color=colour, linewidth=1.3, linestyle=_LINES[curve.look.dashes], marker=_MARKS[curve.look.shape],
-              markersize=4.8, markerfacecolor=colour if curve.look.filled else "white", markeredgecolor=colour, zorder=4)
+              markersize=3.4, markerfacecolor=colour if curve.look.filled else "white", markeredgecolor=colour, zorder=4)
     for time, error, lucky in zip(curve.times_s, curve.errors, curve.lucky):
         if lucky is not None:
             axes.plot([time, time], [error, lucky], color=colour, linewidth=0.7, linestyle=":", zorder=3)
@@ -114,25 +99,18 @@ def _strip(axes: Axes, panel: Shown) -> None:
     left, right = axes.get_xlim()
     for lack in panel.lacks:
         spent = min(max(lack.time_s, left * 1.08), right / 1.08)
-        axes.plot([spent], [1.0 - 0.5 * _STRIP], transform=axes.get_xaxis_transform(), marker="x", markersize=4.5, markeredgewidth=1.3,
+        axes.plot([spent], [1.0 - 0.5 * _STRIP], transform=axes.get_xaxis_transform(), marker="x", markersize=3.5, markeredgewidth=1.0,
                   color=_COLOURS[lack.look.family], zorder=5)
-    axes.annotate(panel.lacks_words, (0.985, 0.99 - _STRIP), xycoords="axes fraction", ha="right", va="top", fontsize=7, color=FLAG, zorder=6)
+    axes.annotate(panel.lacks_words, (0.985, 0.99 - _STRIP), xycoords="axes fraction", ha="right", va="top", fontsize=5.6, color=FLAG, zorder=6)
 
 
 def _advice(axes: Axes, panel: Shown) -> None:
     """The heading with what to use for 1 % and 0.1 % below it."""
-    axes.set_title(panel.heading, pad=8 + 9.5 * len(panel.advice))
+    axes.set_title(panel.heading, pad=8 + 7.0 * len(panel.advice))
     for k, line in enumerate(panel.advice):
-        words = axes.annotate(line, (0.0, 1.0), xycoords="axes fraction", xytext=(0, 4 + 9.5 * (len(panel.advice) - 1 - k)),
-                              textcoords="offset points", fontsize=6.9, color=INK, ha="left", va="bottom", annotation_clip=False)
+        words = axes.annotate(line, (0.0, 1.0), xycoords="axes fraction", xytext=(0, 4 + 7.0 * (len(panel.advice) - 1 - k)),
+                              textcoords="offset points", fontsize=5.6, color=INK, ha="left", va="bottom", annotation_clip=False)
         words.set_in_layout(False)
-
-
-def _handle(curve: Shown, number: int) -> Line2D:
-    """A method in a legend, with the number beside its finest size."""
-    colour = _COLOURS[curve.look.family]
-    return entry(f"{number}  {curve.label}", color=colour, linestyle=_LINES[curve.look.dashes], linewidth=1.3, marker=_MARKS[curve.look.shape],
-                 markersize=4.8, markerfacecolor=colour if curve.look.filled else "white")
 
 
 def _legend(panels: Sequence[Shown]) -> list[Line2D]:
@@ -144,9 +122,9 @@ def _legend(panels: Sequence[Shown]) -> list[Line2D]:
         *(entry(words, color=INK, marker=_MARKS[name], linestyle="none", markersize=5) for name, words in _SHAPES.items() if name in shapes),
         entry("hollow: uniform grid; filled: graded", color=INK, marker="o", linestyle="none", markerfacecolor="white", markersize=5),
         *(entry(words, color=INK, linewidth=1.3, linestyle=_LINES[name]) for name, words in _DASHES.items() if name in dashes),
-        entry("Pareto front of the solver", color=_FRONT, linewidth=6),
-        entry("cheapest within 1 % and 0.1 %", color=INK, marker="o", markerfacecolor="none", markersize=10, linestyle="none"),
-        entry("other settings (named on the page of all settings)", color=_OTHERS, marker=".", linewidth=0.8),
+        entry("Pareto front of the solver", color=_FRONT, linewidth=4.5),
+        entry("cheapest within 1 % and 0.1 %", color=INK, marker="o", markerfacecolor="none", markersize=8, linestyle="none"),
+        entry("other settings (named in the data)", color=_OTHERS, marker=".", linewidth=0.8),
         entry("hangs below: smaller by luck, not counted", color=PALE, marker="_", linestyle=":"),
         entry("refused, failed, too long or without a value", color=FLAG, marker="x", linestyle="none", markersize=5),
     ]

@@ -1,13 +1,12 @@
 """Draws walks across the edges of the methods: outcomes along the walked parameter, edges predicted and measured."""
 
-import textwrap
 from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from reports.charts.style import DASHED, INK, PALE, entry, new_figure, panel_grid, put_legend
+from reports.charts.style import DASHED, INK, PALE, entry, new_figure, panel_grid, put_legend, wrapped
 from reports.shown import Shown
 
 # Colour, mark and name of each outcome.
@@ -18,13 +17,13 @@ _OUTCOMES = {
 _STRIP = 0.93  # height at which outcomes without a value stand, in shares of the axes
 
 
-def draw_part(data: Shown) -> Figure:
+def draw_part(data: Shown, width_mm: float) -> Figure:
     """A panel a walk."""
-    figure, every, _ = panel_grid(data.title, len(data.panels), 3.0)
+    figure, every, _ = panel_grid(len(data.panels), 52.0, width_mm)
     for axes, panel in zip(every, data.panels, strict=True):
         _draw_walk(axes, panel)
     used = {dot.outcome for panel in data.panels for dot in panel.dots}
-    handles = [entry(words, color=colour, marker=mark, linestyle="none", markersize=6)
+    handles = [entry(words, color=colour, marker=mark, linestyle="none", markersize=4.2)
                for name, (colour, mark, words) in _OUTCOMES.items() if name in used]
     if any(panel.predicted is not None for panel in data.panels):
         handles.append(entry("edge predicted", color=INK, linestyle=DASHED, linewidth=1.2))
@@ -36,14 +35,14 @@ def draw_part(data: Shown) -> Figure:
 
 def _draw_walk(axes: Axes, panel: Shown) -> None:
     """Dots with a value at it, others in a strip at the top."""
-    axes.set_title("\n".join(textwrap.wrap(panel.heading, 48)), fontsize=8.2)
+    axes.set_title(wrapped(panel.heading, 40), fontsize=6.5)
     axes.set_xlabel(panel.x_name)
-    axes.set_ylabel("\n".join(textwrap.wrap(panel.y_name, 34)), fontsize=7.8)
+    axes.set_ylabel(wrapped(panel.y_name, 34), fontsize=6.5)
     axes.set(xscale="log" if panel.x_log else "linear", yscale="log" if panel.y_log else "linear")
     axes.grid(True, which="major")
     for dot in panel.dots:
         colour, mark, _ = _OUTCOMES[dot.outcome]
-        look: dict[str, Any] = {"color": colour, "marker": mark, "markersize": 6.0, "linestyle": "none", "zorder": 4}
+        look: dict[str, Any] = {"color": colour, "marker": mark, "markersize": 4.2, "linestyle": "none", "zorder": 4}
         if dot.y is None:
             axes.plot([dot.x], [_STRIP], transform=axes.get_xaxis_transform(), clip_on=False, scaley=False, **look)
         else:
@@ -57,14 +56,14 @@ def _draw_walk(axes: Axes, panel: Shown) -> None:
         axes.axvline(panel.predicted, color=INK, linewidth=1.2, linestyle=DASHED, zorder=3)
 
 
-def draw_edges(data: Shown) -> Figure:
+def draw_edges(data: Shown, width_mm: float) -> Figure:
     """Many edges under one another: predicted as a line, measured as a dot."""
-    figure = new_figure(9.4, 1.1 + 0.19 * len(data.rows), data.title, 96)
+    figure = new_figure(width_mm, 22.0 + 3.4 * len(data.rows))
     axes, colour = figure.subplots(), _OUTCOMES["stable"][0]
     for place, (_, predicted, measured) in enumerate(data.rows):
         axes.plot([predicted, predicted], [place - 0.38, place + 0.38], color=INK, linewidth=1.6, zorder=3)
-        axes.plot([measured], [place], marker="o", markersize=4.6, color=colour, markeredgecolor="white", markeredgewidth=0.5, zorder=4)
-    axes.set_yticks(range(len(data.rows)), [name for name, _, _ in data.rows], fontsize=7.2)
+        axes.plot([measured], [place], marker="o", markersize=3.4, color=colour, markeredgecolor="white", markeredgewidth=0.5, zorder=4)
+    axes.set_yticks(range(len(data.rows)), [name for name, _, _ in data.rows], fontsize=5.6)
     axes.set(ylim=(len(data.rows) - 0.4, -0.6), xlabel=data.x_name)
     axes.grid(True, axis="x")
     put_legend(figure, [entry("edge predicted", color=INK, marker="|", markersize=9, markeredgewidth=1.6, linestyle="none"),

@@ -22,7 +22,7 @@ def test_a_scene_has_its_picture_and_its_row(tmp_path: Path, scene: Scene) -> No
     assert all(len(x) == len(y) > 1 and np.isfinite(x).all() and np.isfinite(y).all() for _, _, x, y, _ in data.curves)
     (source, run) = (y for _, _, _, y, _ in data.curves[:2])
     assert 0.6 < np.ptp(run) / np.ptp(source) < 1.6 or scene.name == "shut_in"  # which begins with the pressure that breaks its first metre
-    save(draw_gallery(data), tmp_path, scene.name)
+    save(draw_gallery(data), tmp_path / f"{scene.name}.svg")
     assert (tmp_path / f"{scene.name}.svg").stat().st_size < 60_000
     got, expected = scene.pair(runs[0])
     assert f"{scene.number}: {scene.told(expected)} ({scene.source}) | {scene.told(got)}, " in row(scene, runs[0], 1.0)
