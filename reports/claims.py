@@ -6,6 +6,7 @@ from reports.shown import Shown
 from reports.words import mechanics_name, number, plain, quantity, split_unit
 from verification.harness.choices import Point
 from verification.harness.claim_data import NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, CaseResult, ClaimResult, Reading
+from verification.harness.scenes import MECHANICS
 
 KINDS: dict[str, str] = {REPRODUCED: "yes", ONLY_UNDER_A_VARIANT: "partly", NOT_REPRODUCED: "no", NOT_EVALUATED: "open"}
 HOLDS: dict[bool | None, str] = {True: "yes", False: "no", None: "open"}
@@ -19,16 +20,16 @@ def claim_rows(claims: Sequence[ClaimResult]) -> list[Shown]:
 
 
 def columns_of(rows: Sequence[Shown]) -> list[Shown]:
-    """The columns of verdicts, finest cells and no inertia first: key, words, size of cells where the mechanics names one, and mechanics in words."""
+    """The columns of verdicts, finest cells and no inertia first: key and words."""
     found = dict.fromkeys(one.mechanics for row in rows for one in row.verdicts)
-    parts = sorted((key.partition(" ") for key in found), key=lambda part: (not part[2], part[2], part[0] != mechanics_name("quasistatic")))
-    named = [(name, cells or "1 m", "with inertia" if name == "explicit" else "without inertia", name + space + cells) for name, space, cells in parts]
-    return [Shown(key=key, cells=cells, inertia=inertia, words=f"{cells} cells, {inertia}") for _, cells, inertia, key in named]
+    cells = {key: key.partition("inertia")[2].strip() for key in found}
+    ordered = sorted(found, key=lambda key: (not cells[key], not key.startswith(mechanics_name("quasistatic"))))
+    return [Shown(key=key, words=f"{cells[key] or '1 m'} cells, {key.removesuffix(cells[key]).strip()}") for key in ordered]
 
 
 def differing(rows: Sequence[Shown], cells: str) -> list[str] | None:
     """Ids of the claims on which runs with and without inertia in cells of a size (" 0.5 m"; "": the scenes' own) differ; None where these were not judged."""
-    pairs = {row.id: [one.verdict for one in row.verdicts if one.mechanics in (f"explicit{cells}", f"quasi-static{cells}")] for row in rows}
+    pairs = {row.id: [one.verdict for one in row.verdicts if one.mechanics in [mechanics_name(name + cells) for name in MECHANICS]] for row in rows}
     pairs = {id_: found for id_, found in pairs.items() if len(found) == 2}
     return [id_ for id_, found in pairs.items() if found[0] != found[1]] if pairs else None
 

@@ -6,7 +6,7 @@ from scipy.spatial import cKDTree
 from reports.layout import layout_of
 from reports.runs import Arrays, NotAvailable, Run, fields_at, interfaces_at, output_times
 from reports.shown import Shown
-from reports.words import metres, mpa, number, plain
+from reports.words import metres, mpa, number, plain, share
 
 SQUARES = 160  # of Fig 2 along either side
 WINDOW_CELLS = 9  # width of Fig 1's panels: few enough for single nodes and particles to be told apart
@@ -124,11 +124,8 @@ def pressure_figure(run: Run, index: int) -> Shown:
     x_m, y_m, pressure_Pa, opening_mm = fracture["x_m"], fracture["y_m"], fracture["pressure_Pa"], 1e3 * fracture["opening_m"]
     inlet = float(fracture.get("inlet_Pa", np.nanmax(pressure_Pa)))
     arc = fracture.get("arc_m", np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x_m), np.diff(y_m)))]))
-    filled = float(np.max(arc[pressure_Pa >= 0.5 * inlet], initial=0.0))
-    title = (
-        f"At {mpa(inlet)} the fracture is {metres(float(np.max(arc)))} long and up to {number(float(opening_mm.max()), 2)}\u00a0mm open; its pressure"
-        f" exceeds half of the inlet's over {metres(filled)} from the inlet"
-    )
+    title = (f"At {mpa(inlet)} the fracture is {metres(float(np.max(arc)))} long and up to {number(float(opening_mm.max()), 2)}\u00a0mm open; at its tip stand"
+             f" {share(float(pressure_Pa[-1]) / inlet)} of the inlet's pressure")
     size = min(3.0 * float(np.max(y_m)), layout.height_m, layout.width_m)  # of a square view about the fracture, within the block
     left = min(max(0.0, float(x_m[0]) - 0.5 * size), layout.width_m - size)
     edges_x, edges_y = np.linspace(left, left + size, SQUARES + 1), np.linspace(0.0, size, SQUARES + 1)

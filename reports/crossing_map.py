@@ -8,6 +8,7 @@ import math
 from pathlib import Path
 
 import numpy as np
+from scipy.optimize import brentq
 
 from reports.charts.crossing_map import draw_crossing_map
 from reports.charts.style import TWO_COLUMNS, save
@@ -21,7 +22,7 @@ from verification.crossing_map.verdict import CROSSES, WAY_M
 STRENGTH_MPa = 1.45 / (1.1215 * math.sqrt(0.5 * math.pi))
 CLOSING_MPa, K, TIP_M, HALF_M = 2.0, 1.45, 1.0, 10.0
 NET_MPa = K / math.sqrt(math.pi * (HALF_M - 0.5 * TIP_M))  # of arrival: mean K_I^2 of a Griffith crack over the increment is K_Ic^2
-S_V = np.geomspace(0.1, 100.0, 400)  # MPa, where criteria are asked
+S_V = (0.1, 100.0)  # MPa, within which criteria are asked
 
 
 def crosses_above(verdicts: Verdicts, y: float) -> float:
@@ -33,10 +34,11 @@ def crosses_above(verdicts: Verdicts, y: float) -> float:
 
 def boundaries(friction: float, strength: float, closing: float) -> dict[str, float]:
     """The least s_v (MPa) at which each criterion lets a fracture normal to an interface cross, and closed forms of slip."""
-    asked = [gu_weng(strength, s_v, closing) for s_v in S_V]  # falls as s_v rises
+    low, high = (gu_weng(strength, s_v, closing) - friction for s_v in S_V)  # falls as s_v rises
+    asked = S_V[0] if low <= 0.0 else S_V[1] if high >= 0.0 else brentq(lambda s_v: gu_weng(strength, s_v, closing) - friction, *S_V, rtol=1e-6)
     return {
         "Renshaw & Pollard": renshaw_pollard(friction, strength, closing),
-        "Gu & Weng": float(np.interp(friction, asked[::-1], S_V[::-1])),
+        "Gu & Weng": float(asked),
         "Blanton": blanton(strength, closing),
         "slip 1 m ahead of the tip": first_slip(friction, K, TIP_M),
         "mean over 2 m slides": mean_slip(friction, NET_MPa, HALF_M, WAY_M),

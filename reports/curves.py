@@ -13,11 +13,10 @@ from reports.shown import Shown
 from reports.words import listed, mechanics_name, metres, metres_signed, number, plain
 
 OPENING_INSTANTS = 7  # profiles a panel of Fig 7: as many as stay distinguishable in one colour scale
-MARKED: tuple[str, ...] = ("start", "arrest", "restart", "stop")
 PANEL_ASPECT = 1.15  # height over width of a panel of Fig 8
 LOWEST_ASPECT = 0.75  # of a panel for a path that turns sideways: room for its legend and inset
-# Runs nearer than this lie within a line's width on one another: 1.5 MPa or 4 m over a panel of 90 mm, lines of 0.4 mm.
-SAME_PA, SAME_M = 5e3, 0.02
+# Runs nearer than this lie within a line's width on one another: lines of 0.4 mm, panels of 90 mm, that is 1 MPa or the width of a window.
+SAME_PA, SAME_SHARE = 5e3, 0.005
 
 
 def drawn_of(runs: Sequence[Run]) -> list[Run]:
@@ -26,10 +25,11 @@ def drawn_of(runs: Sequence[Run]) -> list[Run]:
 
 
 def grouped(runs: Sequence[Run], same: Callable[[Run, Run], bool]) -> list[list[Run]]:
-    """Runs of one mechanics that are the same to the eye, together."""
+    """Runs that are the same to the eye together, those of the mechanics that leads first."""
+    lead = lead_of(runs)
     groups: list[list[Run]] = []
-    for run in runs:
-        own = next((group for group in groups if group[0].mechanics == run.mechanics and group[0].status == run.status and same(group[0], run)), None)
+    for run in sorted(runs, key=lambda run: run.mechanics != lead):
+        own = next((group for group in groups if group[0].status == run.status and same(group[0], run)), None)
         if own is None:
             groups.append([run])
         else:
@@ -43,15 +43,14 @@ def same_climb(run: Run, other: Run) -> bool:
     return abs(ends[0] - ends[1]) < 0.5 * run.cell_m and shift_Pa(run, other) < SAME_PA
 
 
-def same_path(run: Run, other: Run) -> bool:
-    """Whether two paths are the same."""
-    apart = path_distance(run, other)
-    return apart is not None and apart < SAME_M
-
-
-def names_of(group: Sequence[Run]) -> str:
-    """The variants of a group in words."""
-    return listed([plain(run.variant) for run in group])
+def names_of(group: Sequence[Run], both: bool) -> str:
+    """The variants of a group in words, with their mechanics where runs of both are shown."""
+    names = {mechanics: listed([plain(run.variant) for run in group if run.mechanics == mechanics]) for mechanics in mechanics_in(group)[::-1]}
+    if not both:
+        return listed(list(dict.fromkeys(names.values())))
+    if len(names) > 1 and len(set(names.values())) == 1:
+        return f"{names.popitem()[1]}, with and without inertia"
+    return "; ".join(f"{words}, {mechanics_name(mechanics)}" for mechanics, words in names.items())
 
 
 def pressure_span(runs: Sequence[Run]) -> tuple[float, float]:
@@ -67,14 +66,13 @@ def height_figure(runs: list[Run], every: Sequence[Run] = ()) -> Shown:
     drawn = drawn_of(runs)
     if not drawn:
         raise NotAvailable("no run of this experiment has a history")
-    lead = lead_of(drawn)
-    groups = sorted(grouped(drawn, same_climb), key=lambda group: group[0].mechanics != lead)
-    curves = [_height_curve(group, group[0].mechanics != lead) for group in groups]
+    lead, both = lead_of(drawn), len(mechanics_in(drawn)) > 1
+    curves = [_height_curve(group, runs, lead, both) for group in grouped(drawn, same_climb)]
     told = [run for run in drawn if run.mechanics == lead]
+    stays = [f"{plain(run.variant)} {stay}" for run in told if outcome_of(run, runs).longest and outcome_of(run, runs).longest.tells and (stay := held(run, runs))]
     return Shown(
         title=lead_words(drawn) + finding([outcome_of(run, runs) for run in told]), name=f"Experiment {drawn[0].number}", layout=layout_of(drawn[0]),
-        curves=curves, stays=[f"{plain(run.variant)} {stay}" for run in told if (stay := held(run, runs))],
-        beside=list(dict.fromkeys(curve.mechanics for curve in curves if curve.beside)), pressure_MPa=pressure_span(every or runs), same_kPa=SAME_PA / 1e3,
+        curves=curves, stays=stays, beside=any(curve.beside for curve in curves), pressure_MPa=pressure_span(every or runs), same_kPa=SAME_PA / 1e3,
     )
 
 
@@ -89,15 +87,15 @@ def _first_growth(height_m: np.ndarray, cell_m: float) -> int:
     return max(0, int(grown[0]) - 1) if grown.size else height_m.size - 1
 
 
-def _height_curve(group: Sequence[Run], beside: bool) -> Shown:
-    """The curve of runs that are alike, with its marked events; beside: of the mechanics that is shown for comparison."""
+def _height_curve(group: Sequence[Run], runs: Sequence[Run], lead: str, both: bool) -> Shown:
+    """The curve of runs that are alike, with its arrests and restarts; beside: of the mechanics that is shown for comparison."""
     run = group[0]
     keep = np.isfinite(run.history["inlet_Pa"]) & np.isfinite(run.history["height_m"])
-    label = names_of(group) + (f", {mechanics_name(run.mechanics)}" if beside else "") + ("" if run.status == "completed" else f" ({run.status})")
-    marks = [Shown(kind=str(event["kind"]), inlet_MPa=float(event["inlet_Pa"]) / 1e6, height_m=float(event["tip_y_m"]))
-             for event in run.events if event.get("kind") in MARKED]
-    return Shown(variant=run.variant, mechanics=mechanics_name(run.mechanics), beside=beside, label=label, inlet_MPa=run.history["inlet_Pa"][keep] / 1e6,
-                 height_m=run.history["height_m"][keep], marks=marks, failed=run.status == "failed")
+    marks = [Shown(kind=kind, inlet_MPa=at_Pa / 1e6, height_m=arrest.height_m) for arrest in outcome_of(run, runs).arrests if arrest.tells
+             for kind, at_Pa in (("arrest", arrest.from_Pa), ("restart", arrest.until_Pa)) if at_Pa is not None]
+    return Shown(variant=run.variant, mechanics=run.mechanics, beside=run.mechanics != lead, inlet_MPa=run.history["inlet_Pa"][keep] / 1e6,
+                 label=names_of(group, both) + ("" if run.status == "completed" else f" ({run.status})"), height_m=run.history["height_m"][keep], marks=marks,
+                 failed=run.status == "failed")
 
 
 def profile_figure(runs: list[Run], variants: tuple[str, ...] = ("perfect", "weak")) -> Shown:
@@ -133,7 +131,7 @@ def _profile_panel(group: Sequence[Run], times_s: np.ndarray, wanted_s: np.ndarr
                               shade=float(shade)))
     end = profiles[-1]
     heading = (
-        f"{names_of(group)}{f', {mechanics_name(run.mechanics)}' if named else ''}: at the end {metres(float(end.height_m.max()))} high,"
+        f"{names_of(group, named)}: at the end {metres(float(end.height_m.max()))} high,"
         f" {number(float(end.opening_mm.max()), 2)}\u00a0mm wide"
     )
     return Shown(variant=run.variant, mechanics=run.mechanics, heading=heading, profiles=profiles, interfaces_m=layout_of(run).heights_m)
@@ -145,7 +143,7 @@ def path_figure(groups: list[list[Run]]) -> Shown:
     if not panels:
         raise NotAvailable("no run of these experiments has a history")
     drawn = drawn_of([run for runs in groups for run in runs])
-    return Shown(title=lead_words(drawn) + "; ".join(panel.heading for panel in panels), panels=panels, same_cm=100.0 * SAME_M)
+    return Shown(title=lead_words(drawn) + "; ".join(panel.heading for panel in panels), panels=panels)
 
 
 def _path_panel(runs: list[Run]) -> Shown:
@@ -158,9 +156,10 @@ def _path_panel(runs: list[Run]) -> Shown:
     layout, lead = layout_of(drawn[0]), lead_of(drawn)
     softer_left = layout.along == "x" and len(layout.layers) > 1 and not layout.layers[-1].stiffness < layout.layers[0].stiffness
     side = -1.0 if softer_left else 1.0  # the softer rock lies at smaller or larger x of the interface
-    groups = sorted(grouped(drawn, same_path), key=lambda group: group[0].mechanics != lead)
-    paths = [_path(group, side, group[0].mechanics != lead) for group in groups]
-    window = _window(paths)
+    window = _window([_path([run], side, False, False) for run in drawn])
+    near_m = SAME_SHARE * (window[1] - window[0])
+    groups = grouped(drawn, lambda run, other: (apart := path_distance(run, other)) is not None and apart < near_m)
+    paths = [_path(group, side, group[0].mechanics != lead, len(mechanics_in(drawn)) > 1) for group in groups]
     steep = (window[3] - window[2]) / (window[1] - window[0])
     magnified, name = max(1.0, steep / PANEL_ASPECT), f"Experiment {drawn[0].number}"
     return Shown(name=name, heading=f"{name}: {_drift(paths, side)}", layout=layout, paths=paths, window_m=window, magnified=magnified,
@@ -168,15 +167,14 @@ def _path_panel(runs: list[Run]) -> Shown:
                  aside=_aside(layout, window))
 
 
-def _path(group: Sequence[Run], side: float, beside: bool) -> Shown:
+def _path(group: Sequence[Run], side: float, beside: bool, both: bool) -> Shown:
     """The last path of runs that are alike and its largest turn; beside: of the mechanics shown for comparison."""
     run = group[0]
     fields = fields_at(run, "fracture", output_times(run).size - 1)
     x_m, y_m = fields["x_m"], fields["y_m"]
-    kink = largest_turn(x_m, y_m)
-    name = names_of(group) + (f", {mechanics_name(run.mechanics)}" if beside else "")
-    label = f"{name}: {metres_signed(side * float(x_m[-1] - x_m[0]))}, {number(kink, 2)}°"
-    return Shown(variant=run.variant, beside=beside, name=names_of(group), label=label, x_m=x_m, y_m=y_m, kink_deg=kink)
+    label = f"{names_of(group, both)}: {metres_signed(side * float(x_m[-1] - x_m[0]))}, {number(largest_turn(x_m, y_m), 2)}°"
+    name = listed(list(dict.fromkeys(plain(one.variant) for one in group)))
+    return Shown(variant=run.variant, beside=beside, name=name, label=label, x_m=x_m, y_m=y_m)
 
 
 def largest_turn(x_m: np.ndarray, y_m: np.ndarray) -> float:

@@ -63,13 +63,6 @@ def choice_words(dot: Dot) -> str:
     return f"{dot.name}: {wall_time(dot.time_s)}"
 
 
-def advice_lines(panel: Panel) -> tuple[str, ...]:
-    """The cheapest ways of the solver to 1 % and 0.1 % in a panel."""
-    best = nearest(panel.of())
-    lack = f"none (best: {share(best.judged)} in {wall_time(best.time_s)})" if best else "nothing was measured"
-    return tuple(f"{share(error)}: {choice_words(dot) if (dot := cheapest(panel.of(), error)) else lack}" for error in TOLERANCES[1:])
-
-
 # --- figures
 
 
@@ -107,7 +100,7 @@ def panel_shown(panel: Panel, spread: tuple[float, float] | None = None) -> Show
             curves.append(Shown(label=method.label, look=look_of(method), main=method.main, times_s=times_s, errors=errors,
                                 lucky=[max(abs(dot.error), LEAST_SHOWN) if dot.lucky else None for dot in own]))
     return Shown(
-        heading=panel.wanted.title, advice=advice_lines(panel), curves=curves, front=tuple(map(list, zip(*places(pareto(panel.of()))))) or ([], []),
+        heading=panel.wanted.title, curves=curves, front=tuple(map(list, zip(*places(pareto(panel.of()))))) or ([], []),
         chosen=places(filter(None, (cheapest(panel.of(), error) for error in TOLERANCES[1:]))),
         lacks=[Shown(look=look_of(lack.method), status=lack.status, time_s=lack.time_s) for lack in panel.lacks],
         lacks_words=", ".join(f"{count} {status}" for status, count in Counter(lack.status for lack in panel.lacks).items()),

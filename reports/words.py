@@ -155,7 +155,7 @@ def plain(name: str) -> str:
     return name.replace("_", "–" if name in ("weak_soft", "soft_weak") else " ")
 
 
-_MECHANICS_NAMES: dict[str, str] = {"explicit": "explicit", "quasistatic": "quasi-static"}
+_MECHANICS_NAMES: dict[str, str] = {"explicit": "with inertia", "quasistatic": "without inertia"}
 
 
 def mechanics_name(mechanics: str) -> str:

@@ -3,6 +3,7 @@
 import math
 
 from matplotlib.figure import Figure
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from reports.charts.style import DASHED, DOTTED, FLAG, INK, ONE_COLUMN, PALE, entry, panel_grid, put_legend
 from reports.shown import Shown
@@ -27,11 +28,16 @@ def draw_crossing_map(data: Shown, width_mm: float) -> Figure:
             axes.plot(xs, ys, color=colour, linestyle=dashes, linewidth=1.4, marker="*" if len(xs) == 1 else None, markersize=9, zorder=4)
         axes.set_xscale("log" if panel.x.log else "linear")
         axes.set_yscale("log" if panel.y.log else "linear")
+        for axis, own in ((axes.xaxis, panel.x), (axes.yaxis, panel.y)):
+            if own.log:
+                axis.set_major_locator(FixedLocator([0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0]))
+                axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+                axis.set_minor_locator(NullLocator())
         margins = (0.85, 1.18) if panel.x.log else (0.9, 1.05)
         axes.set(title=panel.heading, xlabel=panel.x.label, ylabel=panel.y.label, xlim=(panel.x.first * margins[0], panel.x.last * margins[1]))
     handles = [entry(word, color=colour, marker=marker, linestyle="none") for word, (colour, marker) in _VERDICTS.items()
                if any(run[2] == word for panel in data.panels for run in panel.runs)]
     handles += [entry(name, color=_LINES[name][0], linestyle=_LINES[name][1], marker="*" if _LINES[name][1] == "none" else None)
                 for name in dict.fromkeys(name for panel in data.panels for name in panel.lines)]
-    put_legend(figure, handles, 4 if width_mm > ONE_COLUMN else 2)
+    put_legend(figure, handles, 3 if width_mm > ONE_COLUMN else 2)
     return figure

@@ -54,10 +54,10 @@ def draw_heights(data: Shown, width_mm: float) -> Figure:
         if curve.failed:
             right.plot(curve.inlet_MPa[-1:], curve.height_m[-1:], marker="X", markersize=7, color=FLAG, zorder=6)
     right.set(xlabel="inlet pressure (MPa)", xlim=data.pressure_MPa, title=data.name)
-    handles = [entry(wrapped(curve.label, 60 if wide else 44), **line_of(curve.variant, curve.beside, overlaid)) for curve in data.curves]
+    handles = [entry(wrapped(curve.label, 64 if wide else 48), **line_of(curve.variant, curve.beside, overlaid)) for curve in data.curves]
     kinds = {mark.kind for curve in data.curves for mark in curve.marks}
     handles += [entry(name, marker=MARKERS[kind], color=INK, linestyle="none", markersize=4.5) for kind, name in KIND_NAMES.items() if kind in kinds]
-    put_legend(figure, handles, 3 if wide else 1)
+    put_legend(figure, handles, 2 if wide else 1)
     return figure
 
 
@@ -82,7 +82,7 @@ def draw_paths(data: Shown, width_mm: float) -> Figure:
     """Fig 8: a panel an experiment, its layout as an inset beside the paths."""
     wide = width_mm > ONE_COLUMN
     rows = [data.panels] if wide else [[panel] for panel in data.panels]
-    figure = new_figure(width_mm, 105.0 * len(rows))
+    figure = new_figure(width_mm, 118.0 * len(rows))
     for axes, panel, _ in panel_rows(figure, rows):
         _draw_path_panel(axes, panel)
     return figure

@@ -26,15 +26,15 @@ _STRIP = 0.075  # height of the strip of failures, in shares of the axes
 
 def draw_front(data: Shown, width_mm: float) -> Figure:
     """All panels, three in a row; methods of the background pale."""
-    figure, every, columns = panel_grid(len(data.panels), 66.0, width_mm)
+    figure, every, columns = panel_grid(len(data.panels), 58.0, width_mm)
     for k, (axes, panel) in enumerate(zip(every, data.panels, strict=True)):
         _draw_panel(axes, panel)
-        _advice(axes, panel)
+        axes.set_title(panel.heading)
         if k % columns == 0:
             axes.set_ylabel("relative error")
         if k + columns >= len(data.panels):
             axes.set_xlabel("wall time (s)")
-    put_legend(figure, _legend(data.panels), 3 if width_mm > ONE_COLUMN else 1)
+    put_legend(figure, _legend(data.panels), 2 if width_mm > ONE_COLUMN else 1)
     return figure
 
 
@@ -102,15 +102,6 @@ def _strip(axes: Axes, panel: Shown) -> None:
         axes.plot([spent], [1.0 - 0.5 * _STRIP], transform=axes.get_xaxis_transform(), marker="x", markersize=3.5, markeredgewidth=1.0,
                   color=_COLOURS[lack.look.family], zorder=5)
     axes.annotate(panel.lacks_words, (0.985, 0.99 - _STRIP), xycoords="axes fraction", ha="right", va="top", fontsize=5.6, color=FLAG, zorder=6)
-
-
-def _advice(axes: Axes, panel: Shown) -> None:
-    """The heading with what to use for 1 % and 0.1 % below it."""
-    axes.set_title(panel.heading, pad=8 + 7.0 * len(panel.advice))
-    for k, line in enumerate(panel.advice):
-        words = axes.annotate(line, (0.0, 1.0), xycoords="axes fraction", xytext=(0, 4 + 7.0 * (len(panel.advice) - 1 - k)),
-                              textcoords="offset points", fontsize=5.6, color=INK, ha="left", va="bottom", annotation_clip=False)
-        words.set_in_layout(False)
 
 
 def _legend(panels: Sequence[Shown]) -> list[Line2D]:

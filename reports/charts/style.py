@@ -40,10 +40,7 @@ DASHES: dict[str, Any] = {"perfect": "-", "friction": (0, (3.5, 2.5)), "weak": "
                           "soft_weak": (0, (5, 1.6))}
 ALPHAS: dict[str, float] = {"perfect": 0.35}
 DOTTED, DASHED = (0, (1, 1.5)), (0, (4, 2))
-MARKERS: dict[str, str] = {"start": "o", "reach_interface": "|", "arrest": "s", "restart": "^", "stop": "x"}
-KIND_NAMES: dict[str, str] = {
-    "start": "start of growth", "reach_interface": "reaches an interface", "arrest": "arrest", "restart": "restart", "stop": "end of run",
-}
+MARKERS, KIND_NAMES = {"arrest": "s", "restart": "^"}, {"arrest": "arrest at an interface or to the end", "restart": "restart"}
 
 plt.rcParams.update({
     "font.family": "DejaVu Sans", "font.size": 7.0, "axes.titlesize": 7.5, "axes.titleweight": "bold", "axes.titlelocation": "left",
@@ -135,7 +132,7 @@ def entry(label: str, **look: Any) -> Line2D:
 
 def put_legend(figure: Figure, handles: Sequence[Any], columns: int) -> None:
     """A legend below the charts, with room made for it."""
-    rows = -(-len(handles) // columns)
+    rows = -(-sum(1 + str(handle.get_label()).count("\n") for handle in handles) // columns)
     bottom = (0.165 * rows + 0.08) / figure.get_figheight()
     figure.get_layout_engine().set(rect=(0.0, bottom, 1.0, 1.0 - bottom))
     figure.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.0, 0.0), ncol=columns)
