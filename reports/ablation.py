@@ -1,20 +1,21 @@
 """What each ingredient of an experiment is worth: what ci/ablate kept, as a chart and what each scene needs in words."""
 
 from collections.abc import Sequence
+from pathlib import Path
 
 from reports.charts.ablation import draw_ablation
 from reports.figures import Figure, Table, Topic
 from reports.shown import Shown
 from reports.words import NONE, experiment_name, listed, number, plain, share
-from verification.ablation.table import CHANGES, NEEDED, RECORDS, SPARED, WANTED, Tried, read_all
+from verification.ablation.table import CHANGES, NEEDED, SPARED, WANTED, Tried, read_all
 from verification.ablation.table import Table as Kept
 
 _INTERFACES = {"interface_1": "an interface that acts", "interface_2": "a second one"}  # rows that scenes share, whatever the law
 
 
-def topic(kept: Sequence[Kept] | None = None) -> Topic | None:
+def topic(folder: Path) -> Topic | None:
     """The section of the front page from the kept tables; None where there are none."""
-    kept = read_all(RECORDS) if kept is None else kept
+    kept = read_all(folder)
     if not kept:
         return None
     data = ablation_figure(kept)

@@ -82,11 +82,11 @@ def map_figure(folder: Path) -> Shown:
     return Shown(title="Verdicts" if math.isnan(border) else title, panels=panels, runs=sum(len(panel.runs) for panel in panels))
 
 
-def topic(folder: Path = RECORDS) -> Topic | None:
-    """The section of the front page from the kept tables; None where there are none."""
-    data = map_figure(folder)
-    if not data.panels:
+def topic(folder: Path) -> Topic | None:
+    """The section of the front page from the kept tables; None without that of friction."""
+    if not (folder / "friction.csv").is_file():
         return None
+    data = map_figure(folder)
     header, _, *rows = [line.strip("| ").split(" | ") for line in parting(folder).splitlines()]
     return Topic("crossing", "Where a fracture crosses an interface", [f"{data.title}.", words_of("crossing")], "ci/crossing_map", "",
                  Figure("crossing_map", data, draw_crossing_map, "crossing_map", "ci/crossing_map"),

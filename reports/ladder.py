@@ -11,17 +11,15 @@ from reports.figures import Table, Topic, words_of
 from reports.shown import Shown
 from reports.words import NONE, mechanics_name, number, order_words, plain, relative, sentence, share, thousands
 from verification.harness.front_table import LINES
-from verification.harness.paths import ROOT
 
 ROUND_OFF = "round-off"  # as in verification/ladder/gates.py: how the reason of what holds to rounding begins
 ROUND_OFF_MOST = 1e-6  # the widest gate of what holds to rounding, as there
 SAME_AS_ROUNDING = 1e-13  # errors below it are not drawn
 UNIT = re.compile(r"\d (m|s)\b")  # of a level's size, in its label
 SIZE = re.compile(r"(?:dt )?([\d.]+) [ms](?:,.*)?")
-GATES = ROOT / "verification" / "ladder" / "gates"
 
 
-def load_ladder(path: Path, gates: Path = GATES) -> Shown | None:
+def load_ladder(path: Path, gates: Path) -> Shown | None:
     """Read ladder.json: rows, families with what they and their cases say, the tally of gates and mutants; without it what was last accepted, and None
     where there is nothing. Raises ValueError where it is not as the ladder leaves it."""
     if not path.is_file():

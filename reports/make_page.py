@@ -15,7 +15,7 @@ from reports.figures import OUT, make  # noqa: E402
 from reports.page import topic_shown, topics, write_index  # noqa: E402
 from reports.runs import add_missing, load_runs  # noqa: E402
 from reports.stability import write_stability  # noqa: E402
-from reports.verification import LADDER, write_verification  # noqa: E402
+from reports.verification import write_verification  # noqa: E402
 from verification.harness.choices import read_points  # noqa: E402
 from verification.harness.claim_data import read_claims  # noqa: E402
 from verification.harness.paths import RUNS  # noqa: E402
@@ -32,11 +32,13 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--experiments", type=Path, default=ROOT / "experiments", help="scenes whose variants without a run are shown as not run")
     parser.add_argument("--precision", type=Path, default=DATA, help="folder of the work-precision chart's data")
     parser.add_argument("--stability", type=Path, default=RECORDS, help="folder of the stability atlas' records")
+    parser.add_argument("--records", type=Path, default=ROOT / "verification", help="folder of the ladder's gates and the records of the other sections")
     parser.add_argument("--ladder", type=Path, help="the ladder's judgement (default: RUNS/ladder/ladder.json)")
     parser.add_argument("--strict", action="store_true", help="exit 1 if something could not be drawn for a defect")
     options = parser.parse_args(arguments)
     out, alone = options.out, options.page != "index"
-    makers = {"verification": partial(write_verification, options.runs, out, options.ladder), "stability": partial(write_stability, out, options.stability)}
+    ladder = options.ladder or options.runs / "ladder" / "ladder.json"
+    makers = {"verification": partial(write_verification, out, ladder, options.records / "ladder" / "gates"), "stability": partial(write_stability, out, options.stability)}
     if alone:
         made = makers[options.page]()
         pages, told = [made], f"{out / made.name}: {made.words}"
@@ -45,7 +47,7 @@ def main(arguments: list[str] | None = None) -> int:
         with ProcessPoolExecutor(max_workers=2) as pool:  # the other pages are drawn at the same time
             waiting = {name: pool.submit(maker) for name, maker in makers.items()}
             figures = [make(figure, out) for figure in catalogue(runs, options.runs, options.experiments)]
-            sections = [topic_shown(topic, out) for topic in topics(options.ladder or options.runs / LADDER, options.precision)]
+            sections = [topic_shown(topic, out) for topic in topics(ladder, options.precision, options.records)]
             beside = {name: one.result() for name, one in waiting.items()}
         claims = read_claims(options.runs / "claims.json")
         page = write_index(out, runs, claims, figures, points, sections, **beside)

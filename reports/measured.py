@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 
@@ -9,6 +10,7 @@ from reports.charts.measured import draw_measured
 from reports.figures import Figure, Table, Topic, words_of
 from reports.shown import Shown
 from reports.words import NONE, minus, mpa, plain, share, wall_time
+from verification.harness import store
 from verification.harness.reference import NoReference, reference
 from verification.measured import rubin
 
@@ -18,9 +20,9 @@ BORDERS_M, STRESS_PA, TOUGHNESS = [-0.025, 0.025], [5.0e6, 7.0e6, 11.2e6], 1.2e6
 HELD = 1e9  # a toughness that no tip passes
 
 
-def topic(record: rubin.Record | None = None) -> Topic | None:
+def topic(path: Path) -> Topic | None:
     """The section of the front page from the kept record; None where there is none."""
-    record = record or rubin.kept()
+    record = store.read(rubin.Record, path)
     if record is None:
         return None
     data = measured_figure(record)

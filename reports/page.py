@@ -21,11 +21,12 @@ from verification.harness.claim_data import ClaimResult
 from verification.harness.scenes import MECHANICS
 
 
-def topics(ladder: Path, chart: Path) -> list[Topic | Shown]:
-    """The sections from kept records, in the page's order; one whose records cannot be read is told as such."""
+def topics(ladder: Path, chart: Path, records: Path) -> list[Topic | Shown]:
+    """The sections from records that are kept, in the page's order; one whose records cannot be read is told as such."""
     builders: dict[str, Callable[[], Topic | None]] = {
-        "accuracy": lambda: accuracy(load_ladder(ladder)), "precision": lambda: precision.topic(chart), "needs": ablation.topic, "measured": measured.topic,
-        "crossing": crossing_map.topic,
+        "accuracy": lambda: accuracy(load_ladder(ladder, records / "ladder" / "gates")), "precision": lambda: precision.topic(chart),
+        "needs": lambda: ablation.topic(records / "ablation" / "records"), "measured": lambda: measured.topic(records / "measured" / "records" / "rubin.json"),
+        "crossing": lambda: crossing_map.topic(records / "crossing_map" / "records"),
     }  # fmt: skip
     found: list[Topic | Shown] = []
     for name, build in builders.items():

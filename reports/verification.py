@@ -10,12 +10,11 @@ from reports.shown import Shown
 from reports.words import counted
 
 NAME = "verification.html"
-LADDER = Path("ladder") / "ladder.json"
 
 
-def write_verification(runs: Path, out: Path, ladder_file: Path | None = None) -> Shown:
-    """Write verification.html from ladder.json below `runs`, or from what was last accepted; told: its name, headline and defects."""
-    return told_of(NAME, lambda: _write(out, load_ladder(ladder_file or runs / LADDER)), "The accuracy ladder's judgement could not be read")
+def write_verification(out: Path, ladder_file: Path, gates: Path) -> Shown:
+    """Write verification.html from ladder.json, or from what was last accepted; told: its name, headline and defects."""
+    return told_of(NAME, lambda: _write(out, load_ladder(ladder_file, gates)), "The accuracy ladder's judgement could not be read")
 
 
 def _write(out: Path, ladder: Shown | None) -> Shown:
