@@ -121,7 +121,7 @@ def write_page(out: Path, name: str, content: dict[str, Any]) -> Path:
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
     environment.filters |= FILTERS
     out.mkdir(parents=True, exist_ok=True)
-    (out / name).write_text(environment.get_template(name).render(content), encoding="utf-8")
+    (out / name).write_text(environment.get_template(name).render(content | {"index": (out / "index.html").is_file()}), encoding="utf-8")
     return out / name
 
 

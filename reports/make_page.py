@@ -44,6 +44,8 @@ def main(arguments: list[str] | None = None) -> int:
         pages, told = [made], f"{out / made.name}: {made.words}"
     else:
         points, runs = read_points(options.experiments), add_missing(load_runs(options.runs), options.experiments, options.runs)
+        out.mkdir(parents=True, exist_ok=True)
+        (out / "index.html").touch()  # the others link to it
         with ProcessPoolExecutor(max_workers=2) as pool:  # the other pages are drawn at the same time
             waiting = {name: pool.submit(maker) for name, maker in makers.items()}
             figures = [make(figure, out) for figure in catalogue(runs, options.runs, options.experiments)]

@@ -1,15 +1,15 @@
-"""The part of the page on what each experiment needs."""
+"""The section on what each experiment needs."""
 
-from reports.ablation import ablation_figure, section_of, verdict_words
-from verification.ablation.table import read_all
+from pathlib import Path
+
+from reports.ablation import ablation_figure, topic
+from verification.ablation.table import RECORDS, read_all
 
 
-def test_the_page_has_a_table_a_scene_and_reasons() -> None:
-    """The chart has a column for each whole table; an experiment's own reason stands before that of all beside what is not needed."""
-    kept = read_all()
-    section = section_of(kept, {})
-    assert section is not None and len(section["tables"]) == len(kept) and section_of([], {}) is None
+def test_the_section_has_a_column_a_scene_and_what_each_needs(tmp_path: Path) -> None:
+    """The chart has a column for each whole table, the table a row for each; without records there is no section."""
+    kept, found = read_all(RECORDS), topic(RECORDS)
+    assert found is not None and topic(tmp_path) is None and len(found.tables[0].rows) == len(kept) > 6
     assert len(ablation_figure(kept).columns) == sum(one.extent != "interfaces" for one in kept)
-    table, line = next((one, line) for one in kept for line in one.spared(True) if not line.id[-1].isdigit())
-    assert verdict_words(line, table, {"all": {line.id: "of all"}}).endswith("of all")
-    assert verdict_words(line, table, {"all": {line.id: "of all"}, table.experiment: {line.id: "its own"}}).endswith("its own")
+    needed = [one for one in kept if one.needs()]
+    assert needed and needed[0].needs()[0].label in str(found.tables[0].rows[kept.index(needed[0])][1])

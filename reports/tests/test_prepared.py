@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 
 from reports.catalogue import catalogue
-from reports.choices import choice_figure
+from reports.choices import choice_rows
 from reports.claims import claim_rows, sensitivity
-from reports.comparison import comparisons, inertia_words
+from reports.comparison import comparisons, inertia_words, path_distance
 from reports.crack import sampled, side_of
 from reports.curves import height_figure, largest_turn, path_figure, profile_figure
 from reports.figures import make, suspect_words
 from reports.layout import layout_of
-from reports.ledger import base_of, closure_of, differences, suspicions
 from reports.outcome import finding, outcome_of, outcomes_of
-from reports.runs import NotAvailable, load_run, load_runs
+from reports.run_rows import base_of, closure_of, differences, suspicions
+from reports.runs import load_run, load_runs
 from reports.tests.synthetic import STEMS, Plan, claims, write_both, write_run
 from reports.words import number, quantity
 from verification.harness.choices import Choice, Point
@@ -32,10 +32,9 @@ def test_sides_are_signs_about_the_extended_crack() -> None:
 
 
 def test_the_largest_turn_of_a_path() -> None:
-    """A right angle among gentle turns is found where it is."""
-    turn, at = largest_turn(np.array([0.0, 0.0, 1.0, 2.0]), np.array([0.0, 1.0, 1.0, 1.1]))
-    assert turn == pytest.approx(90.0) and at == (0.0, 1.0)
-    assert largest_turn(np.array([0.0, 0.0]), np.array([0.0, 1.0]))[0] == 0.0
+    """A right angle among gentle turns is found."""
+    assert largest_turn(np.array([0.0, 0.0, 1.0, 2.0]), np.array([0.0, 1.0, 1.0, 1.1])) == pytest.approx(90.0)
+    assert largest_turn(np.array([0.0, 0.0]), np.array([0.0, 1.0])) == 0.0
 
 
 def test_layout_places_interfaces_by_thickness(tmp_path: Path) -> None:
@@ -52,12 +51,11 @@ def test_an_arrest_at_an_interface_by_J_is_flagged(tmp_path: Path) -> None:
     run = load_run(write_run(tmp_path, 1, plan))
     arrest = outcome_of(run).arrests[0]
     assert arrest.by_J and arrest.interface == "weak" and arrest.until_Pa == pytest.approx(3.2e6, abs=5e4)
-    assert height_figure([run]).flagged
     for event in run.summary["events"]:
         event["at_interface"] = False
     assert not outcome_of(run).arrests[0].by_J
     run = load_run(write_run(tmp_path, 1, replace(plan, by="energy")))
-    assert not outcome_of(run).arrests[0].by_J and not height_figure([run]).flagged
+    assert not outcome_of(run).arrests[0].by_J
     assert outcome_of(load_run(write_run(tmp_path, 1, replace(plan, mechanics="quasistatic")))).arrests[0].by_J
 
 
@@ -82,13 +80,13 @@ def test_an_arrest_that_bonded_interfaces_show_too_is_a_pause(tmp_path: Path) ->
 
 
 def test_profiles_are_taken_at_common_times(tmp_path: Path) -> None:
-    """All panels of the opening figure, the quasi-static ones first, show nearly the same instants as far as their runs last."""
+    """All panels of the opening figure, those without inertia first, show nearly the same instants as far as their runs last."""
     for plan in (Plan("perfect"), Plan("weak", ("weak",), stop_at_m=10.0, restart_Pa=3.2e6)):
         write_both(tmp_path, 4, plan)
     panels = profile_figure(load_runs(tmp_path)).panels
     assert [panel.variant for panel in panels] == ["perfect", "weak"] * 2
     assert [panel.mechanics for panel in panels] == ["quasistatic"] * 2 + ["explicit"] * 2
-    assert "quasi-static" in panels[0].heading
+    assert "without inertia" in panels[0].heading
     assert len(panels[1].profiles) > len(panels[0].profiles) >= 3
     assert panels[0].profiles[-1].height_m.max() == 70.0
 
@@ -134,9 +132,9 @@ def test_claims_of_both_mechanics_are_one_row() -> None:
     """One row a claim, its cases with what each mechanics found, in the same order."""
     rows = claim_rows(claims())
     assert [row.id for row in rows] == ["1b", "2c", "5a"]
-    assert [(one.mechanics, one.kind) for one in rows[1].verdicts] == [("explicit", "partly"), ("quasi-static", "yes")]
+    assert [(one.mechanics, one.kind) for one in rows[1].verdicts] == [("with inertia", "partly"), ("without inertia", "yes")]
     assert [found.holds for found in rows[1].cases[0].found] == ["no", "yes"]
-    assert rows[2].readings[0].partial and rows[2].readings[0].holds == (("explicit", "open"), ("quasi-static", "open"))
+    assert rows[2].readings[0].partial and rows[2].readings[0].holds == (("with inertia", "open"), ("without inertia", "open"))
 
 
 def test_numbers_in_words() -> None:
@@ -157,11 +155,10 @@ def test_an_arrest_by_J_is_not_flagged_where_energy_finds_it_too(tmp_path: Path)
     runs = load_runs(tmp_path)
     explicit, static = outcome_of(runs[0], runs).arrests[0], outcome_of(runs[1], runs).arrests[0]
     assert explicit.by_J and explicit.confirmed is True and not static.by_J and static.interface == "weak"
-    assert not height_figure(runs).flagged and height_figure(runs[:1]).flagged
     assert suspicions(runs[0], runs) == [] and suspicions(runs[0]) == ["J at interface (10\u00a0m)"]
     write_run(tmp_path, 1, replace(WEAK, mechanics="quasistatic", by="energy", stop_at_m=None))
     runs = load_runs(tmp_path)
-    assert outcome_of(runs[0], runs).arrests[0].confirmed is False and height_figure(runs).flagged
+    assert outcome_of(runs[0], runs).arrests[0].confirmed is False
 
 
 def test_an_arrest_that_energy_decides_beyond_its_interface_is_that_interface_s(tmp_path: Path) -> None:
@@ -176,9 +173,22 @@ def test_figures_overlay_both_mechanics_and_tell_of_the_quasistatic_one(tmp_path
     write_both(tmp_path, 1, Plan("perfect"))
     runs = load_runs(tmp_path)
     figure = height_figure(runs)
-    assert [(curve.mechanics, curve.beside) for curve in figure.curves] == [("explicit", True), ("quasi-static", False)]
-    assert figure.title.startswith("Quasi-static: Perfect grew") and figure.title.count("grew") == 1
+    assert [(curve.label, curve.beside) for curve in figure.curves] == [("perfect, without inertia", False), ("perfect, with inertia", True)]
+    assert figure.title.startswith("Without inertia: Perfect grew") and figure.title.count("grew") == 1
     assert not height_figure(runs[:1]).curves[0].beside and height_figure(runs[:1]).title.startswith("Perfect grew")
+
+
+def test_runs_that_are_alike_are_one_curve(tmp_path: Path) -> None:
+    """With all names, of both mechanics; a start 30 kPa later, or another end, is another curve. Arrests at interfaces alone are marked."""
+    for plan in (Plan("perfect"), Plan("friction", ("friction",)), WEAK, Plan("soft", ("soft",), stop_at_m=10.0)):
+        write_run(tmp_path, 1, plan)
+    write_run(tmp_path, 1, Plan("perfect", mechanics="quasistatic"))
+    write_run(tmp_path, 1, Plan("friction", ("friction",), mechanics="quasistatic", start_Pa=2.43e6))
+    curves = height_figure(load_runs(tmp_path)).curves
+    assert [curve.label for curve in curves] == [
+        "perfect, without inertia; perfect and friction, with inertia", "friction, without inertia", "weak, with inertia", "soft, with inertia"]
+    assert [[mark.kind for mark in curve.marks] for curve in curves] == [[], [], ["arrest", "restart"], ["arrest"]]
+    assert height_figure(load_runs(tmp_path)[:1], load_runs(tmp_path)).pressure_MPa == height_figure(load_runs(tmp_path)).pressure_MPa
 
 
 def test_paths_overlay_both_mechanics(tmp_path: Path) -> None:
@@ -187,17 +197,14 @@ def test_paths_overlay_both_mechanics(tmp_path: Path) -> None:
     write_run(tmp_path, 5, Plan("perfect", drift_m=-1.4, mechanics="quasistatic"))
     panel = path_figure([load_runs(tmp_path)]).panels[0]
     assert [(path.variant, path.beside) for path in panel.paths] == [("perfect", False), ("perfect", True)]
-    assert "by 1.4\u00a0m (perfect)" in panel.heading and "0.40" in panel.paths[1].label and "explicit" in panel.paths[1].label
+    assert "by 1.4\u00a0m (perfect)" in panel.heading and "0.40" in panel.paths[1].label and "with inertia" in panel.paths[1].label
 
 
 def test_the_difference_that_inertia_makes(tmp_path: Path) -> None:
-    """Start, arrest, end, path and energies of one variant in both mechanics, by hand."""
+    """One variant in both mechanics does the same; its energies by hand."""
     write_both(tmp_path, 1, WEAK)
     (row,) = comparisons(load_runs(tmp_path))
-    assert row.start_Pa.difference == pytest.approx(0.03e6, abs=0.02e6)
-    assert row.arrest_m.quasistatic == row.arrest_m.explicit == 10.0 and row.unlike == () and row.path_m == 0.0
-    assert row.kinetic_ratio.explicit == pytest.approx(0.02 / 0.6) and row.kinetic_ratio.quasistatic == 0.0
-    assert row.G_over_J == pytest.approx(1.02)
+    assert row.unlike == () and row.kinetic_ratio == pytest.approx(0.02 / 0.6)
     assert "In 1 of 1 variants" in inertia_words([row]) and "3.3\u00a0%" in inertia_words([row])
 
 
@@ -216,11 +223,9 @@ def test_what_is_not_alike_is_said(tmp_path: Path, other: Plan, words: str) -> N
 
 def test_paths_apart_are_measured(tmp_path: Path) -> None:
     """A path that drifts by 1 m at its end against a straight one: between nothing and that."""
-    write_run(tmp_path, 5, Plan("perfect"))
-    write_run(tmp_path, 5, Plan("perfect", drift_m=1.0, mechanics="quasistatic"))
-    (row,) = comparisons(load_runs(tmp_path))
+    straight, bent = (load_run(write_run(tmp_path, 5, Plan("perfect", drift_m=drift, mechanics=name))) for drift, name in ((0.0, "explicit"), (1.0, "quasistatic")))
     # a parabola's root mean square is 1/sqrt(5) of its end; a little less with the straight start
-    assert row.path_m == pytest.approx(1.0 / 5.0**0.5, rel=0.05)
+    assert path_distance(straight, bent) == pytest.approx(1.0 / 5.0**0.5, rel=0.05)
 
 
 def test_a_run_s_own_marks_are_told_with_their_values(tmp_path: Path) -> None:
@@ -229,10 +234,10 @@ def test_a_run_s_own_marks_are_told_with_their_values(tmp_path: Path) -> None:
     mark = {"monitor": "energy_closure", "value": 0.025, "threshold": 0.01, "why": "the ledger stayed open"}
     run.summary |= {"suspect": [mark, mark | {"value": None, "why": "momentum is not a finite number"}]}
     assert suspicions(run) == ["the ledger stayed open (0.025 against 0.01)", "momentum is not a finite number"]
-    words = suspect_words([run])
-    assert words.startswith(" Suspect runs: Experiment 1 perfect") and "the ledger stayed open (0.025 against 0.01)" in words
+    (words,) = suspect_words([run])
+    assert words.startswith("Experiment 1 perfect, without inertia: ") and "the ledger stayed open (0.025 against 0.01)" in words
     run.summary["suspect"] = []
-    assert suspicions(run) == [] and suspect_words([run]) == ""
+    assert suspicions(run) == [] and suspect_words([run]) == []
 
 
 def test_a_figure_s_caption_tells_of_its_suspect_runs_alone(tmp_path: Path) -> None:
@@ -241,9 +246,9 @@ def test_a_figure_s_caption_tells_of_its_suspect_runs_alone(tmp_path: Path) -> N
     write_run(tmp_path, 2, Plan("perfect"))
     runs = load_runs(tmp_path)
     runs[1].summary["suspect"] = [{"monitor": "momentum", "value": None, "threshold": 1e-8, "why": "it drifted"}]
-    specs = {spec.name: spec for spec in catalogue(runs)}
-    assert suspect_words(specs["fig3"].runs) == "" and "it drifted" in suspect_words(specs["fig4"].runs)
-    assert "it drifted" in make(specs["fig4"], tmp_path).caption
+    specs = {spec.name: spec for spec in catalogue(runs, tmp_path, tmp_path)}
+    assert suspect_words(specs["fig3"].runs) == [] and "it drifted" in suspect_words(specs["fig4"].runs)[0]
+    assert "it drifted" in make(specs["fig4"], tmp_path).suspect[0]
 
 
 # --- open points
@@ -254,30 +259,18 @@ POINT = Point("flow", "flow law", "the study's", (
 ))
 
 
-def test_a_choice_stands_beside_its_default(tmp_path: Path) -> None:
-    """Only variants that the choice changes are drawn, with the default of their own mechanics, and the effect is told."""
+def test_a_choice_is_told_by_what_it_moves(tmp_path: Path) -> None:
+    """Against the default of its own mechanics: start, climb, end, or where the interface is parallel the path; a dash where nothing was run."""
     write_both(tmp_path, 1, Plan("perfect"))
     write_both(tmp_path, 1, WEAK)
     write_run(tmp_path, 1, Plan("uniform", start_Pa=2.6e6))
     write_run(tmp_path, 1, replace(WEAK, variant="flow", start_Pa=2.37e6, restart_Pa=None, mechanics="quasistatic"))
-    figure = choice_figure(POINT, load_runs(tmp_path))
-    headings = [panel.heading for row in figure.rows for panel in row]
-    assert headings == ["Experiment 1, quasi-static", "Experiment 1, explicit"]
-    kinds = [[(line.variant, line.choice) for line in panel.lines] for row in figure.rows for panel in row]
-    assert kinds == [[("weak", 0), ("weak", 2)], [("perfect", 0), ("perfect", 1)]]
-    assert "uniform: start +0.2" in figure.title and "(perfect, Experiment 1); other" in figure.title
-    assert "the same start" in figure.title and "ends at 10\u00a0m instead of 70\u00a0m (weak, Experiment 1)" in figure.title
-    assert figure.rows[0][0].x_range == figure.rows[0][1].x_range, "one row, the same axes"
-
-
-def test_a_choice_of_paths(tmp_path: Path) -> None:
-    """Where the interface is parallel the path is drawn, and its distance told."""
-    write_run(tmp_path, 5, Plan("perfect"))
-    write_run(tmp_path, 5, Plan("near", drift_m=2.0))
-    figure = choice_figure(POINT, load_runs(tmp_path))
-    assert figure.rows[0][0].is_path and "path 0.8" in figure.title
-    with pytest.raises(NotAvailable):
-        choice_figure(POINT, load_runs(tmp_path / "nowhere"))
+    uniform, other = (row[3] for row in choice_rows([POINT], load_runs(tmp_path)))
+    assert uniform.startswith("start +0.2") and uniform.endswith("(perfect, Experiment 1); with inertia")
+    assert "the same start" in other and "ends at 10\u00a0m instead of 70\u00a0m (weak, Experiment 1)" in other and other.endswith("without inertia")
+    write_run(tmp_path / "paths", 5, Plan("perfect"))
+    write_run(tmp_path / "paths", 5, Plan("near", drift_m=2.0))
+    assert [row[3][:8] for row in choice_rows([POINT], load_runs(tmp_path / "paths"))] == ["–", "path 0.8"]
 
 
 def test_the_table_of_claims_against_choices() -> None:
@@ -286,5 +279,5 @@ def test_the_table_of_claims_against_choices() -> None:
     table = sensitivity(claims(), [point, POINT])
     assert table.points == [("edges", "edges", 1)] and [column.name for column in table.columns] == ["loaded"]
     kinds = {(line.id, line.mechanics): [cell.kind for cell in line.cells] for line in table.lines}
-    assert kinds["2c", "explicit"] == ["no", "yes"] and kinds["5a", "explicit"] == ["no", "open"]
+    assert kinds["2c", "with inertia"] == ["no", "yes"] and kinds["5a", "with inertia"] == ["no", "open"]
     assert "not under others: 2c" in table.finding and "under none: 5a" in table.finding and "that was run: 1b" in table.finding

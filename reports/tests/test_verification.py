@@ -2,22 +2,18 @@
 
 import json
 import re
-import sys
-import types
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from reports import verification
 from reports.charts.ladder import spread_apart
-from reports.charts.style import new_figure
-from reports.figures import Figure
-from reports.ladder import convergence_figure, load_ladder
+from reports.ladder import convergence_figure, load_ladder, topic
 from reports.make_page import main as make_page
 from reports.shown import Shown
-from reports.tests.test_page import links_of
 from reports.words import relative
+from verification.harness.front_table import LINES
+from verification.harness.paths import ROOT
 
 SIZES = (2.0, 1.0, 0.5)
 
@@ -67,14 +63,14 @@ def some_rows() -> list[dict[str, Any]]:
 
 def rows_of(root: Path, rows: list[dict[str, Any]]) -> list[Shown]:
     """The rows as they are read."""
-    ladder = load_ladder(write_ladder(root, rows) / "ladder" / "ladder.json")
+    ladder = load_ladder(write_ladder(root, rows) / "ladder" / "ladder.json", root)
     assert ladder is not None
     return ladder.rows
 
 
 def main(runs: Path, out: Path) -> int:
     """Make the page from runs; its exit status."""
-    return make_page(["--page", "verification", "--runs", str(runs), "--out", str(out), "--strict"])
+    return make_page(["--page", "verification", "--runs", str(runs), "--records", str(runs), "--out", str(out), "--strict"])
 
 
 def page_of(runs: Path, out: Path) -> str:
@@ -101,7 +97,7 @@ def test_what_falls_short_is_said_first_and_marked(tmp_path: Path) -> None:
     page = page_of(write_ladder(tmp_path, some_rows()), tmp_path / "out")
     assert "Of 9 comparisons with references (2 cases in 1 family), 2 are not as their gates ask." in page
     top = page[: page.index("<figure")]
-    assert "cracks / moving: mouth at 1 m" in top and "order 0.20 below 0.7" in top and "a mechanism" in top
+    assert "cracks / moving: mouth at 1 m FAIL" in top and "order 0.20 below 0.7" in top and "a mechanism" in top
     table = page[page.index('class="ladder"') :]
     assert table.count('class="mark no"') == 2 and ">FAILED<" in table
     assert re.search(r'rowspan="5" class="quantity">mouth', table), "a quantity's cell spans its levels and their reasons"
@@ -112,7 +108,7 @@ def test_gates_that_can_be_tightened_are_noted(tmp_path: Path) -> None:
     rows = some_rows()[:6]
     rows[2] |= {"note": "gate can be tightened (error 0.01, accepted at 0.02): --accept"}
     page = page_of(write_ladder(tmp_path, rows), tmp_path / "out")
-    assert page.count('<tr class="noted">') == 1 and "0.5 m: gate can be tightened (error 0.01, accepted at 0.02)" in page
+    assert "0.5 m: gate can be tightened (error 0.01, accepted at 0.02)" in page
     assert re.search(r'rowspan="4" class="quantity">K_I', page), "its quantity's cell spans it"
     assert 'class="failures"' not in page and 'class="mark no"' not in page and "31 in all: all were refused" in page
     assert "All 6 comparisons with references (1 case in 1 family) are within their gates." in page
@@ -149,82 +145,46 @@ def test_round_off_is_not_drawn_but_counted(tmp_path: Path) -> None:
     assert "Everything holds to round-off" in page_of(tmp_path / "runs", tmp_path / "out2")
 
 
-def test_cases_that_hold_to_round_off_are_folded_while_they_do(tmp_path: Path) -> None:
-    """Their rows are all there, behind a line that counts them; one that falls short stands with the others."""
+def test_tables_are_a_click_away_while_all_is_well(tmp_path: Path) -> None:
+    """A sentence says so; a family with a row that falls short stands open."""
     rows = [row | {"case": "flight"} for row in some_rows()[3:6]] + some_rows()[:3]
     page = page_of(write_ladder(tmp_path, rows), tmp_path / "out")
-    fold = page.index("Cases that hold to round-off (1 with 3 comparisons, all within their gates)")
-    assert page.index("It shows at_rest.") < fold < page.index("It shows flight.") and page.count('class="mark yes"') == 6
+    assert "<details><summary>All 6 comparisons are within their gates: the table" in page and page.count('class="mark yes"') == 6
     rows[0] |= {"verdict": "FAIL", "problems": ["error above"]}
     page = page_of(write_ladder(tmp_path, rows), tmp_path / "out")
-    assert "Cases that hold to round-off" not in page and page.count('class="mark ') == 6
+    assert "<details open><summary>1 of 6 comparisons are not as their gates ask" in page
 
 
-def none_of(*names: str) -> list[str]:
-    """Options that name folders which are not there."""
-    return [word for name in names for word in (f"--{name}", "/nothing")]
+def test_what_was_accepted_stands_in_until_the_ladder_is_run(tmp_path: Path) -> None:
+    """Without ladder.json every gate of the repository is a comparison, and the five of README.md stand on the front page with the errors that they were made of."""
+    gates = ROOT / "verification" / "ladder" / "gates"
+    kept = load_ladder(tmp_path / "none.json", gates)
+    books = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(gates.glob("*.json"))]
+    levels = [level for book in books for case in book["cases"].values() for quantity in case.values() for level in quantity.values()]
+    assert kept is not None and kept.accepted and [row.error for row in kept.rows] == [level["measured"] for level in levels]
+    section = topic(kept)
+    assert section is not None and section.shown is not None and len(section.shown.rows) == len(LINES)
+    few = tmp_path / "records" / "ladder" / "gates"
+    few.mkdir(parents=True)
+    (few / "junction.json").write_text((gates / "junction.json").read_text(encoding="utf-8"), encoding="utf-8")
+    assert make_page(["--page", "verification", "--runs", str(tmp_path), "--records", str(tmp_path / "records"), "--out", str(tmp_path / "out"), "--strict"]) == 0
+    page = (tmp_path / "out" / "verification.html").read_text(encoding="utf-8")
+    assert "the errors that were last accepted" in page and "has not been run" not in page and "<th>Value</th>" not in page
 
 
-def test_every_link_leads_somewhere(tmp_path: Path) -> None:
-    """Figures and anchors exist; the page of the experiments and this one link to each other."""
-    runs, out = write_ladder(tmp_path, some_rows()), tmp_path / "out"
-    assert make_page(["--runs", str(runs), "--out", str(out), *none_of("experiments", "precision", "stability"), "--strict"]) == 0
-    links = links_of(out / "verification.html")
-    assert "index.html" in links.targets and len(links.targets) > 6
-    for target in links.targets:
-        assert (target[1:] in links.anchors) if target[0] == "#" else (out / target).is_file(), target
-    assert "verification.html" in links_of(out / "index.html").targets
-    assert "Of 9 comparisons" in (out / "index.html").read_text(encoding="utf-8")
-
-
-def test_nothing_run_is_no_page(tmp_path: Path) -> None:
-    """Without a ladder and parts there is neither a page nor a link to it."""
+def test_nothing_run_and_nothing_kept_is_no_page(tmp_path: Path) -> None:
+    """Without a ladder and gates there is no page."""
     assert main(tmp_path, tmp_path / "out") == 1
     assert not (tmp_path / "out" / "verification.html").exists()
-    assert make_page(["--runs", str(tmp_path), "--out", str(tmp_path / "out"), *none_of("experiments", "precision", "stability")]) == 0
-    assert "verification.html" not in (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("content", ['{"rows": [', '{"rows": [{}]}', "{}"])
-def test_a_torn_judgement_is_a_defect(tmp_path: Path, content: str) -> None:
-    """It is told on the page and by the exit status."""
+def test_a_torn_judgement_is_a_defect(tmp_path: Path, content: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """It is told, with the exit status."""
     runs = write_ladder(tmp_path, [])
     (runs / "ladder" / "ladder.json").write_text(content, encoding="utf-8")
     assert main(runs, tmp_path / "out") == 1
-    page = (tmp_path / "out" / "verification.html").read_text(encoding="utf-8")
-    assert "could not be made" in page and "could not be read" in page
-
-
-def a_part(name: str, monkeypatch: pytest.MonkeyPatch, section: Any) -> None:
-    """A module reports.NAME that fills a part of the page."""
-    module = types.ModuleType(f"reports.{name}")
-    module.section = section  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, f"reports.{name}", module)
-
-
-def test_parts_of_other_modules_are_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A part's intro, figures and tables stand on the page; one with nothing to show is left out, one that breaks is told."""
-
-    def found(runs: Path) -> dict[str, Any]:
-        """A part with a figure and a table."""
-        rows = [["path <5>", "0.3"], ["path 6", "2.1"]]
-        table = {"title": "Largest", "header": ["what", "m"], "rows": rows, "marked": [1], "note": "In cells."}
-        picture = Figure("paths", Shown(title="Paths agree"), lambda data: new_figure(3.0, 2.0), "stability")
-        return {"title": "Paths", "intro": "They agree within a cell.", "figures": [picture], "tables": [table]}
-
-    def breaks(runs: Path) -> None:
-        """A part with a defect."""
-        raise ValueError("no such run")
-
-    for name, section in (("one", found), ("two", lambda runs: None), ("three", breaks)):
-        a_part(name, monkeypatch, section)
-    monkeypatch.setattr(verification, "PARTS", ("one", "two", "three", "not_there"))
-    assert main(tmp_path, tmp_path / "out") == 1
-    page = (tmp_path / "out" / "verification.html").read_text(encoding="utf-8")
-    for words in ("They agree within a cell.", 'src="figures/paths.svg"', "path &lt;5&gt;", "In cells."):
-        assert words in page, words
-    assert page.count('class="wrong"') == 1 and "ValueError: no such run" in page
-    assert (tmp_path / "out" / "figures" / "paths.png").is_file()
+    assert "could not be read" in capsys.readouterr().err
 
 
 def test_relative_errors_in_words() -> None:

@@ -4,7 +4,7 @@ usage: ci/budget [exp1 ...] [--variants perfect,soft] [--factors mesh,ring] [--m
                  [--set KEY=VALUE]... [--jobs 2] [--limit MINUTES] [--yes] [--out DIR]
 
 Without names: all experiments. What has been run for the same scene and solver is not run again; the base and the run with half
-the cells are those of ci/refine. Writes DIR/EXPERIMENT.json (DIR: runs/budget) and prints it; reports/budget.py draws it.
+the cells are those of ci/refine. Writes DIR/EXPERIMENT.json (DIR: runs/budget) and prints it.
 """
 
 import math

@@ -4,7 +4,7 @@ usage: ci/refine exp1 [--cells 2,1,0.5,0.25] [--variants perfect,weak] [--mechan
                  [--heights 10,20] [--set KEY=VALUE]... [--jobs 2] [--limit MINUTES] [--yes] [--out DIR]
 
 An experiment is the beginning of its name, or a scene file. What has been run for the same scene and solver is not run again.
-Writes DIR/EXPERIMENT/refine.json (DIR: runs/refine) and prints it as tables; reports/refinement.py draws it. Where runs that are
+Writes DIR/EXPERIMENT/refine.json (DIR: runs/refine) and prints it as tables. Where runs that are
 still to be made would take longer than --limit (minutes, by an estimate that is printed first), nothing is run without --yes.
 """
 
