@@ -6,7 +6,7 @@ from scipy.spatial import cKDTree
 from reports.layout import layout_of
 from reports.runs import Arrays, NotAvailable, Run, fields_at, interfaces_at, output_times
 from reports.shown import Shown
-from reports.words import metres, mpa, number, plain, share
+from reports.words import mechanics_name, metres, mpa, number, plain, share
 
 SQUARES = 160  # of Fig 2 along either side
 WINDOW_CELLS = 9  # width of Fig 1's panels: few enough for single nodes and particles to be told apart
@@ -136,7 +136,7 @@ def pressure_figure(run: Run, index: int) -> Shown:
         range_MPa=max(float(np.percentile(change, 99.0)), abs(inlet - layout.horizontal_Pa) / 1e6), view_m=(left, left + size, 0.0, size),
         crack_x_m=x_m, crack_y_m=y_m, arc_m=arc, pressure=pressure_Pa / inlet, opening_mm=opening_mm,
         permeability_m2=fracture["permeability_m2"], inlet_MPa=inlet / 1e6, cell_m=layout.cell_m, time_s=float(output_times(run)[index]),
-        source=f"Experiment {run.number}, {plain(run.variant)}",
+        source=f"Experiment {run.number}, {plain(run.variant)}, {mechanics_name(run.mechanics)}",
     )
 
 

@@ -71,8 +71,8 @@ def height_figure(runs: list[Run], every: Sequence[Run] = ()) -> Shown:
     told = [run for run in drawn if run.mechanics == lead]
     stays = [f"{plain(run.variant)} {stay}" for run in told if outcome_of(run, runs).longest and outcome_of(run, runs).longest.tells and (stay := held(run, runs))]
     return Shown(
-        title=lead_words(drawn) + finding([outcome_of(run, runs) for run in told]), name=f"Experiment {drawn[0].number}", layout=layout_of(drawn[0]),
-        curves=curves, stays=stays, beside=any(curve.beside for curve in curves), pressure_MPa=pressure_span(every or runs), same_kPa=SAME_PA / 1e3,
+        title=lead_words(drawn) + finding([outcome_of(run, runs) for run in told]), lead=mechanics_name(lead), name=f"Experiment {drawn[0].number}", layout=layout_of(drawn[0]),
+        curves=curves, stays=stays, pressure_MPa=pressure_span(every or runs),
     )
 
 

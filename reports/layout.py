@@ -10,7 +10,7 @@ from reports.words import number
 def layout_of(run: Run) -> Shown:
     """What a run's resolved scene looks like before anything happens; m and Pa, compression positive.
 
-    A layer has its rock's name, its label (and that on one line), its places on the stacking axis and Young's modulus over the stiffest rock's; an
+    A layer has its rock's name, its label (and a shorter one on one line), its places on the stacking axis and Young's modulus over the stiffest rock's; an
     interface its place, name and law; heights_m are those of interfaces across the fracture.
     """
     try:
@@ -47,7 +47,7 @@ def _layers(scene: dict[str, Any], span_m: float) -> list[Shown]:
         to = min(span_m, at + float(entry.get("thickness_m", span_m - at)))
         modulus, toughness = float(rock["youngs_modulus_Pa"]), float(rock.get("toughness_Pa_sqrt_m", 0.0))
         label = f"{entry['rock']}\nE {number(modulus / 1e9, 2)} GPa\n$K_{{Ic}}$ {number(toughness / 1e6)} MPa√m"
-        line = f"{entry['rock']}: {number(modulus / 1e9, 2)} GPa, {number(toughness / 1e6)} MPa√m"
+        line = f"{entry['rock']} {number(modulus / 1e9, 2)} GPa"
         layers.append(Shown(rock=str(entry["rock"]), from_m=at, to_m=to, label=label, line=line, stiffness=modulus / stiffest))
         at = to
     return layers

@@ -146,6 +146,15 @@ def table_of(panels: Sequence[Panel]) -> list[Shown]:
             for panel in panels for group in GROUPS if (own := panel.of(group)) or group == GROUPS[0]]
 
 
+def lack_rows(panels: Sequence[Panel]) -> list[list[str]]:
+    """Every method and size that has nothing to show, with the reason; sizes of a method with the same reason together."""
+    groups: dict[tuple[str, str, str, str], list[str]] = {}
+    for panel in panels:
+        for lack in panel.lacks:
+            groups.setdefault((panel.wanted.title, lack.method.label, lack.status, lack.reason), []).append(lack.level)
+    return [[title, label, listed(levels), status, reason] for (title, label, status, reason), levels in groups.items()]
+
+
 def recommendations(panels: Sequence[Panel]) -> list[str]:
     """What the chart says each experiment should be run with, and why, a sentence or two a problem."""
     told = []
@@ -182,6 +191,7 @@ def topic(folder: Path = store.DATA) -> Topic | None:
         return None
     rows = [[row.title, row.group, *(f"{cell.words} ({cell.error})" if cell.ok else cell.words for cell in row.cells)] for row in table_of(found.panels)]
     tables = [Table("Cheapest way to each accuracy", ["Quantity", "Method", *(f"within {share(error)}" for error in TOLERANCES)], rows),
+              Table("Refused, failed, too long, without a value", ["Quantity", "Method", "Sizes", "How it ended", "Why"], lack_rows(found.panels)),
               Table("How it was measured", ["", ""], found.recipe, " ".join(sentence(note) for note in found.notes))]
     data = front_figure(found.panels)
     return Topic("precision", "Error against time: which method for which accuracy", [f"{data.title}.", *recommendations(found.panels)], "ci/chart", found.version,

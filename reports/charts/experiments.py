@@ -17,15 +17,14 @@ from reports.shown import Shown
 HEIGHT = "height above the symmetry line (m)"
 
 
-def draw_layout(axes: Axes, layout: Shown, labels: bool) -> None:
-    """Layers, interfaces and the first fracture of an experiment on axes of their own, m; with the rocks' numbers where there is room."""
+def draw_layout(axes: Axes, layout: Shown, thick: str, thin: str) -> None:
+    """Layers, interfaces and the first fracture of an experiment on axes of their own, m; thick, thin: which words of a layer stand in it."""
     for layer in layout.layers:
         corner, sides = ((0, layer.from_m), (layout.width_m, layer.to_m - layer.from_m))
         if layout.along == "x":
             corner, sides = corner[::-1], (sides[1], layout.height_m)
         axes.add_patch(Rectangle(corner, *sides, facecolor=STIFF if layer.stiffness > 0.99 else SOFT, edgecolor="none"))
-        thin = layer.to_m - layer.from_m < 0.2 * layout.height_m
-        text = layer.rock if not labels else layer.line.replace(": ", " ").split(",")[0] if thin else layer.label
+        text = getattr(layer, thin if layer.to_m - layer.from_m < 0.2 * layout.height_m else thick)
         axes.text(corner[0] + 0.04 * layout.width_m, corner[1] + 0.5 * sides[1], text, fontsize=6.0, va="center", color=INK)
     for place in layout.interfaces:
         (axes.axhline if layout.along == "y" else axes.axvline)(place.at_m, color=COLOURS["weak"], linewidth=1.2)
@@ -40,7 +39,7 @@ def draw_heights(data: Shown, width_mm: float) -> Figure:
     wide = width_mm > ONE_COLUMN
     figure = new_figure(width_mm, 88.0 if wide else 82.0)
     left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1.0, 3.4) if wide else (1.0, 2.6))
-    draw_layout(left, data.layout, True)
+    draw_layout(left, data.layout, "label", "line" if wide else "rock")
     left.set(ylabel=HEIGHT, title="Layers")
     right.grid(True)
     interface_lines(right, data.layout.heights_m)
@@ -105,7 +104,7 @@ def _draw_path_panel(axes: Axes, panel: Shown) -> None:
     handles = [entry(wrapped(path.label, 44), **line_of(path.variant, path.beside, overlaid)) for path in panel.paths]
     axes.legend(handles=handles, title="end of the path to the soft side, largest turn", loc="upper left", bbox_to_anchor=(0.0, -0.13), title_fontsize=7.0, fontsize=6.5)
     inset = axes.inset_axes((0.02 if panel.lean > 0 else 0.72, 0.70, 0.27, 0.29))
-    draw_layout(inset, panel.layout, False)
+    draw_layout(inset, panel.layout, "rock", "rock")
     inset.set_aspect("equal")
     inset.set_yticks([])
 
@@ -125,7 +124,7 @@ def draw_front_picture(panels: Sequence[Shown]) -> Figure:
         for curve in panel.curves:
             axes.plot(curve.x, curve.height_m, drawstyle="default" if panel.is_path else "steps-post", **line_of(curve.variant, curve.beside, True))
         axes.set(xlabel="x (m)" if panel.is_path else "inlet pressure (MPa)", ylabel="height (m)")
-        for place, (words, above) in enumerate((("without inertia", 1.08), ("with inertia", 1.02)), 1):
+        for place, (words, above) in enumerate((("1 m cells, without inertia", 1.08), ("1 m cells, with inertia", 1.02)), 1):
             told = "   ".join(f"{verdict[0]} {SIGNS.get(verdict[place], '?')}" for verdict in panel.verdicts)
             axes.text(0.0, above, f"{words}:  {told}", transform=axes.transAxes, fontsize=6.0)
     variants = dict.fromkeys(curve.variant for panel in panels for curve in panel.curves)

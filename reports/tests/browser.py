@@ -51,9 +51,11 @@ class Browser:
             self.ask(f"{domain}.enable")
 
     def __enter__(self) -> "Browser":
+        """The browser itself."""
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        """End the browser."""
         self.process.terminate()
         self.process.wait(PATIENCE_S)
         os.close(self.into)

@@ -104,7 +104,8 @@ def test_the_chart_has_every_quantity_and_the_table(data: Path) -> None:
     assert section is not None and section.figure is not None and section.version == "0"
     titles = [one.title for problem in PROBLEMS for one in problem.wanted]
     assert list(dict.fromkeys(row[0] for row in section.tables[0].rows)) == titles == [panel.heading for panel in section.figure.data.panels]
-    assert "a processor" in str(section.tables[1].rows) and "median of five runs" in str(section.tables[1].rows)
+    assert "a processor" in str(section.tables[2].rows) and "median of five runs" in str(section.tables[2].rows)
+    assert {row[3] for row in section.tables[1].rows} == {FAILED, REFUSED} and {row[0] for row in section.tables[1].rows} == set(titles)
 
 
 def test_torn_data_cost_the_chart_alone(data: Path, tmp_path: Path) -> None:
