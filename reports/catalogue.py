@@ -1,6 +1,5 @@
 """The figures of the page of the experiments, numbered as in the study: which data each is made from, what draws it, and which words are its caption."""
 
-from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 

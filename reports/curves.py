@@ -1,7 +1,6 @@
 """Prepares Figures 3 to 8 for drawing: heights, openings and paths from run folders; runs that would lie on one another are drawn once."""
 
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import numpy as np
 
@@ -69,7 +68,7 @@ def height_figure(runs: list[Run], every: Sequence[Run] = ()) -> Shown:
     lead, both = lead_of(drawn), len(mechanics_in(drawn)) > 1
     curves = [_height_curve(group, runs, lead, both) for group in grouped(drawn, same_climb)]
     told = [run for run in drawn if run.mechanics == lead]
-    stays = [f"{plain(run.variant)} {stay}" for run in told if outcome_of(run, runs).longest and outcome_of(run, runs).longest.tells and (stay := held(run, runs))]
+    stays = [f"{plain(run.variant)} {held(run, runs)}" for run in told if (arrest := outcome_of(run, runs).longest) is not None and arrest.tells]
     return Shown(
         title=lead_words(drawn) + finding([outcome_of(run, runs) for run in told]), lead=mechanics_name(lead), name=f"Experiment {drawn[0].number}", layout=layout_of(drawn[0]),
         curves=curves, stays=stays, pressure_MPa=pressure_span(every or runs),

@@ -64,7 +64,8 @@ def context(runs: list[Run], claims: list[ClaimResult], figures: list[Shown], po
     return {
         "groups": [Shown(number=number, title=title_of(own), stem=own[0].experiment, claims=[row for row in rows if row.id.startswith(str(number))],
                          figures=of_figure.get(number, [])) for number, own in experiments.items()],
-        "columns": columns, "symbols": SYMBOLS, "headline": headline(runs, rows, columns), "by_cell": cell_words(rows), "method": of_figure[0] if experiments else figures, "how": words_of("how"),
+        "columns": columns, "symbols": SYMBOLS, "headline": headline(runs, rows, columns), "by_cell": cell_words(rows),
+        "method": of_figure[0] if experiments else figures, "how": words_of("how"),
         "sensitivity": sensitivity([claim for claim in claims if claim.mechanics in MECHANICS], points),
         "choices": Table("", ["Open", "Default", "Choice", "What it moves at most"], choice_rows(points, runs)) if points else None,
         "failures": [f"{run.experiment} / {plain(run.variant)}, {mechanics_name(run.mechanics)} {run.status}: {run.reason or 'no reason given'}" for run in runs

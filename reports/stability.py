@@ -142,4 +142,5 @@ def _write(out: Path, folder: Path) -> Shown:
         for walk in part.walks:
             walk.row, walk.rows = walk_row(walk), list(map(point_row, walk.points))
     write_page(out, NAME, {"headline": headline(every), "versions": ", ".join(versions), "parts": every, "wrong": [words for part in every for words in part.wrong]})
-    return Shown(words=headline(every), versions=", ".join(versions), rows=[part.row[:6] for part in every], defect="\n".join(made.defect for part in every for made in part.figures if made.defect))
+    return Shown(words=headline(every), versions=", ".join(versions), rows=[part.row[:6] for part in every],
+                 defect="\n".join(made.defect for part in every for made in part.figures if made.defect))

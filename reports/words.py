@@ -97,26 +97,6 @@ def relative(error: float, signed: bool = False) -> str:
     return f"+{words}" if signed and error > 0.0 else words
 
 
-# Of a followed number of a study: pressures are written in MPa and their differences in kPa, all others in their own unit.
-
-
-def base_words(value: float | None, unit: str) -> str:
-    """A number of a run itself."""
-    if value is None:
-        return NONE
-    return f"{value / 1e6:.4f}\u00a0MPa" if unit == "Pa" else f"{value:.4g}\u00a0{unit}"
-
-
-def amount(value: float, unit: str, sign: str = "+") -> str:
-    """A difference of it."""
-    return minus(f"{value / 1e3:{sign}.2f}" if unit == "Pa" else f"{value:{sign}.3f}")
-
-
-def small_unit(unit: str) -> str:
-    """The unit that differences of it are written in."""
-    return "kPa" if unit == "Pa" else unit
-
-
 def metres(length_m: float) -> str:
     """A length in m to one decimal, or none where it is whole."""
     return f"{length_m:.1f}\u00a0m".replace(".0\u00a0m", "\u00a0m")

@@ -1,7 +1,6 @@
 """Draws the experiments: height against inlet pressure beside the layers (Figs 3 to 6), openings (7), paths (8), and the README's picture."""
 
 from collections.abc import Sequence
-from typing import Any
 
 from matplotlib import colormaps
 from matplotlib.axes import Axes
@@ -102,7 +101,8 @@ def _draw_path_panel(axes: Axes, panel: Shown) -> None:
     axes.set(xlim=(x0, x1), ylim=(y0, y1), title=f"{panel.name}{scale}", xlabel="x (m)" + (f"; {panel.aside}" if panel.aside else ""), ylabel=HEIGHT)
     axes.set_box_aspect(panel.aspect)
     handles = [entry(wrapped(path.label, 44), **line_of(path.variant, path.beside, overlaid)) for path in panel.paths]
-    axes.legend(handles=handles, title="end of the path to the soft side, largest turn", loc="upper left", bbox_to_anchor=(0.0, -0.13), title_fontsize=7.0, fontsize=6.5)
+    axes.legend(handles=handles, title="end of the path to the soft side, largest turn", loc="upper left", bbox_to_anchor=(0.0, -0.13), title_fontsize=7.0,
+                fontsize=6.5)
     inset = axes.inset_axes((0.02 if panel.lean > 0 else 0.72, 0.70, 0.27, 0.29))
     draw_layout(inset, panel.layout, "rock", "rock")
     inset.set_aspect("equal")

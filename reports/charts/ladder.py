@@ -1,11 +1,9 @@
 """Draws the accuracy ladder: error against size, a panel a case."""
 
 import math
-from collections.abc import Sequence
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
 from reports.charts.style import FLAG, INK, PALE, entry, panel_grid, put_legend, wrapped

@@ -138,7 +138,7 @@ def test_figures_say_what_the_numbers_say(tmp_path: Path) -> None:
 def test_round_off_is_not_drawn_but_counted(tmp_path: Path) -> None:
     """A curve at 1e-15 would leave no room for the others."""
     figure = convergence_figure(rows_of(tmp_path, some_rows()))
-    assert [(panel.heading, panel.unit) for panel in figure.panels] == [("at rest, quasi-static", "m"), ("moving, explicit", "m")]
+    assert [(panel.heading, panel.unit) for panel in figure.panels] == [("at rest, without inertia", "m"), ("moving, with inertia", "m")]
     assert [curve.quantity for panel in figure.panels for curve in panel.curves] == ["K_I", "mouth"] and figure.left_out == 1
     assert "1 quantity that holds to round-off" in page_of(tmp_path / "runs", tmp_path / "out")
     assert convergence_figure(rows_of(tmp_path, some_rows()[3:6])) is None
