@@ -59,7 +59,6 @@ def run_row(run: Run, runs: list[Run]) -> dict[str, Any]:
         "end": f"{metres(outcome.final_height_m)} at {mpa(outcome.final_inlet_Pa)}" if outcome else NONE,
         "interfaces": interface_states(run), "steps": thousands(summary.get("steps")),
         "wall": written(summary.get("wall_s"), lambda seconds: f"{number(float(seconds))} s"),
-        "rate": written(summary.get("particle_steps_per_s"), lambda rate: f"{number(float(rate) / 1e6)} M/s"),
         "closure": written(closure_of(run), lambda size: share(abs(size))), "spread": written(spread_of(run), share),
         "suspect": suspicions(run, runs),
     }
