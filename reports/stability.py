@@ -1,6 +1,7 @@
 """The page of the stability atlas: families and their records turned into rows, words and figures, and what the front page says."""
 
 import math
+import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -134,7 +135,8 @@ def write_stability(out: Path, folder: Path = store.RECORDS) -> Shown:
 def _write(out: Path, folder: Path) -> Shown:
     """The page with every family and every point."""
     every = parts(folder)
-    versions = dict.fromkeys(walk.record.version for part in every for walk in part.walks if walk.record is not None and walk.record.version)
+    versions = sorted({walk.record.version for part in every for walk in part.walks if walk.record is not None and walk.record.version},
+                      key=lambda version: [int(number) for number in re.findall(r"\d+", version)])
     if not any(walk.record for part in every for walk in part.walks):
         return Shown(lack="The stability atlas has not been walked: ci/atlas --accept.")
     for part in every:

@@ -66,7 +66,7 @@ class Browser:
         until = time.monotonic() + PATIENCE_S
         while b"\0" not in self.rest:
             if not select.select([self.out], [], [], until - time.monotonic())[0] or not (read := os.read(self.out, 1 << 20)):
-                raise TimeoutError("Chromium says nothing")
+                raise TimeoutError("Chromium says nothing: is it there (ci/setup --test)?")
             self.rest += read
         head, _, self.rest = self.rest.partition(b"\0")
         return json.loads(head)
