@@ -38,7 +38,8 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     out, alone = options.out, options.page != "index"
     ladder = options.ladder or options.runs / "ladder" / "ladder.json"
-    makers = {"verification": partial(write_verification, out, ladder, options.records / "ladder" / "gates"), "stability": partial(write_stability, out, options.stability)}
+    makers = {"verification": partial(write_verification, out, ladder, options.records / "ladder" / "gates"),
+              "stability": partial(write_stability, out, options.stability)}
     if alone:
         made = makers[options.page]()
         pages, told = [made], f"{out / made.name}: {made.words}"
