@@ -17,6 +17,7 @@
 #include "run.hpp"
 #include "scene/keys.hpp"
 #include "scene/messages.hpp"
+#include "scene/new_scene.hpp"
 #include "scene/toml_reader.hpp"
 #include "scene/well_log.hpp"
 
@@ -34,7 +35,8 @@ struct Arguments {
 
 int report(const std::vector<std::string>& errors) {
   constexpr std::size_t longest = 2000;  // of a path that no system takes, or of an argument
-  for (const std::string& error : errors) strata::tell("{}\n", strata::shortened(error, longest));
+  for (const std::string& error : errors)
+    strata::tell("{}\n", strata::error_in_colour(strata::shortened(error, longest)));
   return errors.empty() ? done : bad_input;
 }
 
@@ -73,7 +75,7 @@ int list_variants(const Arguments& arguments) {
 }
 
 int parse_and_do(int argc, char** argv) {
-  CLI::App app{"Hydraulic fractures in layered rock: a verification-first testbed"};
+  CLI::App app{"Hydraulic fractures in layered rock: a verification-first testbed", "strata"};
   Arguments arguments;
   app.set_version_flag("--version", strata::version());
   app.require_subcommand(1);
@@ -103,7 +105,10 @@ int parse_and_do(int argc, char** argv) {
   }
   CLI::App* log_command = app.add_subcommand("log", "a scene of a well log, to be looked over");
   log_command->add_option("csv", arguments.file, strata::log_help())->required();
+  CLI::App* new_command = app.add_subcommand("new", "write a scene to start from, with what each of its keys means");
+  new_command->add_option("name", arguments.file, "name of the scene; its file is NAME.toml")->required();
   CLI::App* keys_command = app.add_subcommand("keys", "all keys of a scene as a table in Markdown");
+  app.set_help_all_flag("--help-all", "the help of all commands");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -118,6 +123,7 @@ int parse_and_do(int argc, char** argv) {
   if (variants_command->parsed()) return list_variants(arguments);
   if (log_command->parsed()) return log(arguments);
   if (resume_command->parsed()) return resume(arguments);
+  if (new_command->parsed()) return report(strata::write_new_scene(arguments.file));
   if (keys_command->parsed()) fmt::print("{}", strata::keys_as_markdown());
   return done;
 }
@@ -136,8 +142,7 @@ int main(int argc, char** argv) {
   try {
     return parse_and_do(argc, argv);
   } catch (const strata::OutputFailure& failure) {
-    strata::tell("{}\n", failure.what());
-    return bad_input;
+    return report({failure.what()});
   } catch (const std::bad_alloc&) {
     strata::tell(
         "strata: out of memory: the machine, or a limit set for this process, gives no more. Use larger cells.\n");

@@ -272,7 +272,8 @@ int run_to_end(Run run) {
     return bad_input;
   }
   if (!run.options.quiet) {
-    tell("{}", closing_lines(run.scene, run.state, record, run.folder.path));
+    const std::string lines = closing_lines(run.scene, run.state, record, run.folder.path);
+    tell("{}", in_colour(lines, {{"^()(completed)", "32"}, {"^()(failed)", "31"}, {"(\n)(SUSPECT)", "31"}}));
   } else if (exit != done) {
     tell("{}{}\n", exit == interrupted ? "interrupted; " : "", record.reason);
   }
@@ -335,7 +336,7 @@ int resume_run(const std::filesystem::path& dir, const RunOptions& options) {
   const RunFolder folder{dir};
   const Descriptor lock = lock_folder(dir);
   const ReadResult read = read_scene(folder.scene(), "", {});
-  for (const std::string& error : read.errors) tell("{}\n", error);
+  for (const std::string& error : read.errors) tell("{}\n", error_in_colour(error));
   if (!read.scene) return bad_input;
   const Scene& scene = *read.scene;
   require_unchanged_scene(folder, scene);

@@ -176,7 +176,8 @@ void build_strata(Reading& reading) {
   for (std::size_t k = 0; k < named; ++k) {
     const std::string path = fmt::format("strata.interfaces[{}]", k);
     const bool is_table = reading.given(path) && reading.entries[path].value->is_table();
-    interfaces[k].law = find_named(reading, scene.laws, is_table ? path + ".name" : path, "interface");
+    const bool by_key = is_table || reading.given(path + ".name");
+    interfaces[k].law = find_named(reading, scene.laws, by_key ? path + ".name" : path, "interface");
   }
   if (reading.usable("strata.interfaces") && !layers.empty() && named != between) {
     reading.refuse("strata.interfaces", "strata.interfaces has {} {} for {} layers. Give one between each two: {}.",

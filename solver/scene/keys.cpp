@@ -6,16 +6,6 @@
 #include <set>
 
 namespace strata {
-namespace {
-
-std::string allowed_text(const Key& key) {
-  if (key.kind == Key::Kind::number) return to_text(key.bounds);
-  if (key.kind == Key::Kind::list) return "list";
-  if (key.kind == Key::Kind::text) return "text";
-  return fmt::format("{}{}", key.kind == Key::Kind::formula ? "formulas of " : "", key.allowed);
-}
-
-}  // namespace
 
 Scene scene_of_one() {
   Scene scene;
@@ -69,6 +59,13 @@ std::string unknown_key_message(std::string_view path) {
 
 std::string to_text(const Bounds& bounds) {
   return fmt::format("{}{}, {}{}", bounds.low_open ? '(' : '[', bounds.low, bounds.high, bounds.high_open ? ')' : ']');
+}
+
+std::string allowed_text(const Key& key) {
+  if (key.kind == Key::Kind::number) return to_text(key.bounds);
+  if (key.kind == Key::Kind::list) return "list";
+  if (key.kind == Key::Kind::text) return "text";
+  return fmt::format("{}{}", key.kind == Key::Kind::formula ? "formulas of " : "", key.allowed);
 }
 
 std::string default_text(const Key& key) {

@@ -170,6 +170,9 @@ std::string to_text(const Bounds& bounds);
 /// "name = value" of each key of a table ("rock.NAME.", "strata.layers[].") that is in force.
 std::vector<std::string> lines_of(std::string_view table, Scene& scene, std::size_t index);
 
+/// What a key's value may be: bounds, words, "list", "text" or the variables of formulas.
+std::string allowed_text(const Key& key);
+
 /// The default of a key as TOML, taken from a scene of defaults; empty where there is none.
 std::string default_text(const Key& key);
 

@@ -1,10 +1,13 @@
 #include "scene/messages.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdlib>
+#include <regex>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -123,6 +126,27 @@ std::vector<std::string> as_lines(std::vector<Fault> faults) {
     if (seen.insert(line).second) lines.push_back(std::move(line));
   }
   return lines;
+}
+
+std::string in_colour(std::string text, Colours colours) {
+  const auto variable = [](const char* name) {
+    const char* value = std::getenv(name);
+    return std::string_view(value == nullptr ? "" : value);
+  };
+  if (::isatty(STDERR_FILENO) == 0 || !variable("NO_COLOR").empty() || variable("TERM") == "dumb") return text;
+  for (const auto& [pattern, colour] : colours) {
+    const auto shown = fmt::format("$1\x1b[{}m$2\x1b[0m", colour);
+    text = std::regex_replace(text, std::regex(pattern), shown, std::regex_constants::format_first_only);
+  }
+  return text;
+}
+
+std::string error_in_colour(std::string line) {
+  constexpr const char *bold = "1", *red = "31", *green = "32", *yellow = "33";
+  return in_colour(std::move(line), {{R"re((: [\w.[\]-]+ = )("[^"]*"|\S+))re", yellow},
+                                     {R"re((: unknown key |: )([\w.[\]-]+(?= = |\. )))re", bold},
+                                     {R"re(( Did you mean )(.*(?=\?)))re", green},
+                                     {R"re(^()(.*?:\d+:\d+|--set .*?|[^ :]+)(?=: ))re", red}});
 }
 
 }  // namespace strata

@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <initializer_list>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace strata {
@@ -48,6 +50,17 @@ struct Fault {
 /// The faults as lines "file:line:column: what", in the order of the input and each once. A text of more than 1000
 /// bytes is shortened in the middle, control characters are written out.
 std::vector<std::string> as_lines(std::vector<Fault> faults);
+
+// Regular expressions with a group before what is to have a colour and a group of that; the colour as terminals number
+// it.
+using Colours = std::initializer_list<std::pair<const char*, const char*>>;
+
+/// `text` for the standard error output: the first match of each in its colour where that is a terminal and NO_COLOR
+/// (no-color.org) is not set; elsewhere as it is.
+std::string in_colour(std::string text, Colours colours);
+
+/// The same of a line of an error: its place, key, value and suggestion.
+std::string error_in_colour(std::string line);
 
 /// Writes to the standard error output; where that takes nothing more (a full disc), nobody is told and the run goes
 /// on.

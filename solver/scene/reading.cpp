@@ -46,10 +46,11 @@ void take_inner_table(Reading& reading, const std::string& path, const toml::nod
   if (!value.is_table()) {
     const std::string kind = path.substr(0, path.find('.'));
     const bool named = kind != path && (kind == "rock" || kind == "interface");
-    reading.fault(
-        where, "{} = {} is not a table. {}.", path, as_typed(value),
-        named ? fmt::format("Give each {0} a name: [{0}.NAME]", kind)
-              : fmt::format("Write [{}] once; it has the keys {}", path, fmt::join(names_in_table(path), ", ")));
+    const std::string keys = fmt::format("{}", fmt::join(names_in_table(path), ", "));
+    reading.fault(where, "{} = {} is not a table. {}.", path, as_typed(value),
+                  named                 ? fmt::format("Give each {0} a name: [{0}.NAME]", kind)
+                  : path.ends_with(']') ? fmt::format("Write {{...}} with keys of {}", keys)
+                                        : fmt::format("Write [{}] once; it has the keys {}", path, keys));
   }
   const toml::table* table = is_list ? value.as_array()->front().as_table() : value.as_table();
   if (table != nullptr) take_table(reading, *table, path, where);
@@ -96,6 +97,8 @@ void take_value(Reading& reading, const std::string& path, const toml::node& val
   const bool is_there = reading.given(path.substr(0, path.rfind(']') + 1));  // the element of a list that it names
   if (key == nullptr && path.starts_with("claim[")) return;                  // the harness's
   if (!is_there || (key == nullptr && !is_table)) return reading.fault(where, "{}", unknown_key_message(path));
+  if (key == nullptr && value.is_string() && find_key(path + ".name") != nullptr)  // an interface by its name alone
+    return take_value(reading, path + ".name", value, where);
   if (key == nullptr) return take_inner_table(reading, path, value, where);
   const auto earlier = reading.entries.find(path);
   if (earlier != reading.entries.end() && where.rank == 1 && earlier->second.where.rank == 1) {

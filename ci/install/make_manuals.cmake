@@ -1,0 +1,16 @@
+# Manual pages of `programs` into out/man1, and the package's changelog, packed as Debian has them.
+set(ENV{SOURCE_DATE_EPOCH} 0)
+file(REMOVE_RECURSE ${out}/man1)
+file(MAKE_DIRECTORY ${out}/man1)
+foreach(program ${programs})
+  get_filename_component(name ${program} NAME)
+  execute_process(COMMAND help2man --no-info --help-option=--help-all --include ${here}/${name}.h2m --output ${out}/man1/${name}.1 ${program}
+    COMMAND_ERROR_IS_FATAL ANY)
+  file(READ ${out}/man1/${name}.1 text)  # headings of commands
+  string(REPLACE "\nSubcommands:\n" "\n.SH COMMANDS\n.PP\n" text "${text}")
+  string(REGEX REPLACE "\n.PP\n([a-z]+)\n.IP\n" "\n.SS \\1\n" text "${text}")
+  string(REGEX REPLACE "(\n.SS \"|\n.IP\n|\n)(Options|Positionals):\"?\n" "\n" text "${text}")
+  file(WRITE ${out}/man1/${name}.1 "${text}")
+  execute_process(COMMAND gzip -9n ${out}/man1/${name}.1 COMMAND_ERROR_IS_FATAL ANY)
+endforeach()
+execute_process(COMMAND gzip -9nkf ${out}/changelog COMMAND_ERROR_IS_FATAL ANY)
