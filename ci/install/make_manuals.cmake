@@ -1,10 +1,13 @@
 # Manual pages of `programs` into out/man1, and the package's changelog, packed as Debian has them.
-set(ENV{SOURCE_DATE_EPOCH} 0)
 file(REMOVE_RECURSE ${out}/man1)
 file(MAKE_DIRECTORY ${out}/man1)
 foreach(program ${programs})
   get_filename_component(name ${program} NAME)
-  execute_process(COMMAND help2man --no-info --help-option=--help-all --include ${here}/${name}.h2m --output ${out}/man1/${name}.1 ${program}
+  set(help --help)
+  if(name STREQUAL "strata")
+    set(help --help-all)
+  endif()
+  execute_process(COMMAND help2man --no-info --version-string=${version} --help-option=${help} --include ${here}/${name}.h2m --output ${out}/man1/${name}.1 ${program}
     COMMAND_ERROR_IS_FATAL ANY)
   file(READ ${out}/man1/${name}.1 text)  # headings of commands
   string(REPLACE "\nSubcommands:\n" "\n.SH COMMANDS\n.PP\n" text "${text}")

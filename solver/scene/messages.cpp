@@ -144,7 +144,7 @@ std::string in_colour(std::string text, Colours colours) {
 std::string error_in_colour(std::string line) {
   constexpr const char *bold = "1", *red = "31", *green = "32", *yellow = "33";
   return in_colour(std::move(line), {{R"re((: [\w.[\]-]+ = )("[^"]*"|\S+))re", yellow},
-                                     {R"re((: unknown key |: )([\w.[\]-]+(?= = |\. )))re", bold},
+                                     {R"re((: unknown key |: )([\w.[\]-]+(?= = |\. | is missing)))re", bold},
                                      {R"re(( Did you mean )(.*(?=\?)))re", green},
                                      {R"re(^()(.*?:\d+:\d+|--set .*?|[^ :]+)(?=: ))re", red}});
 }
