@@ -99,9 +99,22 @@ TEST_CASE("A variant and --set may replace a key of an element of a list that is
   CHECK(good(text, "thick", {both}).strata.interfaces[0].at_m == 5.0);
   CHECK_THAT(errors(layered, "", {"strata.layers[2].thickness_m=20"}),
              Catch::StartsWith("--set strata.layers[2].thickness_m=20: unknown key strata.layers[2].thickness_m."));
-  CHECK_THAT(errors(layered, "", {"strata.interfaces[0]=perfect"}),
-             Catch::Contains("strata.interfaces[0] = \"perfect\" is not a table"));
+  CHECK_THAT(
+      errors(layered, "", {"strata.interfaces[0]=3"}),
+      Catch::EndsWith("strata.interfaces[0] = 3 is not a table. Write {...} with keys of name, from_m, to_m.\n"));
+  CHECK_THAT(errors(layered, "", {"strata.layers[0]=soft"}), Catch::Contains("Write {...} with keys of rock, "));
   CHECK_THAT(errors(layered, "", {"claim[0].id=x"}), Catch::Contains("not claims or variants"));
+}
+
+TEST_CASE("An interface that --set or a variant names, alone or by its key, takes the place of that in the list") {
+  const std::string ends = with(layered, "[\"joint\"]", "[{name = \"joint\", from_m = 15}]");
+  for (const std::string key : {"strata.interfaces[0]", "strata.interfaces[0].name"}) {
+    CHECK(good(layered, "", {key + "=perfect"}).strata.interfaces[0].law == 0);
+    CHECK(good(layered + "[variants.v]\n\"" + key + "\" = \"perfect\"\n", "v").strata.interfaces[0].law == 0);
+    CHECK(good(ends, "", {key + "=perfect"}).strata.interfaces[0].from_m == 15.0);
+    CHECK(good(layered, "", {key + "=perfect", "strata.interfaces=[\"joint\"]"}).strata.interfaces[0].law == 1);
+    CHECK_THAT(errors(layered, "", {key + "=jont"}), Catch::Contains("there is no [interface.jont]"));
+  }
 }
 
 TEST_CASE("All mistakes in a list of tables are told at once, and none twice") {
