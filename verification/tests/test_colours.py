@@ -39,7 +39,7 @@ def test_how_a_run_ended_has_a_colour(variant: list[str], how: tuple[str, str], 
     """Green or red, with no letter changed; --quiet shows nothing of a run that completes, on a terminal either."""
     (tmp_path / "s.toml").write_text(BLOCK)
     text = shown(tmp_path, "run", "s.toml", *variant, "--out", "X")
-    assert COLOUR.findall(text)[0] == how and f"\n{how[1]} at step " in COLOUR.sub(r"\2", text)
+    assert COLOUR.findall(text)[0] == how and re.search(f"^{how[1]} at step ", COLOUR.sub(r"\2", text), re.MULTILINE)
     assert {part for _, part in COLOUR.findall(text)} <= {how[1], "SUSPECT"}
     assert "\x1b" not in shown(tmp_path, "run", "s.toml", *variant, "--out", "Y", "--quiet")
 
