@@ -128,14 +128,14 @@ std::string new_scene_text(std::string_view title) {
 }
 
 std::vector<std::string> write_new_scene(const std::string& name) {
-  const std::string file = name + ".toml";
-  if (!is_plain_name(name, ".")) return {fmt::format("{}: a name is made of letters, digits, _ - and dots.", name)};
+  const std::string title = name.substr(0, name.size() - (name.ends_with(".toml") ? 5 : 0)), file = title + ".toml";
+  if (!is_plain_name(title, ".")) return {fmt::format("{}: a name is made of letters, digits, _ - and dots.", name)};
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> out(std::fopen(file.c_str(), "wx"), &std::fclose);
   if (!out && errno == EEXIST)
     return {fmt::format("{}: the file is there and is left as it is. Give another name.", file)};
-  if (!out || std::fputs(new_scene_text(name).c_str(), out.get()) < 0 || std::fflush(out.get()) != 0)
-    return {fmt::format("{}: the file cannot be written. Check the folder's permissions and room.", file)};
-  return {};
+  if (out && std::fputs(new_scene_text(title).c_str(), out.get()) >= 0 && std::fflush(out.get()) == 0) return {};
+  if (out) std::remove(file.c_str());
+  return {fmt::format("{}: the file cannot be written. Check the folder's permissions and room.", file)};
 }
 
 }  // namespace strata

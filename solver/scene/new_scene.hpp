@@ -12,8 +12,8 @@ namespace strata {
 /// mechanics as variants. Above each key stands what the list of keys says of it: meaning, unit, bounds and default.
 std::string new_scene_text(std::string_view title);
 
-/// Writes it to NAME.toml. What is wrong, as lines: a name of other characters, a file that is there or cannot be
-/// written.
+/// Writes it to NAME.toml, whether or not `name` ends so. What is wrong, as lines: a name of other characters, a file
+/// that is there or cannot be written.
 std::vector<std::string> write_new_scene(const std::string& name);
 
 }  // namespace strata

@@ -68,7 +68,10 @@ def test_each_key_is_explained_by_the_list_of_keys(scene: Path) -> None:
     assert len(explained) > 40
 
 
-@pytest.mark.parametrize(("name", "said"), [("begun", "begun.toml: the file is there and is left as it is"), ("a/b", "a name is made of letters"), ("", "a name is made of letters")])
+THERE = "begun.toml: the file is there and is left as it is"
+
+
+@pytest.mark.parametrize(("name", "said"), [("begun", THERE), ("begun.toml", THERE), ("a/b", "a name is made of letters"), ("", "a name is made of letters")])
 def test_what_is_refused(name: str, said: str, scene: Path) -> None:
     """With status 2, and nothing is written."""
     scene.write_text("mine")
