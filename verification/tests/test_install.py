@@ -10,7 +10,7 @@ import pytest
 
 from verification.harness import paths
 from verification.harness.choose import claimed
-from verification.harness.paths import ROOT, solver
+from verification.harness.paths import EXPERIMENTS, ROOT, solver
 from verification.tests.cases import summary_of
 from verification.tests.terminal import on_terminal
 
@@ -52,12 +52,13 @@ def run(command: list[str | Path], folder: Path) -> str:
 
 
 def test_a_moved_tree_is_whole(tree: Path, tmp_path: Path) -> None:
-    """The README's scene runs, the six experiments are read, a reference answers; no file knows a folder of this machine."""
+    """The README's scene runs, the experiments and the gallery are read, a reference answers; no file knows a folder of this machine."""
     (tmp_path / "mine.toml").write_text(first_scene(tree))
     run([tree / "bin/strata", "run", "mine.toml", "--out", "X", "--quiet"], tmp_path)
     assert summary_of(tmp_path / "X")["status"] == "completed"
-    scenes = sorted((tree / "share/strata/experiments").glob("exp*.toml"))
-    assert len(scenes) == 6 and all(run([tree / "bin/strata", "resolve", scene], tmp_path) for scene in scenes)
+    scenes = sorted((tree / "share/strata").glob("*/*.toml"))
+    assert {scene.name for scene in scenes} == {scene.name for folder in (EXPERIMENTS, EXPERIMENTS / "gallery") for scene in folder.glob("*.toml")}
+    assert len(scenes) > 6 and all(run([tree / "bin/strata", "resolve", scene], tmp_path) for scene in scenes)
     assert '"K_I' in run([tree / "bin/strata-reference", "pressurised_crack"], tmp_path)
     places = [str(place).encode() for place in (ROOT, solver().parent, paths.RUNS)]
     assert not [file for file in tree.rglob("*") if file.is_file() and any(place in file.read_bytes() for place in places)]
