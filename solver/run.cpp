@@ -26,6 +26,7 @@
 #include "quasistatic/resting_rock.hpp"
 #include "scene/derived.hpp"
 #include "scene/inlet.hpp"
+#include "scene/keys.hpp"
 #include "scene/messages.hpp"
 #include "scene/toml_reader.hpp"
 
@@ -319,6 +320,15 @@ int run_anew(const Scene& scene, const RunOptions& options, const RunFolder& fol
   return run_to_end({scene, folder, options, start, Recorder(folder, {}, scene), Checkpoint()});
 }
 
+// What a scene that leaves keys out is easily taken to be otherwise, and what it will need.
+std::string announce(const Scene& scene) {
+  return fmt::format("{}{}; {:.2g} points, {:.2g} GB by estimate\n",
+                     fmt::format("mechanics = {}, {}", word_of(scene.numerics.mechanics),
+                                 scene.fracture ? "fluid.law = " + word_of(scene.fluid.law) : "no fracture"),
+                     scene.domain.bottom == Edge::symmetry ? ", y = 0 is a mirror (domain.bottom)" : "",
+                     points_of(scene), 1e-9 * memory_need(scene));
+}
+
 }  // namespace
 
 int run_scene(const Scene& scene, const RunOptions& options) {
@@ -327,7 +337,7 @@ int run_scene(const Scene& scene, const RunOptions& options) {
   const RunFolder folder{options.out};
   make_folder(folder.path);
   const Descriptor lock = lock_folder(folder.path);
-  if (!options.quiet) tell("{:.2g} points, {:.2g} GB by estimate\n", points_of(scene), 1e-9 * memory_need(scene));
+  if (!options.quiet) tell("{}", announce(scene));
   return run_anew(scene, options, folder, options.replace, start);
 }
 

@@ -158,6 +158,21 @@ void place_layers(Reading& reading, double extent_m) {
   }
 }
 
+// Where a layer has a stress of its own, each needs one, or there is one for all.
+void check_layer_stresses(Reading& reading, std::string_view stress) {
+  const std::string general = fmt::format("in_situ.{}", stress);
+  std::vector<std::string> without;
+  const std::size_t count = reading.scene.strata.layers.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    if (const std::string path = fmt::format("strata.layers[{}].{}", k, stress); !reading.given(path))
+      without.push_back(path);
+  }
+  if (reading.given(general) || without.size() == count) return;
+  for (const std::string& path : without)
+    reading.refuse(path, "{} is missing, as other layers have one. Give it, or {} for all that leave it out.", path,
+                   general);
+}
+
 void build_strata(Reading& reading) {
   Scene& scene = reading.scene;
   auto& [along, layers, interfaces] = scene.strata;
@@ -169,6 +184,7 @@ void build_strata(Reading& reading) {
     reading.entries[path].sound = false;
   }
   const bool upwards = along == Strata::Along::y;
+  check_layer_stresses(reading, upwards ? "horizontal_Pa" : "vertical_Pa");
   if (reading.usable("strata.layers", upwards ? "domain.height_m" : "domain.width_m") && reading.sound("strata.along"))
     place_layers(reading, upwards ? scene.domain.height_m : scene.domain.width_m);
 

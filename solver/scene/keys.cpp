@@ -50,11 +50,13 @@ std::string unknown_key_message(std::string_view path) {
   const std::vector<std::string> names = names_in_table(table);
   const std::string message = fmt::format("unknown key {}.", path), meant = did_you_mean(name, names);
   if (!meant.empty()) return message + meant;
-  for (const Key& key : scene_keys()) {  // of another table
-    if (!key.in_list() && key.name() == name) return fmt::format("{} Did you mean {}?", message, key.path);
+  std::string elsewhere;
+  for (const Key& key : scene_keys()) {
+    if (elsewhere.empty() && !key.in_list() && key.name() == name)
+      elsewhere = fmt::format(" Did you mean {}?", key.path);
   }
   const std::string where = table.empty() ? "At the top level there are" : fmt::format("[{}] has", table);
-  return fmt::format("{} {} {}.", message, where, fmt::join(names, ", "));
+  return fmt::format("{}{} {} {}.", message, elsewhere, where, fmt::join(names, ", "));
 }
 
 std::string to_text(const Bounds& bounds) {

@@ -106,7 +106,9 @@ TEST_CASE("The nearest word is suggested, and none that is far") {
 
 TEST_CASE("An unknown key names the nearest one, or the table it belongs in, or what there is") {
   CHECK(unknown_key_message("fluid.viscosty_Pa_s") == "unknown key fluid.viscosty_Pa_s. Did you mean viscosity_Pa_s?");
-  CHECK(unknown_key_message("domain.courant") == "unknown key domain.courant. Did you mean numerics.courant?");
+  CHECK(unknown_key_message("domain.courant") ==
+        "unknown key domain.courant. Did you mean numerics.courant? [domain] has width_m, height_m, beyond_m, bottom, "
+        "sides, top.");
   CHECK(unknown_key_message("stop.never") == "unknown key stop.never. [stop] has tip_y_m, inlet_Pa, time_s.");
 }
 

@@ -130,7 +130,7 @@ def study_of(
     rows = [row for row in rows if row.label not in nowhere] + (path_rows(levels) if turns(content) else [])
     notes = unlike(content, [level.cell_m for level in levels])
     if nowhere:
-        notes += (f"{variant or 'base'}: at no size is there a {', '.join(nowhere)}",)
+        notes += (f"{variant or 'base'}: nothing to follow at any size: {', '.join(nowhere)}",)
     return Study(mechanics, variant, content["fracture"]["increment_m"], tuple(levels), tuple(rows), notes)
 
 

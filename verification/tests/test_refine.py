@@ -111,7 +111,7 @@ def test_what_no_size_has_is_told_in_a_note(tmp_path: Path) -> None:
     study = study_of(EXP1, "quasistatic", "weak", [level(h, made(tmp_path / f"{h}", climb(to_m=30.0), 2.9e6)) for h in (1.0, 0.5)])
     names = {row.name for row in study.rows}
     assert "pressure_at_40_Pa" not in names and "pressure_at_20_Pa" in names
-    assert study.notes == ("weak: at no size is there a pressure at 40 m, pressure at 60 m",)
+    assert study.notes == ("weak: nothing to follow at any size: pressure at 40 m, pressure at 60 m",)
 
 
 @pytest.mark.parametrize(("along", "first_m", "cells_m", "said"), [
