@@ -21,7 +21,7 @@ namespace {
 
 // A file is this line, with a number to be raised with every change of what is saved, the checksum of what follows,
 // the scene as it was resolved, what was written, and the state.
-constexpr std::string_view magic = "strata-checkpoint 14\n";
+constexpr std::string_view magic = "strata-checkpoint 15\n";
 
 template <class T, class Plain>
 concept Is = std::is_same_v<std::remove_const_t<T>, Plain>;
@@ -40,6 +40,7 @@ STRATA_SAVED(SurfacePoint, x, n, A, arc, w, u, reaction, in_situ, bonded, P, mem
 STRATA_SAVED(Surface, kind, bit, law, vertices, points)
 STRATA_SAVED(FluidLine, P, inlet, inlet_Pa, w_rate)
 STRATA_SAVED(ReynoldsLine, length, P, phi, content, w, w_rate, wet_s, leaked, rates_known, inlet, inlet_Pa)
+STRATA_SAVED(GrownFluid, time, took, line, balance)
 STRATA_SAVED(TipTie, node, plus, minus, stiffness, s)
 STRATA_SAVED(Tip, at_back, growing, stopped_by, K_I, K_II, J, J_spread, ring_m, kink, turn, closed, near, crossed,
              no_length, last_growth_s, last_growth_Pa, due_s, runs_until_s, G_trial, G, G_by_J, criterion, grew_by,
@@ -58,7 +59,7 @@ void fields(Archive& archive, Is<Particles> auto& particles) {
 template <class Archive>
 void fields(Archive& archive, Is<State> auto& state) {
   archive(state.time, state.step, state.dt, state.grid, state.particles, state.surfaces, state.has_fracture);
-  archive(state.fluid, state.reynolds, state.balance, state.tips, state.ties, state.events, state.ledger);
+  archive(state.fluid, state.reynolds, state.balance, state.grown, state.tips, state.ties, state.events, state.ledger);
   archive(state.monitors, state.total.velocity);
 }
 

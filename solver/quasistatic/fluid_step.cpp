@@ -83,12 +83,28 @@ void add_place(const ContactPlace& place, const LawAnswer& r, double w, RockResp
 Eigen::VectorXd lost_by(const Scene& scene, double time, const State& state) {
   if (!scene.leaks() || state.reynolds.size() == 0) return {};
   Eigen::VectorXd lost(state.fracture().points.size());
+  const std::vector<double> wet = wet_times(state.reynolds, time, true, true);
   for (std::size_t k = 0; k < state.reynolds.size(); ++k) {
     const SurfacePoint& s = state.fracture().points[k];
     const double C_L = scene.rocks[rock_at(scene, s.x)].leakoff_m_sqrt_s;
-    lost[static_cast<Eigen::Index>(k)] = 4.0 * C_L * std::sqrt(time - state.reynolds.wet_s[k]) * s.A;
+    lost[static_cast<Eigen::Index>(k)] = 4.0 * C_L * std::sqrt(time - wet[k]) * s.A;
   }
   return lost;
+}
+
+// What the cells that tips have grown by conduct at a time (s); nothing of an instant after it.
+Eigen::VectorXd tip_conductances(const Scene& scene, const Rocks& rocks, double time, const State& state) {
+  const ReynoldsLine& line = state.reynolds;
+  if (line.size() == 0) return {};
+  Eigen::VectorXd conductance = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(line.size()) - 1);
+  for (const Tip& tip : state.tips) {
+    const auto& points = state.fracture().points;
+    if (time - (tip.at_back ? line.wet_s.back() : line.wet_s.front()) < 2.0 * shortest_coupled_step) continue;
+    const Elasticity& rock = rocks[rock_at(scene, (tip.at_back ? points.back() : points.front()).x)];
+    const double K_Ic = std::sqrt(rock.J_c * rock.E_prime);
+    conductance += tip_conductances(scene.fluid, line, tip.at_back, rock.E_prime, K_Ic, time);
+  }
+  return conductance;
 }
 
 // The rock at a time (s) as the flow sees it: openings and their change with the pressures, in equilibrium with all
@@ -102,15 +118,15 @@ RockModel rock_of(const Scene& scene, double time, State& state, QuasistaticMode
     E_prime[k] = rocks[rock_at(scene, s.x)].E_prime, closing[k] = s.closing_stress();
   }
   if (model.dw_dP_of != model.factor.pieces) model.dw_dP.resize(0, 0);
-  const Eigen::VectorXd lost = lost_by(scene, time, state);
-  return [&scene, time, &state, &model, E_prime, closing, lost](const Eigen::VectorXd& P) {
+  const Eigen::VectorXd lost = lost_by(scene, time, state), tips = tip_conductances(scene, rocks, time, state);
+  return [&scene, time, &state, &model, E_prime, closing, lost, tips](const Eigen::VectorXd& P) {
     set_point_pressures(P, state);
     const Equilibrium at = find_equilibrium(scene, time, state, model);
     if (model.dw_dP_of != at.pieces || model.dw_dP.size() == 0) {  // the same as long as no place opens or closes
       model.dw_dP = opening_per_pressure(state, model.condensed, model.places, at, model.factor);
       model.dw_dP_of = at.pieces;
     }
-    RockResponse rock{Eigen::VectorXd::Zero(P.size()), model.dw_dP, E_prime, closing, lost};
+    RockResponse rock{Eigen::VectorXd::Zero(P.size()), model.dw_dP, E_prime, closing, lost, tips};
     for (std::size_t k = 0; k < model.places.size(); ++k) {
       const ContactPlace& place = model.places[k];
       if (place.tie < 0 && place.surface == 0) add_place(place, at.answers[k], at.w[k].dot(place.n), rock);
@@ -119,25 +135,29 @@ RockModel rock_of(const Scene& scene, double time, State& state, QuasistaticMode
   };
 }
 
-// The pressure at the end of a step dt from the state on, or the rate midway, which between rows of a table is its
+// The pressure at the end of a step between two times (s), or the rate midway, which between rows of a table is its
 // mean.
-Inlet inlet_over(const Scene& scene, const State& state, double dt) {
-  if (!scene.fluid.rate_m2_s) return {Inlet::Drive::pressure, inlet_pressure(scene.fluid, state.time + dt)};
+Inlet inlet_over(const Scene& scene, const State& state, double start, double end) {
+  if (!scene.fluid.rate_m2_s) return {Inlet::Drive::pressure, inlet_pressure(scene.fluid, end)};
   // Half of a fracture that starts on the symmetry line gets half of what the whole is fed.
   const bool half = scene.domain.bottom == Edge::symmetry && state.fracture().vertices.front().x.y() == 0.0;
-  return {Inlet::Drive::rate, inlet_rate(scene.fluid, state.time + 0.5 * dt) * (half ? 0.5 : 1.0)};
+  return {Inlet::Drive::rate, inlet_rate(scene.fluid, 0.5 * (start + end)) * (half ? 0.5 : 1.0)};
 }
 
 FluidStep couple(const Scene& scene, double dt, State& state, QuasistaticModel& model) {
   // Of the largest opening, a step: some hundred of them add up to less than a per cent, since what one does wrong the
   // next ones heal.
   const double allowed = scene.numerics.flow_error;
-  const double step = std::max(dt, shortest_coupled_step);
-  const double end = state.time + step;
-  const StepReport report = step_reynolds(scene.fluid, inlet_over(scene, state, step), step,
-                                          rock_of(scene, end, state, model), state.reynolds, state.balance);
+  const double end = state.time + std::max(dt, shortest_coupled_step);
+  const bool grown = state.grown.line.size() > 0;
+  GrownFluid from = grown ? state.grown : GrownFluid{state.time, 0.0, state.reynolds, state.balance};
+  const StepReport report =
+      step_reynolds(scene.fluid, inlet_over(scene, state, from.time, end), end - from.time,
+                    rock_of(scene, end, state, model), from.line, from.balance);
   if (!report.converged) return {false, 0.0, report.reason};
-  state.time += step;
+  state.time = end;
+  state.reynolds = std::move(from.line);
+  state.balance = from.balance;
   state.fluid.P = vertex_pressures(state.reynolds);
   state.fluid.inlet_Pa = report.inlet_Pa;
   set_point_pressures(
@@ -192,6 +212,7 @@ void note_rates(std::span<const double> w_before, double dt, State& state) {
 void add_fluid_cells(const Scene& scene, bool at_back, std::size_t added, State& state) {
   if (scene.fluid.law != Fluid::Law::reynolds) return;
   const auto& points = state.fracture().points;
+  state.reynolds.wet_s = wet_times(state.reynolds, state.time, !at_back, at_back);
   for (std::size_t k = 0; k < added; ++k) {
     const std::size_t q = at_back ? points.size() - added + k : added - 1 - k;
     grow(state.reynolds, scene.fluid, at_back, points[q].A, state.time);

@@ -8,6 +8,7 @@
 
 #include "flow/flow_monitors.hpp"
 #include "flow/paper_flow.hpp"
+#include "flow/reynolds_flow.hpp"
 #include "fracture/growth.hpp"
 #include "interfaces/failure.hpp"
 #include "interfaces/monitors.hpp"
@@ -227,6 +228,7 @@ struct Growing {
   double J = 0.0;          // N/m
   double P = 0.0;          // Pa
   double J_c = 0.0;        // of the rock ahead (N/m)
+  double last_s = 0.0;     // time of the growth before
 };
 
 std::vector<Growing> tips_that_grow(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run) {
@@ -235,7 +237,7 @@ std::vector<Growing> tips_that_grow(const Scene& scene, const Rocks& rocks, Stat
     Tip& tip = state.tips[k];
     if (!may_grow(scene, state, tip) || tip_margin(scene, rocks, state, run, k) < 1.0) continue;
     due.push_back({k, increment_of(scene, tip), tip.J, tip.at_back ? state.fluid.P.back() : state.fluid.P.front(),
-                   rocks[rock_ahead(scene, state, tip)].J_c});
+                   rocks[rock_ahead(scene, state, tip)].J_c, std::max(0.0, tip.last_growth_s)});
   }
   return due;
 }
@@ -298,6 +300,7 @@ void grow_or_fail(const Scene& scene, const Rocks& rocks, State& state, Quasista
   }
   rebuild_all(scene, rocks, state, run);
   if (!growing.empty()) measure_release(scene, rocks, energy_before, growing, state, run);
+  state.grown = {};
   const FluidStep fluid = advance_fluid(scene, 0.0, state, run.model);
   if (!fluid.found) throw_no_solution("just after growth or failure", state.time, fluid.reason);
   equilibrate(scene, rocks, state, run);
@@ -306,6 +309,10 @@ void grow_or_fail(const Scene& scene, const Rocks& rocks, State& state, Quasista
   accept(scene, before, growing.empty() ? Change::failure : Change::growth, state, run, surface);
   state.dt = first_flow_step;
   state.fluid.w_rate.clear();
+  if (growing.empty() || scene.fluid.law != Fluid::Law::reynolds) return;
+  state.dt = std::max(state.dt, state.time - growing[0].last_s);
+  state.grown = {state.time, state.dt, state.reynolds, state.balance};
+  state.grown.line.rates_known = false;
 }
 
 // From `from` to the load a time dt later: run.margin is the margin there. Under law = "reynolds" there may be no
@@ -343,13 +350,34 @@ struct LoadStep {
   double dt = 0.0, change = 0.0, error = 0.0;
 };
 
+// The step (s) to the next growth, or as far as is left, by flow that is solved anew from the last growth on; it is
+// sought from dt on. 0 where none is found.
+double step_from_growth(const Scene& scene, const Rocks& rocks, const LoadPoint& from, double dt, double left,
+                        State& state, Quasistatic& run) {
+  constexpr double patience = 4.0;  // of the time that the growth before took; then the tip waits for something else
+  if (from.time - state.grown.time > patience * state.grown.took) return 0.0;
+  for (bool shorter = false; dt > shortest_trial; dt = shorter ? 0.5 * dt : std::min(2.0 * dt, left)) {
+    const bool found = try_step(scene, rocks, from, dt, state, run).found;
+    const bool far = dt == left || from.time + dt - state.grown.time > patience * state.grown.took;
+    if (found && (shorter || far || run.margin >= 1.0)) return dt;
+    shorter = !found;
+  }
+  return 0.0;
+}
+
 // Takes the step of state.dt or, where nothing flows, of all the time that is left (s), halved until it is found, its
 // error is allowed and the margin does not change too much before an event; w: openings (m) at `from`.
 LoadStep find_step(const Scene& scene, const Rocks& rocks, const LoadPoint& from, const std::vector<double>& w,
                    double left, State& state, Quasistatic& run) {
   const bool flowing = flows(scene, state), foresees = foresees_openings(scene, state);
   const double margin = run.margin;
-  for (double dt = flowing ? std::min(state.dt, left) : left;; dt *= 0.5) {
+  double dt = flowing ? std::min(state.dt, left) : left;
+  if (state.grown.line.size() > 0) {
+    if (const double found = step_from_growth(scene, rocks, from, dt, left, state, run); found > 0.0)
+      return {found, std::abs(run.margin - margin), 0.0};
+    state.grown = {};
+  }
+  for (;; dt *= 0.5) {
     FluidStep fluid = try_step(scene, rocks, from, dt, state, run);
     if (!fluid.found) {
       if (dt < shortest_trial) throw_no_solution("in any step", from.time, fluid.reason);
@@ -452,6 +480,7 @@ void advance_quasistatic(const Scene& scene, const Rocks& rocks, double until, S
   const LoadPoint from = load_point(state);
   const double margin = run.margin;
   const std::vector<double> w = foresees_openings(scene, state) ? openings_of(state.fracture()) : std::vector<double>{};
+  if (next_row(scene.fluid, state.grown.time) <= from.time) state.grown = {};
   const double left = std::min(until, next_row(scene.fluid, from.time)) - from.time;
   const LoadStep step = find_step(scene, rocks, from, w, left, state, run);
   if (run.margin > 1.0 + event_tolerance) locate_event(scene, rocks, from, margin, step.dt, state, run);

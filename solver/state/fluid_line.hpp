@@ -46,4 +46,13 @@ struct FluidBalance {
   }
 };
 
+// The fluid just after the last growth, from which steps begin until the next one: steps from one to the other would
+// let the pressure even out behind a tip that stands, where in truth it goes on. Without cells: none.
+struct GrownFluid {
+  double time = 0.0;  // s
+  double took = 0.0;  // the growth before (s)
+  ReynoldsLine line;
+  FluidBalance balance;
+};
+
 }  // namespace strata

@@ -146,6 +146,7 @@ struct SavedState {
   FluidLine fluid;
   ReynoldsLine reynolds;  // of law = "reynolds" only
   FluidBalance balance;   // the same
+  GrownFluid grown;       // the same
   std::vector<Tip> tips;
   std::vector<TipTie> ties;
   std::vector<Event> events;
