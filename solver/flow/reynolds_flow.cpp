@@ -121,11 +121,11 @@ Place place(const Step& step, const Trial& trial, const Balance& b, Index k, boo
   return at;
 }
 
-// Conductance from cell k to the next one: near a moving tip as given, by the scene's floor at least.
+// Conductance from cell k to the next one: near a moving front by the opening on its side.
 Dual across(const Step& step, const RockResponse& rock, const Place& l, const Place& r, Index k) {
-  if (rock.tip_conductance.size() == 0 || rock.tip_conductance(k) == 0.0) return between(step.fluid, l, r);
-  const double floor = std::pow(step.fluid.minimum_opening_m, 3) / (6.0 * step.fluid.viscosity_Pa_s * (l.A + r.A));
-  return Dual(std::max(rock.tip_conductance(k), floor));
+  const double given = rock.front.size() > 0 ? rock.front(k) : 0.0;
+  if (given == 0.0) return between(step.fluid, l, r);
+  return std::abs(given) * conducting(step.fluid, given > 0.0 ? r : l);
 }
 
 // Adds a flow (m^2/s) into cell `to`, with derivatives by the cells l and r, of which one may be missing (-1).
@@ -447,70 +447,6 @@ StepReport step_reynolds(const Fluid& fluid, const Inlet& inlet, double dt, cons
   balance.leaked += b.leak.sum();
   balance.stored = b.held.sum();
   return report;
-}
-
-namespace {
-
-// The cells that a tip's last growth has added, counted from the tip on; none where it has not grown.
-struct AddedCells {
-  const ReynoldsLine& line;
-  bool at_back;
-  std::size_t count = 0;
-  double length = 0.0;  // m
-
-  AddedCells(const ReynoldsLine& of, bool back) : line(of), at_back(back) {
-    const double wet = line.wet_s[cell(0)];
-    for (; wet > 0.0 && line.wet_s[cell(count)] == wet; ++count) length += length_of(count);
-  }
-  std::size_t cell(std::size_t j) const { return at_back ? line.size() - 1 - j : j; }
-  double length_of(std::size_t j) const { return line.length[cell(j)]; }
-};
-
-}  // namespace
-
-std::vector<double> wet_times(const ReynoldsLine& line, double time, bool at_front, bool at_back) {
-  std::vector<double> wet = line.wet_s;
-  for (const bool back : {false, true}) {
-    if (!(back ? at_back : at_front)) continue;
-    const AddedCells added(line, back);
-    double x = 0.0;
-    for (std::size_t j = 0; j < added.count; ++j) {
-      double& t = wet[added.cell(j)];
-      t = time - (time - t) * (x + 0.5 * added.length_of(j)) / added.length;
-      x += added.length_of(j);
-    }
-  }
-  return wet;
-}
-
-VectorXd tip_conductances(const Fluid& fluid, const ReynoldsLine& line, bool at_back, double E_prime, double K_Ic,
-                          double time) {
-  const AddedCells added(line, at_back);
-  VectorXd conductance = VectorXd::Zero(static_cast<Index>(line.size()) - 1);
-  if (added.count == 0) return conductance;
-  const double V = added.length / (time - line.wet_s[added.cell(0)]), mu = 12.0 * fluid.viscosity_Pa_s;
-  const double c = 8.0 * K_Ic / (E_prime * std::sqrt(2.0 * std::numbers::pi)),
-               d = 18.0 * std::numbers::sqrt3 * mu * V / E_prime;
-  // By u = sqrt(x): w = u (c^3 + d u)^(1/3), dx = 2 u du.
-  const auto w = [c, d](double u) { return u * std::cbrt(c * c * c + d * u); };
-  const auto integral = [](double from, double to, const auto& f) {  // of f dx, three points of Gauss
-    const double middle = 0.5 * (std::sqrt(from) + std::sqrt(to)), half = std::sqrt(to) - middle, off = std::sqrt(0.6) * half;
-    const auto at = [&](double u) { return 2.0 * u * f(u); };
-    return half / 9.0 * (5.0 * at(middle - off) + 8.0 * at(middle) + 5.0 * at(middle + off));
-  };
-  double x = 0.0, behind = 0.0;
-  for (std::size_t j = 0; j < added.count; ++j) {
-    const double near = x, middle = x + 0.5 * added.length_of(j);
-    x += added.length_of(j);
-    behind += integral(near, x, w);
-    double fall = integral(j == 0 ? x : middle, x + 0.5 * added.length_of(j + 1),
-                           [&](double u) { return 1.0 / (w(u) * w(u)); });
-    // P(x) - int P ds/(2 sqrt(x s)), s = 0 to x, over 12 mu V: int sqrt(s/x)/w^2 ds.
-    const double a = std::cbrt(c * c * c + d * std::sqrt(x));
-    if (j == 0) fall += 6.0 / (a * a + a * c + c * c);
-    conductance(static_cast<Index>(std::min(added.cell(j), added.cell(j + 1)))) = behind / (mu * added.length * fall);
-  }
-  return conductance;
 }
 
 std::vector<double> vertex_pressures(const ReynoldsLine& line) {

@@ -32,7 +32,7 @@ struct RockResponse {
   Eigen::MatrixXd dw_dP;
   Eigen::VectorXd E_prime = {}, closing = {};
   Eigen::VectorXd lost = {};  // by both faces of each cell until the step's end (m^2), or nothing where none leak
-  Eigen::VectorXd tip_conductance = {};  // from a cell to the next one beside a moving tip (m^2/(Pa s)), else 0; or none
+  Eigen::VectorXd front = {};  // front_conductances(), or none
 };
 using RockModel = std::function<RockResponse(const Eigen::VectorXd& P)>;  // P absolute, one a point (Pa)
 
@@ -78,20 +78,6 @@ ReynoldsLine full_line(const Fluid& fluid, const std::vector<double>& length, st
 /// Adds an empty cell (phi = 0, P = P_c) of the given length (m), wet from `time` (s) on, after the last one (at_back)
 /// or before the first, where the inlet's vertex moves up by one.
 void grow(ReynoldsLine& line, const Fluid& fluid, bool at_back, double length, double time = 0.0);
-
-/// When the front came by the middle of each cell (s): through the cells of a tip's last growth it goes evenly from
-/// their start to a time (s), the present; for the tips at the first and at the last cell that are asked for.
-std::vector<double> wet_times(const ReynoldsLine& line, double time, bool at_front, bool at_back);
-
-/// What the cells added by the last growth conduct between each other and from the cell before (m^2/(Pa s)), a value a
-/// face between cells, 0 elsewhere, at a time (s) after that growth: of the front, which goes through these cells of
-/// together L at V = L/(time - their start). Behind it
-///   w^3 = (8 K_Ic/(E' sqrt(2 pi)))^3 x^(3/2) + 2 3^(5/2) 12 mu V/E' x^2,  q = V w,  dP/dx = 12 mu V/w^2
-/// (toughness and viscosity together: Garagash & Detournay 2000; Dontsov & Peirce 2015 for its cubes), and over the time
-/// that it takes through them a face at x has passed int_0^x w dx V/L. A cell stands for P at its middle, the last one
-/// for the even pressure with as much K_I. E_prime Pa, K_Ic Pa sqrt(m); at_back: the tip is at the last cell.
-Eigen::VectorXd tip_conductances(const Fluid& fluid, const ReynoldsLine& line, bool at_back, double E_prime,
-                                 double K_Ic, double time);
 
 /// One step dt (s) of flow and rock together: Newton's method on the balance of each cell, with P free in full cells
 /// and phi in others. Changes line and balance only where it converges; throws what the rock throws.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "flow/moving_front.hpp"
 #include "flow/paper_flow.hpp"
 #include "flow/reynolds_flow.hpp"
 #include "scene/inlet.hpp"
@@ -92,19 +93,19 @@ Eigen::VectorXd lost_by(const Scene& scene, double time, const State& state) {
   return lost;
 }
 
-// What the cells that tips have grown by conduct at a time (s); nothing of an instant after it.
-Eigen::VectorXd tip_conductances(const Scene& scene, const Rocks& rocks, double time, const State& state) {
+// What conducts near the fronts of tips that go on at a time (s), with none of a tip that waits or has no length.
+Eigen::VectorXd conductances_at_fronts(const Scene& scene, const Rocks& rocks, double time, const State& state) {
+  if (state.grown.line.size() == 0) return {};
   const ReynoldsLine& line = state.reynolds;
-  if (line.size() == 0) return {};
-  Eigen::VectorXd conductance = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(line.size()) - 1);
+  Eigen::VectorXd front = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(line.size()) - 1);
   for (const Tip& tip : state.tips) {
     const auto& points = state.fracture().points;
-    if (time - (tip.at_back ? line.wet_s.back() : line.wet_s.front()) < 2.0 * shortest_coupled_step) continue;
+    if (tip.no_length) continue;
     const Elasticity& rock = rocks[rock_at(scene, (tip.at_back ? points.back() : points.front()).x)];
     const double K_Ic = std::sqrt(rock.J_c * rock.E_prime);
-    conductance += tip_conductances(scene.fluid, line, tip.at_back, rock.E_prime, K_Ic, time);
+    front += front_conductances(scene.fluid, line, tip.at_back, rock.E_prime, K_Ic, time);
   }
-  return conductance;
+  return front;
 }
 
 // The rock at a time (s) as the flow sees it: openings and their change with the pressures, in equilibrium with all
@@ -118,15 +119,16 @@ RockModel rock_of(const Scene& scene, double time, State& state, QuasistaticMode
     E_prime[k] = rocks[rock_at(scene, s.x)].E_prime, closing[k] = s.closing_stress();
   }
   if (model.dw_dP_of != model.factor.pieces) model.dw_dP.resize(0, 0);
-  const Eigen::VectorXd lost = lost_by(scene, time, state), tips = tip_conductances(scene, rocks, time, state);
-  return [&scene, time, &state, &model, E_prime, closing, lost, tips](const Eigen::VectorXd& P) {
+  const Eigen::VectorXd lost = lost_by(scene, time, state),
+                        fronts = conductances_at_fronts(scene, rocks, time, state);
+  return [&scene, time, &state, &model, E_prime, closing, lost, fronts](const Eigen::VectorXd& P) {
     set_point_pressures(P, state);
     const Equilibrium at = find_equilibrium(scene, time, state, model);
     if (model.dw_dP_of != at.pieces || model.dw_dP.size() == 0) {  // the same as long as no place opens or closes
       model.dw_dP = opening_per_pressure(state, model.condensed, model.places, at, model.factor);
       model.dw_dP_of = at.pieces;
     }
-    RockResponse rock{Eigen::VectorXd::Zero(P.size()), model.dw_dP, E_prime, closing, lost, tips};
+    RockResponse rock{Eigen::VectorXd::Zero(P.size()), model.dw_dP, E_prime, closing, lost, fronts};
     for (std::size_t k = 0; k < model.places.size(); ++k) {
       const ContactPlace& place = model.places[k];
       if (place.tie < 0 && place.surface == 0) add_place(place, at.answers[k], at.w[k].dot(place.n), rock);

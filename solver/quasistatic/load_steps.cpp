@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "flow/flow_monitors.hpp"
+#include "flow/moving_front.hpp"
 #include "flow/paper_flow.hpp"
-#include "flow/reynolds_flow.hpp"
 #include "fracture/growth.hpp"
 #include "interfaces/failure.hpp"
 #include "interfaces/monitors.hpp"
@@ -45,6 +45,18 @@ double toughless_margin(const State& state, double E_prime, const Tip& tip) {
   return 1.0 + (K - resolved * net * std::sqrt(state.grid.h)) / large_K;
 }
 
+// The same while the fluid's front goes on since the last growth: the tip is where the front is once the rock from one
+// to two cells behind is as open as behind a front of that speed.
+double front_margin(const Fluid& fluid, const State& state, double E_prime, const Tip& tip) {
+  const MovingFront front(fluid, state.reynolds, tip.at_back, E_prime, 0.0, state.time);
+  double w = 0.0, behind_front = 0.0;
+  for (const SurfacePoint& s : state.fracture().points) {
+    const double x = tip.at_back ? state.fracture().length() - s.arc : s.arc;
+    if (x > state.grid.h && x < 2.0 * state.grid.h) w += s.opening(), behind_front += front.opening(std::sqrt(x));
+  }
+  return w / behind_front;
+}
+
 // How near a tip is to growth: sqrt(G/J_c) by what decides about it. Where the fracture that a trial makes has no
 // equilibrium, K decides.
 double tip_margin(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run, std::size_t k) {
@@ -61,7 +73,9 @@ double tip_margin(const Scene& scene, const Rocks& rocks, State& state, Quasista
   }
   const double G = driving(rock, tip);
   if (rock.J_c > 0.0) return std::sqrt(std::max(0.0, G) / rock.J_c);
-  return weighs_energy(tip) ? (G > 0.0 ? 2.0 : 0.0) : toughless_margin(state, rock.E_prime, tip);
+  if (weighs_energy(tip)) return G > 0.0 ? 2.0 : 0.0;
+  const bool front = state.grown.line.size() > 0 && tip.last_growth_s == state.grown.time;
+  return front ? front_margin(scene.fluid, state, rock.E_prime, tip) : toughless_margin(state, rock.E_prime, tip);
 }
 
 double margin_of(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run) {

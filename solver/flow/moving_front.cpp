@@ -1,0 +1,83 @@
+#include "flow/moving_front.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace strata {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+// The cells that a tip's last growth has added, counted from the tip on; none where it has not grown.
+struct AddedCells {
+  const ReynoldsLine& line;
+  bool at_back;
+  std::size_t count = 0;
+  double length = 0.0;  // m
+
+  AddedCells(const ReynoldsLine& of, bool back) : line(of), at_back(back) {
+    const double wet = line.wet_s[cell(0)];
+    for (; wet > 0.0 && line.wet_s[cell(count)] == wet; ++count) length += length_of(count);
+  }
+  std::size_t cell(std::size_t j) const { return at_back ? line.size() - 1 - j : j; }
+  double length_of(std::size_t j) const { return line.length[cell(j)]; }
+};
+
+}  // namespace
+
+MovingFront::MovingFront(const Fluid& fluid, const ReynoldsLine& line, bool at_back, double E_prime, double K_Ic,
+                         double time) {
+  const AddedCells added(line, at_back);
+  const double V = added.length / (time - line.wet_s[added.cell(0)]);
+  c = 8.0 * K_Ic / (E_prime * std::sqrt(2.0 * std::numbers::pi));
+  d = 18.0 * std::numbers::sqrt3 * 12.0 * fluid.viscosity_Pa_s * V / E_prime;
+}
+
+std::vector<double> wet_times(const ReynoldsLine& line, double time, bool at_front, bool at_back) {
+  std::vector<double> wet = line.wet_s;
+  for (const bool back : {false, true}) {
+    if (!(back ? at_back : at_front)) continue;
+    const AddedCells added(line, back);
+    double x = 0.0;
+    for (std::size_t j = 0; j < added.count; ++j) {
+      double& t = wet[added.cell(j)];
+      t = time - (time - t) * (x + 0.5 * added.length_of(j)) / added.length;
+      x += added.length_of(j);
+    }
+  }
+  return wet;
+}
+
+VectorXd front_conductances(const Fluid& fluid, const ReynoldsLine& line, bool at_back, double E_prime, double K_Ic,
+                            double time) {
+  const AddedCells added(line, at_back);
+  VectorXd conductance = VectorXd::Zero(static_cast<Index>(line.size()) - 1);
+  if (added.count == 0) return conductance;
+  const MovingFront front(fluid, line, at_back, E_prime, K_Ic, time);
+  const double mu = 12.0 * fluid.viscosity_Pa_s;
+  const auto integral = [](double from, double to, const auto& f) {  // of f dx, dx = 2 u du, by three points of Gauss
+    const double middle = 0.5 * (std::sqrt(from) + std::sqrt(to)), half = std::sqrt(to) - middle;
+    const auto at = [&](double off) { return 2.0 * (middle + off * half) * f(middle + off * half); };
+    return half / 9.0 * (5.0 * at(-std::sqrt(0.6)) + 8.0 * at(0.0) + 5.0 * at(std::sqrt(0.6)));
+  };
+  double x = 0.0, behind = 0.0;
+  for (std::size_t j = 0; j < added.count; ++j) {
+    const double A = added.length_of(j), middle = x + 0.5 * A;
+    const double own = integral(x, x + A, [&](double u) { return front.opening(u); });
+    x += A;
+    behind += own;
+    double fall = integral(j == 0 ? x : middle, x + 0.5 * added.length_of(j + 1),
+                           [&](double u) { return std::pow(front.opening(u), -2); });
+    // P(x) - int P ds/(2 sqrt(x s)), s = 0 to x, over 12 mu V: int sqrt(s/x)/w^2 ds, in closed form.
+    const double a = front.opening(std::sqrt(x)) / std::sqrt(x), c = front.c;
+    if (j == 0) fall += 6.0 / (a * a + a * c + c * c);
+    conductance(static_cast<Index>(std::min(added.cell(j), added.cell(j + 1)))) =
+        (at_back ? 1.0 : -1.0) * behind * A / (own * mu * added.length * fall);
+  }
+  return conductance;
+}
+
+}  // namespace strata
