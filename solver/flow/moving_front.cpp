@@ -36,6 +36,16 @@ MovingFront::MovingFront(const Fluid& fluid, const ReynoldsLine& line, bool at_b
   d = 18.0 * std::numbers::sqrt3 * 12.0 * fluid.viscosity_Pa_s * V / E_prime;
 }
 
+void guess_new_cells(ReynoldsLine& line) {
+  for (const bool at_back : {false, true}) {
+    const AddedCells added(line, at_back);
+    for (std::size_t j = 0; j < added.count; ++j) {
+      line.P[added.cell(j)] = line.P[added.cell(added.count)];
+      line.phi[added.cell(j)] = line.phi[added.cell(added.count)];
+    }
+  }
+}
+
 std::vector<double> wet_times(const ReynoldsLine& line, double time, bool at_front, bool at_back) {
   std::vector<double> wet = line.wet_s;
   for (const bool back : {false, true}) {

@@ -32,6 +32,10 @@ struct MovingFront {
 Eigen::VectorXd front_conductances(const Fluid& fluid, const ReynoldsLine& line, bool at_back, double E_prime,
                                    double K_Ic, double time);
 
+/// Pressure and filling of the cells that growth has added, still empty, as beside: from where a step that takes the
+/// front through them is sought. What they hold stays.
+void guess_new_cells(ReynoldsLine& line);
+
 /// When the front came by the middle of each cell (s): through the cells of a tip's last growth it goes evenly from
 /// their start to a time (s), the present; for the tips at the first and at the last cell that are asked for.
 std::vector<double> wet_times(const ReynoldsLine& line, double time, bool at_front, bool at_back);

@@ -429,7 +429,7 @@ void grow(ReynoldsLine& line, const Fluid& fluid, bool at_back, double length, d
 StepReport step_reynolds(const Fluid& fluid, const Inlet& inlet, double dt, const RockModel& rock, ReynoldsLine& line,
                          FluidBalance& balance, const ReynoldsOptions& options) {
   const Step step{fluid, inlet, dt, rock, line, options};
-  Iterate at{line.rates_known ? before(line) : filled(line), {}};
+  Iterate at{before(line), {}};
   StepReport report = iterate(step, options.max_iterations / 5, at);
   if (!report.converged) {
     const int iterations = report.iterations;

@@ -93,14 +93,13 @@ Eigen::VectorXd lost_by(const Scene& scene, double time, const State& state) {
   return lost;
 }
 
-// What conducts near the fronts of tips that go on at a time (s), with none of a tip that waits or has no length.
+// What conducts near the fronts of tips that go on at a time (s).
 Eigen::VectorXd conductances_at_fronts(const Scene& scene, const Rocks& rocks, double time, const State& state) {
   if (state.grown.line.size() == 0) return {};
   const ReynoldsLine& line = state.reynolds;
   Eigen::VectorXd front = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(line.size()) - 1);
   for (const Tip& tip : state.tips) {
     const auto& points = state.fracture().points;
-    if (tip.no_length) continue;
     const Elasticity& rock = rocks[rock_at(scene, (tip.at_back ? points.back() : points.front()).x)];
     const double K_Ic = std::sqrt(rock.J_c * rock.E_prime);
     front += front_conductances(scene.fluid, line, tip.at_back, rock.E_prime, K_Ic, time);

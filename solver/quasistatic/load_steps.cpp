@@ -323,10 +323,11 @@ void grow_or_fail(const Scene& scene, const Rocks& rocks, State& state, Quasista
   accept(scene, before, growing.empty() ? Change::failure : Change::growth, state, run, surface);
   state.dt = first_flow_step;
   state.fluid.w_rate.clear();
-  if (growing.empty() || scene.fluid.law != Fluid::Law::reynolds) return;
+  const bool goes_on = std::ranges::none_of(growing, [&](const Growing& g) { return state.tips[g.tip].no_length; });
+  if (growing.empty() || !goes_on || scene.fluid.law != Fluid::Law::reynolds) return;
   state.dt = std::max(state.dt, state.time - growing[0].last_s);
   state.grown = {state.time, state.dt, state.reynolds, state.balance};
-  state.grown.line.rates_known = false;
+  guess_new_cells(state.grown.line);
 }
 
 // From `from` to the load a time dt later: run.margin is the margin there. Under law = "reynolds" there may be no
@@ -415,8 +416,8 @@ double next_step(const Scene& scene, const LoadStep& step) {
 
 // The step at whose end the margin is 1 or hardly more, no longer than `high`, at which it is larger: regula falsi,
 // which turns the end that stays onto the slope of the parabola through the last three (Anderson and Bjorck, BIT 13,
-// 1973), and bisection where the margin has no size.
-void locate_event(const Scene& scene, const Rocks& rocks, const LoadPoint& from, double margin_low, double high,
+// 1973), and bisection where the margin has no size. False where flow from the last growth on has no solution there.
+bool locate_event(const Scene& scene, const Rocks& rocks, const LoadPoint& from, double margin_low, double high,
                   State& state, Quasistatic& run) {
   const double aim = 1.0 + 0.5 * event_tolerance;
   double low = 0.0, f_low = margin_low - aim, f_high = run.margin - aim;
@@ -426,7 +427,7 @@ void locate_event(const Scene& scene, const Rocks& rocks, const LoadPoint& from,
     const double middle = low + (high - low) * std::clamp(share, 1e-3, 1.0 - 1e-3);
     const bool found = try_step(scene, rocks, from, middle, state, run).found;
     const double margin = found ? run.margin : HUGE_VAL;  // what has no solution lies beyond the event
-    if (margin >= 1.0 && margin <= 1.0 + event_tolerance) return;
+    if (margin >= 1.0 && margin <= 1.0 + event_tolerance) return true;
     const bool beyond = margin > aim;
     double &f_same = beyond ? f_high : f_low, &f_other = beyond ? f_low : f_high;
     if (side == (beyond ? 1 : -1)) {
@@ -438,7 +439,8 @@ void locate_event(const Scene& scene, const Rocks& rocks, const LoadPoint& from,
     side = beyond ? 1 : -1;
   }
   const FluidStep last = try_step(scene, rocks, from, high, state, run);
-  if (!last.found) throw_no_solution("before the next event", from.time, last.reason);
+  if (!last.found && state.grown.line.size() == 0) throw_no_solution("before the next event", from.time, last.reason);
+  return last.found;
 }
 
 }  // namespace
@@ -497,7 +499,12 @@ void advance_quasistatic(const Scene& scene, const Rocks& rocks, double until, S
   if (next_row(scene.fluid, state.grown.time) <= from.time) state.grown = {};
   const double left = std::min(until, next_row(scene.fluid, from.time)) - from.time;
   const LoadStep step = find_step(scene, rocks, from, w, left, state, run);
-  if (run.margin > 1.0 + event_tolerance) locate_event(scene, rocks, from, margin, step.dt, state, run);
+  if (run.margin > 1.0 + event_tolerance && !locate_event(scene, rocks, from, margin, step.dt, state, run)) {
+    return_to(from, state);
+    run.margin = margin;
+    state.grown = {};
+    return advance_quasistatic(scene, rocks, until, state, run);
+  }
   if (foresees_openings(scene, state)) note_rates(w, state.time - from.time, state);
   accept(scene, from, Change::load, state, run);
   state.dt = next_step(scene, step);
