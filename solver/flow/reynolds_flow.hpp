@@ -31,7 +31,7 @@ struct RockResponse {
   Eigen::VectorXd w;
   Eigen::MatrixXd dw_dP;
   Eigen::VectorXd E_prime = {}, closing = {};
-  Eigen::VectorXd lost = {};  // by both faces of each cell until the step's end (m^2), or nothing where none leak
+  Eigen::VectorXd lost = {};   // by both faces of each cell until the step's end (m^2), or nothing where none leak
   Eigen::VectorXd front = {};  // front_conductances(), or none
 };
 using RockModel = std::function<RockResponse(const Eigen::VectorXd& P)>;  // P absolute, one a point (Pa)

@@ -118,8 +118,7 @@ RockModel rock_of(const Scene& scene, double time, State& state, QuasistaticMode
     E_prime[k] = rocks[rock_at(scene, s.x)].E_prime, closing[k] = s.closing_stress();
   }
   if (model.dw_dP_of != model.factor.pieces) model.dw_dP.resize(0, 0);
-  const Eigen::VectorXd lost = lost_by(scene, time, state),
-                        fronts = conductances_at_fronts(scene, rocks, time, state);
+  const Eigen::VectorXd lost = lost_by(scene, time, state), fronts = conductances_at_fronts(scene, rocks, time, state);
   return [&scene, time, &state, &model, E_prime, closing, lost, fronts](const Eigen::VectorXd& P) {
     set_point_pressures(P, state);
     const Equilibrium at = find_equilibrium(scene, time, state, model);
@@ -152,9 +151,8 @@ FluidStep couple(const Scene& scene, double dt, State& state, QuasistaticModel& 
   const double end = state.time + std::max(dt, shortest_coupled_step);
   const bool grown = state.grown.line.size() > 0;
   GrownFluid from = grown ? state.grown : GrownFluid{state.time, 0.0, state.reynolds, state.balance};
-  const StepReport report =
-      step_reynolds(scene.fluid, inlet_over(scene, state, from.time, end), end - from.time,
-                    rock_of(scene, end, state, model), from.line, from.balance);
+  const StepReport report = step_reynolds(scene.fluid, inlet_over(scene, state, from.time, end), end - from.time,
+                                          rock_of(scene, end, state, model), from.line, from.balance);
   if (!report.converged) return {false, 0.0, report.reason};
   state.time = end;
   state.reynolds = std::move(from.line);

@@ -1,0 +1,77 @@
+// The front that goes through new cells at the tip: what its asymptote makes of conductances and times.
+#include "flow/moving_front.hpp"
+
+#include <catch2/catch.hpp>
+#include <numbers>
+
+#include "flow/reynolds_flow.hpp"
+
+using namespace strata;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double E_prime = 2e10, A = 0.25;
+
+// Two cells from the start, and `added` new ones at an end, 4 s ago.
+ReynoldsLine grown(const Fluid& fluid, int added, bool at_back) {
+  FluidBalance balance;
+  ReynoldsLine line = full_line(fluid, {A, A}, 0, 1e6, VectorXd::Constant(2, 1e-3), balance);
+  for (int k = 0; k < added; ++k) grow(line, fluid, at_back, A, 6.0);
+  return line;
+}
+
+Fluid fluid_of(double viscosity) {
+  Fluid fluid;
+  fluid.viscosity_Pa_s = viscosity;
+  return fluid;
+}
+
+}  // namespace
+
+// Requires of one new cell the closed forms of either end, to 1e-3. Toughness, w = c sqrt(x): the pressure falls by 12
+// mu V/c^2 (ln(3/2) + 2) from the middle before to the mean that K sees, which is P at x = A/e^2. Viscosity, w = (d
+// x^2)^(1/3): by 12 mu V d^(-2/3) A^(-1/3) (3 - 3 (2/3)^(1/3) + 6). Through an opening w goes w V of it. Mutations that
+// fail: viscosity or K_Ic halved, P of the last cell at its middle, V of another time.
+TEST_CASE("a new cell conducts as behind a moving front") {
+  const double V = A / 4.0;
+  {
+    const Fluid thin = fluid_of(1e-9);
+    const double c = 8.0 * 1e6 / (E_prime * std::sqrt(2.0 * std::numbers::pi)), mu = 12e-9;
+    const VectorXd by_w = front_conductances(thin, grown(thin, 1, true), true, E_prime, 1e6, 10.0);
+    CHECK(by_w(0) == 0.0);
+    CHECK(by_w(1) == Approx(c * c / (mu * (std::log(1.5) + 2.0))).epsilon(1e-3));
+  }
+  const Fluid oil = fluid_of(0.1);
+  const double d = 18.0 * std::sqrt(3.0) * 1.2 * V / E_prime;
+  const VectorXd by_w = front_conductances(oil, grown(oil, 1, true), true, E_prime, 0.0, 10.0);
+  CHECK(by_w(1) == Approx(std::cbrt(d * d * A) / (1.2 * (9.0 - 3.0 * std::cbrt(2.0 / 3.0)))).epsilon(1e-3));
+  CHECK(MovingFront(oil, grown(oil, 1, true), true, E_prime, 0.0, 10.0).opening(0.5) ==
+        Approx(std::cbrt(d * 0.25 * 0.25)));
+}
+
+// Requires of several new cells that a face further from the tip lets pass more by the same opening, that the other end
+// is the mirror image with the sign that says on which side the opening counts, and that a fracture which has not grown
+// has no front. Mutations that fail: cells counted from the wrong end, sign left out, cells of the start taken for new.
+TEST_CASE("fronts at either end, and none before growth") {
+  const Fluid oil = fluid_of(0.1);
+  const VectorXd back = front_conductances(oil, grown(oil, 3, true), true, E_prime, 1e6, 10.0);
+  const VectorXd front = front_conductances(oil, grown(oil, 3, false), false, E_prime, 1e6, 10.0);
+  REQUIRE(back.size() == 4);
+  CHECK(back(0) == 0.0);
+  CHECK(back(1) > back(2));
+  CHECK(back(2) > back(3));
+  CHECK(back(3) > 0.0);
+  CHECK(front.isApprox(-back.reverse()));
+  CHECK(front_conductances(oil, grown(oil, 3, true), false, E_prime, 1e6, 10.0).isZero(0.0));
+  CHECK(front_conductances(oil, grown(oil, 0, true), true, E_prime, 1e6, 10.0).isZero(0.0));
+}
+
+// Requires that the front passes the middles of two new cells at a quarter and three quarters of the time since growth,
+// of the end that is asked for, and cells of the start at 0. Mutations that fail: the ends' times, the other way round.
+TEST_CASE("the front goes evenly through new cells") {
+  const Fluid oil = fluid_of(0.1);
+  CHECK(wet_times(grown(oil, 2, true), 10.0, true, true) == std::vector<double>{0.0, 0.0, 7.0, 9.0});
+  CHECK(wet_times(grown(oil, 2, false), 10.0, true, true) == std::vector<double>{9.0, 7.0, 0.0, 0.0});
+  CHECK(wet_times(grown(oil, 2, false), 10.0, false, true) == std::vector<double>{6.0, 6.0, 0.0, 0.0});
+}
