@@ -7,7 +7,7 @@ import pytest
 
 from verification.harness.paths import ANALYTIC
 from verification.harness.reference import value
-from verification.tests.cases import summary_in
+from verification.tests.cases import rows_of, run_in, summary_in
 
 # A closed fracture of 5 m under 10 MPa whose inlet rises by 1 MPa/s from 5 MPa.
 RAMP = """\
@@ -55,6 +55,18 @@ def test_a_rate_into_a_closed_fracture_without_a_floor(tmp_path: Path) -> None:
     assert at_once["inlet_Pa"] < 20e6
     net = float(summary_in(tmp_path, RAMP, *rate, "stop.time_s=1")["inlet_Pa"]) - 10e6
     assert net == pytest.approx(exact, rel=0.2)  # the fluid has gone a cell
+
+
+@pytest.mark.parametrize(("lower_Pa", "upper_Pa"), [(20e6, 18e6), (18e6, 20e6)])
+def test_a_rate_starts_at_the_least_closing_stress(tmp_path: Path, lower_Pa: float, upper_Pa: float) -> None:
+    """A thousandth below the lower of two layers' stresses, wherever it lies: no face is open, and the first to part are that layer's."""
+    layers = f'strata.layers=[{{rock="r", thickness_m=2, horizontal_Pa={lower_Pa}}}, {{rock="r", horizontal_Pa={upper_Pa}}}]'
+    started = run_in(tmp_path, RAMP, layers, 'strata.interfaces=["perfect"]', "fluid.inlet={rate_m2_s=1e-4}", "stop={time_s=1e-3}")
+    assert started.returncode == 0, started.stderr
+    first = rows_of(tmp_path / "X")[0]
+    assert float(first["time_s"]) == 0.0
+    assert float(first["inlet_Pa"]) == pytest.approx(0.999 * 18e6, rel=1e-12)
+    assert float(first["mouth_opening_m"]) == pytest.approx(0.0, abs=1e-7)
 
 
 def test_the_study_s_law_without_a_floor_is_marked(tmp_path: Path) -> None:
