@@ -208,6 +208,21 @@ void note_rates(std::span<const double> w_before, double dt, State& state) {
   for (std::size_t k = 0; k < w.size(); ++k) state.fluid.w_rate[k] = (w[k] - w_before[k]) / dt;
 }
 
+void start_fronts(double took, State& state) {
+  state.grown = {state.time, took, state.reynolds, state.balance};
+  guess_new_cells(state.grown.line);
+}
+
+double front_margin(const Fluid& fluid, const State& state, double E_prime, const Tip& tip) {
+  const MovingFront front(fluid, state.reynolds, tip.at_back, E_prime, 0.0, state.time);
+  double w = 0.0, behind_front = 0.0;
+  for (const SurfacePoint& s : state.fracture().points) {
+    const double x = tip.at_back ? state.fracture().length() - s.arc : s.arc;
+    if (x > state.grid.h && x < 2.0 * state.grid.h) w += s.opening(), behind_front += front.opening(std::sqrt(x));
+  }
+  return w / behind_front;
+}
+
 void add_fluid_cells(const Scene& scene, bool at_back, std::size_t added, State& state) {
   if (scene.fluid.law != Fluid::Law::reynolds) return;
   const auto& points = state.fracture().points;

@@ -40,6 +40,14 @@ double lag_error(const Scene& scene, const FluidLine& before, std::span<const do
 /// Notes at what rates openings have changed from w_before (m, one a point) in a step dt (s) that ends at `state`.
 void note_rates(std::span<const double> w_before, double dt, State& state);
 
+/// From a growth on, which took a time (s): steps of the flow begin here, with fronts in the new cells, until
+/// state.grown is emptied or the next growth.
+void start_fronts(double took, State& state);
+
+/// How near the tip of a rock without toughness is to growth (1: it grows) while its front goes on: how open the rock
+/// from one to two cells behind is against behind a front that is at the tip now. E_prime Pa.
+double front_margin(const Fluid& fluid, const State& state, double E_prime, const Tip& tip);
+
 /// The new cells of a fracture that has grown by `added` points at a tip, empty (law = "reynolds").
 void add_fluid_cells(const Scene& scene, bool at_back, std::size_t added, State& state);
 

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "flow/flow_monitors.hpp"
-#include "flow/moving_front.hpp"
 #include "flow/paper_flow.hpp"
 #include "fracture/growth.hpp"
 #include "interfaces/failure.hpp"
@@ -45,18 +44,6 @@ double toughless_margin(const State& state, double E_prime, const Tip& tip) {
   return 1.0 + (K - resolved * net * std::sqrt(state.grid.h)) / large_K;
 }
 
-// The same while the fluid's front goes on since the last growth: the tip is where the front is once the rock from one
-// to two cells behind is as open as behind a front of that speed.
-double front_margin(const Fluid& fluid, const State& state, double E_prime, const Tip& tip) {
-  const MovingFront front(fluid, state.reynolds, tip.at_back, E_prime, 0.0, state.time);
-  double w = 0.0, behind_front = 0.0;
-  for (const SurfacePoint& s : state.fracture().points) {
-    const double x = tip.at_back ? state.fracture().length() - s.arc : s.arc;
-    if (x > state.grid.h && x < 2.0 * state.grid.h) w += s.opening(), behind_front += front.opening(std::sqrt(x));
-  }
-  return w / behind_front;
-}
-
 // How near a tip is to growth: sqrt(G/J_c) by what decides about it. Where the fracture that a trial makes has no
 // equilibrium, K decides.
 double tip_margin(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run, std::size_t k) {
@@ -74,8 +61,8 @@ double tip_margin(const Scene& scene, const Rocks& rocks, State& state, Quasista
   const double G = driving(rock, tip);
   if (rock.J_c > 0.0) return std::sqrt(std::max(0.0, G) / rock.J_c);
   if (weighs_energy(tip)) return G > 0.0 ? 2.0 : 0.0;
-  const bool front = state.grown.line.size() > 0 && tip.last_growth_s == state.grown.time;
-  return front ? front_margin(scene.fluid, state, rock.E_prime, tip) : toughless_margin(state, rock.E_prime, tip);
+  const bool goes_on = state.grown.line.size() > 0 && tip.last_growth_s == state.grown.time;
+  return goes_on ? front_margin(scene.fluid, state, rock.E_prime, tip) : toughless_margin(state, rock.E_prime, tip);
 }
 
 double margin_of(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run) {
@@ -323,11 +310,10 @@ void grow_or_fail(const Scene& scene, const Rocks& rocks, State& state, Quasista
   accept(scene, before, growing.empty() ? Change::failure : Change::growth, state, run, surface);
   state.dt = first_flow_step;
   state.fluid.w_rate.clear();
-  const bool goes_on = std::ranges::none_of(growing, [&](const Growing& g) { return state.tips[g.tip].no_length; });
-  if (growing.empty() || !goes_on || scene.fluid.law != Fluid::Law::reynolds) return;
+  if (growing.empty() || scene.fluid.law != Fluid::Law::reynolds) return;
+  if (std::ranges::any_of(growing, [&](const Growing& g) { return state.tips[g.tip].no_length; })) return;
   state.dt = std::max(state.dt, state.time - growing[0].last_s);
-  state.grown = {state.time, state.dt, state.reynolds, state.balance};
-  guess_new_cells(state.grown.line);
+  start_fronts(state.dt, state);
 }
 
 // From `from` to the load a time dt later: run.margin is the margin there. Under law = "reynolds" there may be no
@@ -371,7 +357,8 @@ double step_from_growth(const Scene& scene, const Rocks& rocks, const LoadPoint&
                         State& state, Quasistatic& run) {
   constexpr double patience = 4.0;  // of the time that the growth before took; then the tip waits for something else
   if (from.time - state.grown.time > patience * state.grown.took) return 0.0;
-  for (bool shorter = false; dt > shortest_trial; dt = shorter ? 0.5 * dt : std::min(2.0 * dt, left)) {
+  for (bool shorter = false; dt > std::min(shortest_trial, 0.5 * left);
+       dt = shorter ? 0.5 * dt : std::min(2.0 * dt, left)) {
     const bool found = try_step(scene, rocks, from, dt, state, run).found;
     const bool far = dt == left || from.time + dt - state.grown.time > patience * state.grown.took;
     if (found && (shorter || far || run.margin >= 1.0)) return dt;
