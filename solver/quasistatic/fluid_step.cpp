@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "flow/moving_front.hpp"
 #include "flow/paper_flow.hpp"
@@ -166,6 +167,25 @@ FluidStep couple(const Scene& scene, double dt, State& state, QuasistaticModel& 
   return {true, report.error_w / allowed, ""};
 }
 
+// A rock without toughness lets a tip grow as soon as the fracture is open there: where K_I, and the K that each
+// opening within two cells behind the tip stands for (w = 8 K/E' sqrt(x/(2 pi))), exceed what a cell resolves of the
+// net pressure's own. Fluid that has just wetted the last cells would let the tip run ahead of the open fracture
+// otherwise.
+double margin_by_K(const State& state, double E_prime, const Tip& tip) {
+  constexpr double resolved = 0.1;  // of p sqrt(h)
+  constexpr double large_K = 1e8;   // Pa sqrt(m), of which the tolerance of an event is 1e-4
+  const Surface& fracture = state.fracture();
+  const SurfacePoint& last = tip.at_back ? fracture.points.back() : fracture.points.front();
+  double K = tip.K_I;
+  for (const SurfacePoint& s : fracture.points) {
+    const double x = tip.at_back ? fracture.length() - s.arc : s.arc;
+    if (x < 2.0 * state.grid.h) K = std::min(K, E_prime / 8.0 * std::sqrt(2.0 * std::numbers::pi / x) * s.opening());
+  }
+  const double net = state.fluid.inlet_Pa - last.closing_stress();
+  if (net <= 0.0) return 0.0;
+  return 1.0 + (K - resolved * net * std::sqrt(state.grid.h)) / large_K;
+}
+
 }  // namespace
 
 void fill_fracture(const Scene& scene, State& state, QuasistaticModel& model) {
@@ -213,7 +233,8 @@ void start_fronts(double took, State& state) {
   guess_new_cells(state.grown.line);
 }
 
-double front_margin(const Fluid& fluid, const State& state, double E_prime, const Tip& tip) {
+double toughless_margin(const Fluid& fluid, const State& state, double E_prime, const Tip& tip) {
+  if (state.grown.line.size() == 0 || tip.last_growth_s != state.grown.time) return margin_by_K(state, E_prime, tip);
   const MovingFront front(fluid, state.reynolds, tip.at_back, E_prime, 0.0, state.time);
   double w = 0.0, behind_front = 0.0;
   for (const SurfacePoint& s : state.fracture().points) {

@@ -44,9 +44,9 @@ void note_rates(std::span<const double> w_before, double dt, State& state);
 /// state.grown is emptied or the next growth.
 void start_fronts(double took, State& state);
 
-/// How near the tip of a rock without toughness is to growth (1: it grows) while its front goes on: how open the rock
-/// from one to two cells behind is against behind a front that is at the tip now. E_prime Pa.
-double front_margin(const Fluid& fluid, const State& state, double E_prime, const Tip& tip);
+/// How near the tip of a rock without toughness is to growth (1: it grows): while its front goes on, how open the rock
+/// from one to two cells behind is against behind a front that is at the tip now; else by K. E_prime Pa.
+double toughless_margin(const Fluid& fluid, const State& state, double E_prime, const Tip& tip);
 
 /// The new cells of a fracture that has grown by `added` points at a tip, empty (law = "reynolds").
 void add_fluid_cells(const Scene& scene, bool at_back, std::size_t added, State& state);

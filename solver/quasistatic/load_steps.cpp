@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "flow/flow_monitors.hpp"
 #include "flow/paper_flow.hpp"
@@ -25,25 +24,6 @@ constexpr double first_flow_step = 1e-3;  // s, after each event; steps then gro
 // is. Of flow and rock in one system a step is of shortest_coupled_step at least, whatever is tried.
 constexpr double shortest_trial = 1e-7;
 
-// A rock without toughness lets a tip grow as soon as the fracture is open there: where K_I, and the K that each
-// opening within two cells behind the tip stands for (w = 8 K/E' sqrt(x/(2 pi))), exceed what a cell resolves of the
-// net pressure's own. Fluid that has just wetted the last cells would let the tip run ahead of the open fracture
-// otherwise.
-double toughless_margin(const State& state, double E_prime, const Tip& tip) {
-  constexpr double resolved = 0.1;  // of p sqrt(h)
-  constexpr double large_K = 1e8;   // Pa sqrt(m), of which the tolerance of an event is 1e-4
-  const Surface& fracture = state.fracture();
-  const SurfacePoint& last = tip.at_back ? fracture.points.back() : fracture.points.front();
-  double K = tip.K_I;
-  for (const SurfacePoint& s : fracture.points) {
-    const double x = tip.at_back ? fracture.length() - s.arc : s.arc;
-    if (x < 2.0 * state.grid.h) K = std::min(K, E_prime / 8.0 * std::sqrt(2.0 * std::numbers::pi / x) * s.opening());
-  }
-  const double net = state.fluid.inlet_Pa - last.closing_stress();
-  if (net <= 0.0) return 0.0;
-  return 1.0 + (K - resolved * net * std::sqrt(state.grid.h)) / large_K;
-}
-
 // How near a tip is to growth: sqrt(G/J_c) by what decides about it. Where the fracture that a trial makes has no
 // equilibrium, K decides.
 double tip_margin(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run, std::size_t k) {
@@ -61,8 +41,7 @@ double tip_margin(const Scene& scene, const Rocks& rocks, State& state, Quasista
   const double G = driving(rock, tip);
   if (rock.J_c > 0.0) return std::sqrt(std::max(0.0, G) / rock.J_c);
   if (weighs_energy(tip)) return G > 0.0 ? 2.0 : 0.0;
-  const bool goes_on = state.grown.line.size() > 0 && tip.last_growth_s == state.grown.time;
-  return goes_on ? front_margin(scene.fluid, state, rock.E_prime, tip) : toughless_margin(state, rock.E_prime, tip);
+  return toughless_margin(scene.fluid, state, rock.E_prime, tip);
 }
 
 double margin_of(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run) {
@@ -125,7 +104,8 @@ void return_to(const LoadPoint& from, State& state) {
 
 // Work of the fluid since an earlier load, as if its pressure and what surfaces have released of the in-situ traction
 // had changed with the jumps (J/m): sum A (P + P')/2 n . (w' - w); the traction's in `in_situ`. The fracture may have
-// become longer in between.
+// become longer in between. In a long step of flow that conserves volume closed faces part: what holds them counts with
+// P.
 double work_of_loads(const State& state, const LoadPoint& before, double& in_situ) {
   double fluid = 0.0;
   in_situ = 0.0;
@@ -141,7 +121,9 @@ double work_of_loads(const State& state, const LoadPoint& before, double& in_sit
       const bool is_new = q < shift || q - shift >= then.size();
       const SurfacePoint& old = is_new ? s : then[q - shift];
       const Vec2 dw = is_new || !old.split ? s.w : Vec2{s.w - old.w};
-      fluid += s.A * 0.5 * (s.P + old.P) * s.n.dot(dw);
+      const bool parts = state.reynolds.size() > 0 && state.surfaces[k].kind == Surface::Kind::fracture;
+      const double held = parts ? s.n.dot(s.reaction + old.reaction) : 0.0;
+      fluid += s.A * 0.5 * (s.P + old.P + held) * s.n.dot(dw);
       in_situ -= s.A * (0.5 * (s.in_situ + old.in_situ)).dot(dw);
     }
   }
