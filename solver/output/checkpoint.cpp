@@ -43,8 +43,8 @@ STRATA_SAVED(ReynoldsLine, length, P, phi, content, w, w_rate, wet_s, leaked, ra
 STRATA_SAVED(GrownFluid, time, took, line, balance)
 STRATA_SAVED(TipTie, node, plus, minus, stiffness, s)
 STRATA_SAVED(Tip, at_back, growing, stopped_by, K_I, K_II, J, J_spread, ring_m, kink, turn, closed, near, crossed,
-             no_length, last_growth_s, last_growth_Pa, due_s, runs_until_s, G_trial, G, G_by_J, criterion, grew_by,
-             has_grown, arrested, reached)
+             no_length, last_growth_s, last_growth_Pa, due_s, runs_until_s, G_trial, G_along, G, G_by_J, criterion,
+             grew_by, has_grown, arrested, reached)
 STRATA_SAVED(Event, kind, time_s, inlet_Pa, tip_x_m, tip_y_m, at_interface, by)
 STRATA_SAVED(Written, rows, output_times)
 #undef STRATA_SAVED

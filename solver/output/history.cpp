@@ -126,6 +126,10 @@ std::vector<HistoryColumn> history_columns(const Scene& scene, const State& stat
   add_energies(false);
   all.push_back({"near", "1", tip ? static_cast<double>(tip->near) : nan});
   if (scene.leaks()) all.push_back({"leaked_m2", "m^2", leaked_volume(state)});
+  if (scene.parts_by_energy()) {
+    all.push_back({"G_crossing_N_m", "N/m", tip && weighs_energy(*tip) ? tip->G_trial : nan});
+    all.push_back({"G_along_N_m", "N/m", tip ? tip->G_along : nan});
+  }
   return all;
 }
 

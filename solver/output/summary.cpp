@@ -44,6 +44,7 @@ Json tips_json(const Scene& scene, const State& state) {
                     {"growing", tip.growing},
                     {"stopped_by", tip.stopped_by},
                     {"ring_m", tip.ring_m}});
+    if (scene.parts_by_energy()) tips.back()["G_along_N_m"] = tip.G_along;
   }
   return tips;
 }

@@ -44,22 +44,22 @@ void inherit_friction(const State& state, const std::vector<ContactPlace>& place
   }
 }
 
-// The state with the particles alone that its surfaces, a length (m) longer at a tip, reach: of all others a trial
-// takes what the intact body says. A body force loads them all.
-State beside_surfaces(const Scene& scene, State& state, const Tip& tip, double length) {
+// The state with the particles alone that its surfaces, a length (m) longer from some places on (m), reach: of all
+// others a trial takes what the intact body says. A body force loads them all.
+State beside_surfaces(const Scene& scene, State& state, const std::vector<Vec2>& ends, double length) {
   State beside;
   Particles all = std::exchange(state.particles, {});
   static_cast<SavedState&>(beside) = state;
   state.particles = std::move(all);
   const double reach = 2.0 * (extension(state.grid) + std::abs(length)) + 2.0 * state.grid.h;
-  const Vec2 at = tip_position(state, tip);
   std::vector<std::size_t> kept;
   auto cut = state.cut_bins.begin();
   for (std::size_t b = 0; b < state.bins.size(); ++b) {
     const Bin& bin = state.bins[b];
     const bool is_cut = cut != state.cut_bins.end() && *cut == b;
     if (is_cut) ++cut;
-    const bool near = (Vec2{state.grid.x(bin.i), state.grid.y(bin.j)} - at).norm() < reach;
+    const Vec2 node{state.grid.x(bin.i), state.grid.y(bin.j)};
+    const bool near = std::ranges::any_of(ends, [&](const Vec2& at) { return (node - at).norm() < reach; });
     if (!is_cut && !near && !scene.body.acceleration_m_s2) continue;
     for (const std::size_t q : bin) kept.push_back(q);
   }
@@ -69,7 +69,7 @@ State beside_surfaces(const Scene& scene, State& state, const Tip& tip, double l
 
 // Makes the state of a trial; false where there is not a whole piece to take away.
 bool change_length(const Scene& scene, State& state, double length, GrowthTrial& trial) {
-  trial.state = beside_surfaces(scene, state, state.tips[trial.tip], length);
+  trial.state = beside_surfaces(scene, state, {tip_position(state, state.tips[trial.tip])}, length);
   const auto extend = [&] { return extend_tip(scene, trial.state, trial.state.tips[trial.tip], length); };
   trial.length = length > 0.0 ? extend() : -shorten_tip(trial.state, trial.state.tips[trial.tip], -length);
   if (trial.state.particles.next_id != state.particles.next_id) {  // with those divided the body is another
@@ -77,6 +77,22 @@ bool change_length(const Scene& scene, State& state, double length, GrowthTrial&
     trial.length = extend();
   }
   return trial.length != 0.0;
+}
+
+// The jumps of what parts begin where its neighbours' parting has brought them.
+void begin_parting(const State& state, const QuasistaticModel& model, const Equilibrium& equilibrium,
+                   GrowthTrial& trial) {
+  for (ContactPlace& place : trial.model.places) {
+    if (place.tie >= 0 || state.surfaces[place.surface].points[place.point].split) continue;
+    if (place.surface > 0 || !state.has_fracture)
+      place.bonded = jump_at(model.condensed, state.point_stencils[place.surface][place.point], equilibrium.j);
+  }
+}
+
+// The tip nearest to a place (m).
+std::size_t nearest_tip(const State& state, const Vec2& x) {
+  const auto far = [&](const Tip& tip) { return (tip_position(state, tip) - x).norm(); };
+  return static_cast<std::size_t>(std::ranges::min_element(state.tips, {}, far) - state.tips.begin());
 }
 
 double energy_of(const QuasistaticModel& model, const Equilibrium& equilibrium) {
@@ -92,6 +108,12 @@ bool may_grow(const Scene& scene, const State& state, const Tip& tip) {
 std::vector<GrowthTrial> build_trials(const Scene& scene, const Rocks& rocks, State& state,
                                       const QuasistaticModel& model, bool halve) {
   std::vector<GrowthTrial> trials;
+  const auto prepare = [&](GrowthTrial& trial) {
+    trial.turn = state.tips[trial.tip].turn;
+    trial.model.body = model.body;
+    trial.model.condensed = model.condensed;
+    update_equations(scene, rocks, trial.state, trial.model, halve);
+  };
   for (std::size_t k = 0; k < state.tips.size(); ++k) {
     Tip& tip = state.tips[k];
     if (!may_grow(scene, state, tip)) continue;
@@ -103,29 +125,42 @@ std::vector<GrowthTrial> build_trials(const Scene& scene, const Rocks& rocks, St
     for (const double length : lengths) {
       GrowthTrial& trial = trials.emplace_back();
       trial.tip = k;
-      trial.turn = tip.turn;
-      if (!change_length(scene, state, length, trial)) {
+      if (change_length(scene, state, length, trial)) {
+        prepare(trial);
+      } else {
         trials.pop_back();
-        continue;
       }
-      trial.model.body = model.body;
-      trial.model.condensed = model.condensed;
-      update_equations(scene, rocks, trial.state, trial.model, halve);
     }
+  }
+  for (Parting& parting : next_partings(scene, rocks, state, model.bonds)) {
+    GrowthTrial& trial = trials.emplace_back();
+    trial.tip = nearest_tip(state, parting.from[0]);
+    trial.length = parting.length;
+    trial.state = beside_surfaces(scene, state, parting.from, parting.length);
+    for (const auto& [surface, column] : parting.columns) {
+      for (SurfacePoint& s : trial.state.surfaces[surface].points) s.split = s.split || s.column == column;
+    }
+    trial.parting = std::move(parting);
+    prepare(trial);
   }
   return trials;
 }
 
 double energy_release(const Scene& scene, const State& state, const QuasistaticModel& model,
+                      const Equilibrium& equilibrium, GrowthTrial& trial) {
+  load_trial(state, trial);
+  inherit_friction(state, model.places, trial);
+  if (trial.parts()) begin_parting(state, model, equilibrium, trial);
+  const double there = energy_of(trial.model, find_equilibrium(scene, state.time, trial.state, trial.model));
+  return (energy_of(model, equilibrium) - there) / trial.length;
+}
+
+double energy_release(const Scene& scene, const State& state, const QuasistaticModel& model,
                       const Equilibrium& equilibrium, std::size_t tip, std::vector<GrowthTrial>& trials) {
-  const double here = energy_of(model, equilibrium);
   double sum = 0.0, weights = 0.0;  // of two trials each counts by the other's length
   for (GrowthTrial& trial : trials) {
-    if (trial.tip != tip) continue;
-    load_trial(state, trial);
-    inherit_friction(state, model.places, trial);
-    const double there = energy_of(trial.model, find_equilibrium(scene, state.time, trial.state, trial.model));
-    const double G = (here - there) / trial.length;
+    if (trial.tip != tip || trial.parts()) continue;
+    const double G = energy_release(scene, state, model, equilibrium, trial);
     sum += G / std::abs(trial.length), weights += 1.0 / std::abs(trial.length);
   }
   return weights > 0.0 ? sum / weights : 0.0;

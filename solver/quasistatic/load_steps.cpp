@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "flow/flow_monitors.hpp"
 #include "flow/paper_flow.hpp"
@@ -44,18 +45,38 @@ double tip_margin(const Scene& scene, const Rocks& rocks, State& state, Quasista
   return toughless_margin(scene.fluid, state, rock.E_prime, tip);
 }
 
+// How near interfaces are to parting by energy: sqrt(G/J_c) of the trial that is nearest, whose G each tip notes.
+void weigh_partings(const Scene& scene, State& state, Quasistatic& run) {
+  run.parting_margin = 0.0;
+  std::vector<double> nearest(state.tips.size(), 0.0);
+  for (Tip& tip : state.tips) tip.G_along = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t k = 0; k < run.trials.size(); ++k) {
+    GrowthTrial& trial = run.trials[k];
+    if (!trial.parts()) continue;
+    try {
+      const double G = energy_release(scene, state, run.model, run.equilibrium, trial);
+      const double margin = std::sqrt(std::max(0.0, G) / trial.parting.J_c);
+      if (!(margin < nearest[trial.tip])) nearest[trial.tip] = margin, state.tips[trial.tip].G_along = G;
+      if (margin > run.parting_margin) run.parting_margin = margin, run.parting = k;
+    } catch (const NumericalFailure&) {  // what parts would move freely
+      ++state.monitors.growth_unweighed;
+    }
+  }
+}
+
 double margin_of(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run) {
   run.tip_margin = 0.0;
   for (std::size_t k = 0; k < state.tips.size(); ++k) {
     if (may_grow(scene, state, state.tips[k]))
       run.tip_margin = std::max(run.tip_margin, tip_margin(scene, rocks, state, run, k));
   }
+  weigh_partings(scene, state, run);
   find_forces(rocks, state, run.model.bonds);
   judge_bonds(scene, state, run.model.bonds);
   bool sound = !std::isnan(run.model.bonds.worst);
   for (const Tip& tip : state.tips) sound = sound && std::isfinite(tip.G_trial);
   if (!sound) throw NumericalFailure("the energy released or the load of a bonded interface is not finite");
-  return std::max(run.tip_margin, run.model.bonds.worst);
+  return std::max({run.tip_margin, run.parting_margin, run.model.bonds.worst});
 }
 
 // Equilibrium at the state's pressures, its fields, and how near the next event is.
@@ -189,10 +210,9 @@ void rebuild_all(const Scene& scene, const Rocks& rocks, State& state, Quasistat
   run.trials = build_trials(scene, rocks, state, run.model);
 }
 
-// Lets what fails go; where half a block answers for the whole, with its mirror image, which is as bad but for
+// Lets what fails or parts go; where half a block answers for the whole, with its mirror image, which is as bad but for
 // round-off.
-void fail_worst_column(const Scene& scene, const Quasistatic& run, State& state) {
-  Columns columns = failing_columns(scene, state, run.model.bonds);
+void let_columns_go(Columns columns, const Quasistatic& run, State& state) {
   if (run.model.body->halved()) {
     for (const auto& [surface, column] : Columns{columns}) columns.emplace(surface, state.grid.nx - column);
   }
@@ -263,19 +283,30 @@ void measure_release(const Scene& scene, const Rocks& rocks, double energy_befor
   throw NumericalFailure(fmt::format("at t = {:.6g} s, {}: {}", time, when, reason));
 }
 
-// Whether a failure that is due goes before growth: both margins are shares of the load that each takes.
+// Whether a failure by strength that is due goes before what energy decides: all margins are shares of the load that
+// each takes.
 bool failure_goes_first(const Scene& scene, const Quasistatic& run) {
   const bool by_margin = scene.fracture && scene.fracture->order == Fracture::Order::larger_margin;
-  return failure_due(run) && (!by_margin || run.model.bonds.worst >= run.tip_margin);
+  const double worst = run.model.bonds.worst;
+  return worst >= 1.0 && (!by_margin || worst >= std::max(run.tip_margin, run.parting_margin));
 }
 
-// What is due at the present load: the worst bonded column fails or tips grow.
+// Whether an interface parts by energy before a tip grows.
+bool parts_first(const Quasistatic& run) {
+  return run.parting_margin >= 1.0 && run.parting_margin >= run.tip_margin;
+}
+
+// What is due at the present load: the worst bonded column fails, an interface parts or tips grow.
 void grow_or_fail(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run) {
   const LoadPoint before = load_point(state);
   std::vector<Growing> growing;
-  double energy_before = 0.0;
+  double energy_before = 0.0, surface = 0.0;
   if (failure_goes_first(scene, run)) {
-    fail_worst_column(scene, run, state);
+    let_columns_go(failing_columns(scene, state, run.model.bonds), run, state);
+  } else if (parts_first(run)) {
+    const Parting& parting = run.trials[run.parting].parting;
+    surface = parting.J_c * parting.length;
+    let_columns_go(parting.columns, run, state);
   } else {
     growing = tips_that_grow(scene, rocks, state, run);
     energy_before = find_equilibrium(scene, state.time, state, run.model).energy;  // against friction's present memory
@@ -287,9 +318,8 @@ void grow_or_fail(const Scene& scene, const Rocks& rocks, State& state, Quasista
   const FluidStep fluid = advance_fluid(scene, 0.0, state, run.model);
   if (!fluid.found) throw_no_solution("just after growth or failure", state.time, fluid.reason);
   equilibrate(scene, rocks, state, run);
-  double surface = 0.0;
   for (const Growing& g : growing) surface += g.J_c * g.increment;
-  accept(scene, before, growing.empty() ? Change::failure : Change::growth, state, run, surface);
+  accept(scene, before, surface == 0.0 && growing.empty() ? Change::failure : Change::growth, state, run, surface);
   state.dt = first_flow_step;
   state.fluid.w_rate.clear();
   if (growing.empty() || scene.fluid.law != Fluid::Law::reynolds) return;
@@ -415,7 +445,7 @@ bool locate_event(const Scene& scene, const Rocks& rocks, const LoadPoint& from,
 }  // namespace
 
 bool failure_due(const Quasistatic& run) {
-  return run.model.bonds.worst >= 1.0;
+  return run.model.bonds.worst >= 1.0 || parts_first(run);
 }
 
 void start_quasistatic(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run) {

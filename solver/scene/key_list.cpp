@@ -126,6 +126,12 @@ constexpr Key keys[] = {
            "For an interface without strength use law = \"friction\".", "weak"),
     number("interface.NAME.tensile_strength_Pa", at<&Scene::laws, &InterfaceLaw::tensile_strength_Pa>, "Pa", positive,
            "Tensile strength Nc.", "For an interface without strength use law = \"friction\".", "weak"),
+    number("interface.NAME.toughness_Pa_sqrt_m", at<&Scene::laws, &InterfaceLaw::toughness_Pa_sqrt_m>, "Pa sqrt(m)",
+           positive,
+           "Instead of strengths (without inertia): from where the fracture meets it, or from the edge of what has "
+           "parted, it parts over fracture.crossing_increment_m where that releases K^2/E' per length, if the tip is "
+           "not nearer to growth; faces that part so are dry.",
+           "For an interface without toughness use law = \"friction\".", "weak"),
     number("interface.NAME.residual_friction", at<&Scene::laws, &InterfaceLaw::residual_friction>, "", not_negative,
            "Coulomb coefficient where it has failed.", "", "weak"),
     number("interface.NAME.failure_length_m", at<&Scene::laws, &InterfaceLaw::failure_length_m>, "m", positive,

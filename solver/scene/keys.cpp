@@ -80,6 +80,7 @@ std::vector<std::string> lines_of(std::string_view table, Scene& scene, std::siz
   for (const Key& key : scene_keys()) {
     if (key.table() != table) continue;
     if (!key.law.empty() && !key.is_of(word_of(scene.laws[index].kind))) continue;
+    if (table == "interface.NAME." && scene.laws[index].has_toughness() && key.of_strength()) continue;
     // The inlet is given in one of three ways.
     if (table == "fluid.inlet.") {
       const bool of_table = key.name() == "table" || key.name() == "of", of_rate = key.name() == "rate_m2_s";

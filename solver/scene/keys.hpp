@@ -139,6 +139,11 @@ struct Key {
   constexpr std::string_view name() const { return path.substr(path.rfind('.') + 1); }
   constexpr bool in_list() const { return path.find('[') != path.npos; }
 
+  // Whether it says how strong an interface is: none of one that has a toughness instead.
+  constexpr bool of_strength() const {
+    return name() == "shear_strength_Pa" || name() == "tensile_strength_Pa" || name() == "failure_length_m";
+  }
+
   // Whether the key is one of an interface with this law.
   bool is_of(std::string_view name) const { return law.empty() || (!name.empty() && law.find(name) != law.npos); }
 };

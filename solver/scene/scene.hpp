@@ -106,6 +106,7 @@ struct InterfaceLaw {
   double normal_stiffness_Pa_m = 0.5e6;      // soft
   double shear_stiffness_Pa_m = 0.5e6;       // soft
   Compression compression = Compression::contact;
+  std::optional<double> toughness_Pa_sqrt_m{};  // weak; present: it parts by energy, and has no strengths
 
   // What a place under it remembers beside its last jump and reaction; of numbers alone, as it is saved byte by byte.
   struct Memory {
@@ -118,8 +119,9 @@ struct InterfaceLaw {
   // Whether its springs go on carrying the in-situ stress, so that their reaction is the change from it.
   bool takes_all_compression() const { return kind == Kind::soft && compression == Compression::spring; }
 
-  // Whether strengths bond it; friction alone does, which gives nothing up where it lets go.
-  bool has_strength() const { return kind == Kind::weak; }
+  // Whether strengths bond it, or a toughness; friction alone does, which gives nothing up where it lets go.
+  bool has_strength() const { return kind == Kind::weak && !toughness_Pa_sqrt_m; }
+  bool has_toughness() const { return kind == Kind::weak && toughness_Pa_sqrt_m; }
   bool only_sticks() const { return kind == Kind::friction; }
 
   // Whether its faces pull each other where they are apart; whether they hold in shear until they slide, not by
@@ -128,7 +130,7 @@ struct InterfaceLaw {
   bool slides() const { return kind != Kind::soft; }
 
   // Coefficient of friction between split faces, that of sliding where strength has failed.
-  double friction() const { return only_sticks() ? coefficient : has_strength() ? residual_friction : 0.0; }
+  double friction() const { return only_sticks() ? coefficient : kind == Kind::weak ? residual_friction : 0.0; }
   bool operator==(const InterfaceLaw&) const = default;
 };
 
@@ -304,6 +306,9 @@ struct Scene {
   bool leaks() const {
     return std::ranges::any_of(rocks, [](const Rock& rock) { return rock.leakoff_m_sqrt_s > 0.0; });
   }
+
+  // Whether any interface parts by energy.
+  bool parts_by_energy() const { return std::ranges::any_of(laws, &InterfaceLaw::has_toughness); }
 
   // From edge to edge of the rock along interfaces, and where the law of one holds (m).
   Stretch along_interfaces() const { return strata.along == Strata::Along::y ? domain.along_x() : domain.along_y(); }

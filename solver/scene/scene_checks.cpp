@@ -237,6 +237,26 @@ void check_mechanics(Reading& reading) {
                     rests ? "mechanics = \"quasistatic\"" : "kinematics = \"total\"");
 }
 
+// An interface parts by its toughness or by strengths; a variant or --set may put the toughness above them.
+void check_toughness(Reading& reading) {
+  const bool moves =
+      reading.sound("numerics.mechanics") && reading.scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics;
+  for (const InterfaceLaw& law : reading.scene.laws) {
+    const std::string table = "interface." + law.name + '.', toughness = table + "toughness_Pa_sqrt_m";
+    if (!law.has_toughness()) continue;
+    reading.refuse_if(moves, toughness,
+                      "compares equilibria and needs mechanics = \"quasistatic\", but mechanics = \"explicit\". Give "
+                      "shear_strength_Pa and tensile_strength_Pa instead.");
+    for (const char* key : {"shear_strength_Pa", "tensile_strength_Pa", "failure_length_m"}) {
+      if (!reading.given(table + key) || reading.where(table + key).rank < reading.where(toughness).rank) continue;
+      reading.refuse_if(true, table + key,
+                        "is for an interface that fails by its strength, but {} lets it part by energy. Give one or "
+                        "the other.",
+                        toughness);
+    }
+  }
+}
+
 // Cells far away and beyond the block.
 void check_grading(Reading& reading) {
   if (!reading.usable("numerics.cell_m")) return;
@@ -360,6 +380,7 @@ void check_scene(Reading& reading) {
   check_stop_values(reading);
   check_end(reading);
   check_mechanics(reading);
+  check_toughness(reading);
   check_grading(reading);
   check_fine_ends(reading);
   check_fluid(reading);

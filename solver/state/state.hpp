@@ -56,6 +56,7 @@ struct Tip {
   double due_s = -1.0;             // explicit: no increment before this time (s), since Rayleigh waves are no faster
   double runs_until_s = -1.0;      // and until then J still answers to the last one
   double G_trial = 0.0;            // what growth by energy would release now, by the increment's length (N/m)
+  double G_along = 0.0;            // the same where an interface would part from there on; no number: none would
   double G = 0.0;                  // what its last increment released, by its length (N/m)
   double G_by_J = 0.0;             // the same from J along it (N/m); 0 where that does not tell
   Criterion criterion = Criterion::J;  // what decides its growth where it stands
