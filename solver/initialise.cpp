@@ -49,13 +49,14 @@ void make_fracture(const Scene& scene, State& state) {
   state.has_fracture = true;
   state.surfaces.push_back(make_surface(Surface::Kind::fracture, 0, path, surface_spacing(state.grid)));
   const Surface& fracture = state.fracture();
-  state.fluid.P.assign(fracture.vertices.size(), scene.fluid.start_Pa);
+  state.fluid.P.resize(fracture.vertices.size());
   state.fluid.inlet_Pa = scene.fluid.start_Pa;
   const bool from_symmetry = scene.domain.bottom == Edge::symmetry && path.front().y() == 0.0;
   // A fracture within the block is fed at its middle and has two tips.
   const auto middle = std::ranges::min_element(
       fracture.vertices, {}, [&](const SurfacePoint& s) { return std::abs(s.arc - 0.5 * fracture.length()); });
   state.fluid.inlet = from_symmetry ? 0 : static_cast<std::size_t>(middle - fracture.vertices.begin());
+  rest_fluid(scene.fluid, state);
   if (!from_symmetry) state.tips.push_back(Tip{});
   for (Tip& tip : state.tips) tip.at_back = false;
   state.tips.push_back(Tip{});
@@ -106,9 +107,9 @@ void make_interfaces(const Scene& scene, State& state) {
 // A fracture's faces and interfaces that are apart start with what they carried in the in-situ state: fluid pressure or
 // contact.
 void set_start_reactions(State& state) {
+  if (state.has_fracture) pass_to_points(state);
   for (Surface& surface : state.surfaces) {
     for (SurfacePoint& s : surface.points) {
-      if (surface.kind == Surface::Kind::fracture) s.P = state.fluid.inlet_Pa;
       if (s.split) s.reaction = std::max(0.0, s.closing_stress() - s.P) * s.n;
     }
   }

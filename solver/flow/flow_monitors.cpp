@@ -62,7 +62,8 @@ FlowStretch flow_stretch(const Scene& scene, const Side& side, std::size_t k) {
   const std::vector<double>& w = side.state.reynolds.w;  // between the middles of two
   const double a = std::max(w[side.index(k)], roughness), b = std::max(w[side.index(k + 1)], roughness);
   const double conducts = opening_between(std::max(a, floor), std::max(b, floor));
-  return {side[k].P - side[k + 1].P, side[k + 1].P, std::pow(conducts / opening_between(a, b), 3)};
+  const double weighs = scene.fluid.weight() * (side[k + 1].x.y() - side[k].x.y());
+  return {side[k].P - side[k + 1].P - weighs, side[k + 1].P, std::pow(conducts / opening_between(a, b), 3)};
 }
 
 double missing_along(const Scene& scene, const Side& side) {

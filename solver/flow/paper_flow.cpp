@@ -97,18 +97,13 @@ double inflow(const Scene& scene, const State& state) {
   return q;
 }
 
-void pass_to_points(State& state) {
-  auto& points = state.fracture().points;
-  for (std::size_t k = 0; k < points.size(); ++k) points[k].P = 0.5 * (state.fluid.P[k] + state.fluid.P[k + 1]);
-}
-
 void advance_pressure(const Scene& scene, State& state) {
   if (!state.has_fracture) return;
   const Fluid& fluid = scene.fluid;
   FluidLine& line = state.fluid;
   line.inlet_Pa = inlet_pressure(fluid, state.time + state.dt);
   if (fluid.law == Fluid::Law::uniform) {
-    std::fill(line.P.begin(), line.P.end(), line.inlet_Pa);
+    rest_fluid(fluid, state);
   } else {
     diffuse(channel_of(scene, state, openings_of(state.fracture())), fluid.bulk_modulus_Pa / fluid.viscosity_Pa_s,
             fluid.time_rule, state.dt, line.inlet_Pa, line.P);

@@ -40,9 +40,6 @@ std::vector<double> openings_of(const Surface& fracture);
 /// mu)) dP/ds, both ways (m^2/s), with openings of at least minimum_opening_m; 0 under other laws. Throws nothing.
 double inflow(const Scene& scene, const State& state);
 
-/// Sets the pressure of the fracture's points to the mean of the vertices beside. Throws nothing.
-void pass_to_points(State& state);
-
 /// Pressure at the end of the step state.dt: the inlet's ramp, and along the fracture by the scene's law with the
 /// opening of the step's start, at least minimum_opening_m; passes vertex pressures on to the fracture's points.
 /// Throws as diffuse().

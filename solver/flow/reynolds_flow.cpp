@@ -49,6 +49,9 @@ struct Place {
   double A = 0.0;
   double closing = 0.0;     // Pa
   double compliance = 0.0;  // 1/E' (1/Pa); 0: rigid within a cell
+  double rise = 0.0;        // rho g times its height above the inlet (Pa)
+
+  Dual level() const { return P + rise; }  // what falls where fluid flows
 };
 
 // The opening that conducts: never below the scene's floor.
@@ -71,7 +74,8 @@ Dual parted(const Dual& P, const Place& at) {
 
 // Conductance between the middles of two cells (m^2/(Pa s)), w^3/(12 mu) over their distance.
 Dual between(const Fluid& fluid, const Place& l, const Place& r) {
-  const Dual within = l.P.value() > r.P.value() ? parted(l.P, r) : parted(r.P, l);
+  const double rise = r.rise - l.rise;
+  const Dual within = l.P.value() > r.P.value() + rise ? parted(Dual(l.P - rise), r) : parted(Dual(r.P + rise), l);
   const Dual w = opening_between(conducting(fluid, l), conducting(fluid, r)) + within;
   return Dual(w * w * w) / (6.0 * fluid.viscosity_Pa_s * (l.A + r.A));
 }
@@ -95,6 +99,7 @@ struct Balance {
   VectorXd residual;      // held - held before - dt inflow + leak
   // d inflow/d P, d inflow/d w of a cell (rows) by the cell before it, itself and the one behind it (columns).
   Eigen::MatrixX3d by_P, by_w;
+  Eigen::MatrixX2d by_phi;  // what a cell that is full in part gives to the one before it and the one behind, by phi
   double inlet_Pa = 0.0;
   double injected = 0.0;  // flow into the fracture at the cavitation pressure (m^2/s)
 
@@ -117,6 +122,7 @@ Place place(const Step& step, const Trial& trial, const Balance& b, Index k, boo
   const int first = left ? 0 : 2;
   Place at{Dual(trial.P(k), unknowns, first), Dual(b.rock.w(k), unknowns, first + 1),
            step.line.length[static_cast<std::size_t>(k)]};
+  if (b.rock.rise.size() > 0) at.rise = b.rock.rise(k);
   if (b.rock.E_prime.size() > 0) at.closing = b.rock.closing(k), at.compliance = 1.0 / b.rock.E_prime(k);
   return at;
 }
@@ -141,13 +147,21 @@ void add_flow(Balance& b, Index to, const Dual& flow, Index l, Index r) {
   }
 }
 
-// Flow between neighbours. What flows is the fluid of the cell with the higher pressure, which is full: an empty cell
-// is at the lowest pressure there is and gives nothing.
+// Flow between neighbours, by the fall of P + rho g y. What flows is the fluid of the cell where that is higher, which
+// is full: an empty cell is at the lowest pressure there is and gives nothing. But by its weight a cell that is full in
+// part gives that part of what it would give if it were full.
 void add_faces(const Step& step, const Trial& trial, Balance& b) {
   for (Index k = 0; k + 1 < trial.P.size(); ++k) {
     const Place l = place(step, trial, b, k, true), r = place(step, trial, b, k + 1, false);
     const Dual c = across(step, b.rock, l, r, k);
-    const Dual flow = density(step.fluid, trial.P(k) > trial.P(k + 1) ? l.P : r.P) * c * (l.P - r.P);
+    const double rise = r.rise - l.rise;
+    const bool onwards = trial.P(k) > trial.P(k + 1) + rise;
+    const Index from = onwards ? k : k + 1;
+    Dual flow = density(step.fluid, onwards ? l.P : r.P) * c * (l.P - r.P - rise);
+    if (rise != 0.0 && !trial.full[static_cast<std::size_t>(from)]) {
+      b.by_phi(from, onwards ? 1 : 0) = std::abs(flow.value());
+      flow = trial.phi(from) * flow;
+    }
     add_flow(b, k, -flow, k, k + 1);
     add_flow(b, k + 1, flow, k, k + 1);
   }
@@ -161,7 +175,7 @@ struct Beside {
 
   void conduct(const Step& step, const Dual& P) {
     for (int s = 0; s < 2; ++s)
-      if (cell[s] >= 0) c[s] = from_vertex(step.fluid, P, at[s]);
+      if (cell[s] >= 0) c[s] = from_vertex(step.fluid, Dual(P - at[s].rise), at[s]);
   }
 };
 
@@ -172,11 +186,12 @@ struct Beside {
 Dual pressure_for(const Step& step, Beside& b) {
   const double rate = step.inlet.value;
   b.conduct(step, Dual(0.0));
-  Dual P((rate + (b.c[0] * b.at[0].P + b.c[1] * b.at[1].P).value()) / (b.c[0] + b.c[1]).value(), unknowns, inlet_P);
+  Dual P((rate + (b.c[0] * b.at[0].level() + b.c[1] * b.at[1].level()).value()) / (b.c[0] + b.c[1]).value(), unknowns,
+         inlet_P);
   Dual left;
   for (int k = 0; k < 200; ++k) {
     b.conduct(step, P);
-    left = b.c[0] * (P - b.at[0].P) + b.c[1] * (P - b.at[1].P) - Dual(rate);
+    left = b.c[0] * (P - b.at[0].level()) + b.c[1] * (P - b.at[1].level()) - Dual(rate);
     const double change = left.value() / left.derivatives()(inlet_P);
     if (!(change > 1e-15 * P.value())) break;
     P.value() -= change;
@@ -200,8 +215,9 @@ void add_inlet(const Step& step, const Trial& trial, Balance& b) {
   for (int s = 0; s < 2; ++s) {
     if (cell[s] < 0) continue;
     // By rate in this form and not as c (P - P_s), which loses digits where c is large.
-    Dual q = c[s] * (P - at[s].P);
-    if (by_rate) q = (Dual(step.inlet.value) + c[1 - s] * (at[1 - s].P - at[s].P)) * c[s] / (c[0] + c[1]);
+    Dual q = c[s] * (P - at[s].level());
+    if (by_rate) q = (Dual(step.inlet.value) + c[1 - s] * (at[1 - s].level() - at[s].level())) * c[s] / (c[0] + c[1]);
+    if (at[s].rise != 0.0 && q.value() < 0.0) q = trial.phi(cell[s]) * q;
     // A rate counts at the pressure of the cell before the step: at the one sought, more inflow would raise the
     // pressure and that the inflow again, without a solution where a step brings more than a closed cell holds.
     const Dual entering = by_rate ? Dual(step.line.P[static_cast<std::size_t>(cell[s])]) : P;
@@ -223,6 +239,7 @@ Balance evaluate(const Step& step, const Trial& trial) {
   b.rock = step.rock(trial.P);
   b.held = b.inflow = VectorXd::Zero(n);
   b.by_P = b.by_w = Eigen::MatrixX3d::Zero(n, 3);
+  b.by_phi = Eigen::MatrixX2d::Zero(n, 2);
   add_faces(step, trial, b);
   add_inlet(step, trial, b);
   for (Index k = 0; k < n; ++k)
@@ -255,6 +272,9 @@ MatrixXd jacobian(const Step& step, const Trial& trial, const Balance& b) {
     J.col(k).setZero();
     J(k, k) = storage_opening(b.rock.w(k)) * step.line.length[static_cast<std::size_t>(k)];
     if (b.rock.lost.size() > 0) J(k, k) += full_leak(step, b.rock, k);
+    J(k, k) += step.dt * b.by_phi.row(k).sum();
+    if (k > 0) J(k - 1, k) -= step.dt * b.by_phi(k, 0);
+    if (k + 1 < n) J(k + 1, k) -= step.dt * b.by_phi(k, 1);
   }
   return J;
 }
@@ -393,11 +413,13 @@ void accept(const Step& step, const Trial& trial, const Balance& b, ReynoldsLine
 }  // namespace
 
 ReynoldsLine full_line(const Fluid& fluid, const std::vector<double>& length, std::size_t inlet, double P,
-                       const Eigen::VectorXd& w, FluidBalance& balance) {
+                       const Eigen::VectorXd& w, FluidBalance& balance, const Eigen::VectorXd& rise) {
   ReynoldsLine line;
   const std::size_t n = length.size();
   line.length = length;
   line.P.assign(n, std::max(P, fluid.cavitation_Pa));
+  for (std::size_t k = 0; k < static_cast<std::size_t>(rise.size()); ++k)
+    line.P[k] = std::max(P - rise(static_cast<Index>(k)), fluid.cavitation_Pa);
   line.phi.assign(n, 1.0);
   line.w = as_vector(w);
   line.w_rate.assign(n, 0.0);

@@ -1,10 +1,11 @@
 // Lubrication flow along the fracture that conserves mass, solved in one system with the rock that the fluid opens.
 //
-//   d(theta w)/dt + d(theta q)/ds = inlet - leak-off,  q = -(w^3/(12 mu)) dP/ds,  theta = phi (1 + (P - P_c)/M)
-//   P >= P_c,  0 <= phi <= 1,  (P - P_c)(1 - phi) = 0
+//   d(theta w)/dt + d(theta q)/ds = inlet - leak-off,  q = -(w^3/(12 mu)) d(P + rho g y)/ds
+//   theta = phi (1 + (P - P_c)/M),  P >= P_c,  0 <= phi <= 1,  (P - P_c)(1 - phi) = 0
 // which is (w/M) dP/dt + dw/dt = d/ds(w^3/(12 mu) dP/ds) + inlet where the fracture is full (Batchelor 1967,
 // section 4.8) and a fluid front where it is not (mass-conserving cavitation: Jakobsson & Floberg 1957; Elrod 1981).
-// theta is the fluid's density over that at the cavitation pressure P_c, phi the part of the opening that fluid fills.
+// theta is the fluid's density over that at the cavitation pressure P_c, phi the part of the opening that fluid fills;
+// rho g is that of the scene, whatever the pressure.
 //
 // Finite volumes: a cell is a segment of the fracture, with P, phi and the opening w at its middle, where the rock
 // feels P and where the fluid is stored. Backward Euler. What a cell holds, theta w A, is part of the state: it stays
@@ -33,6 +34,7 @@ struct RockResponse {
   Eigen::VectorXd E_prime = {}, closing = {};
   Eigen::VectorXd lost = {};   // by both faces of each cell until the step's end (m^2), or nothing where none leak
   Eigen::VectorXd front = {};  // front_conductances(), or none
+  Eigen::VectorXd rise = {};   // rho g times each cell's height above the inlet (Pa), or nothing: without weight
 };
 using RockModel = std::function<RockResponse(const Eigen::VectorXd& P)>;  // P absolute, one a point (Pa)
 
@@ -70,10 +72,11 @@ struct ReynoldsOptions {
   double tolerance = 1e-12;  // of a cell's imbalance, relative to the fluid in the fracture; not below round-off
 };
 
-/// A fracture full of fluid at P (Pa) throughout, with openings w (m) in cells of the given lengths (m) and the inlet
-/// at a vertex, wet from time 0 on; sets `balance` to nothing injected.
+/// A fracture full of fluid at P (Pa) throughout, or less by its weight over the cells' rise above the inlet, rho g y
+/// (Pa), with openings w (m) in cells of the given lengths (m) and the inlet at a vertex, wet from time 0 on; sets
+/// `balance` to nothing injected.
 ReynoldsLine full_line(const Fluid& fluid, const std::vector<double>& length, std::size_t inlet, double P,
-                       const Eigen::VectorXd& w, FluidBalance& balance);
+                       const Eigen::VectorXd& w, FluidBalance& balance, const Eigen::VectorXd& rise = {});
 
 /// Adds an empty cell (phi = 0, P = P_c) of the given length (m), wet from `time` (s) on, after the last one (at_back)
 /// or before the first, where the inlet's vertex moves up by one.

@@ -108,6 +108,15 @@ Eigen::VectorXd conductances_at_fronts(const Scene& scene, const Rocks& rocks, d
   return front;
 }
 
+// rho g times the height of cells above the inlet (Pa).
+Eigen::VectorXd rise_of_cells(const Scene& scene, const State& state) {
+  const auto &vertices = state.fracture().vertices, &points = state.fracture().points;
+  Eigen::VectorXd rise(points.size());
+  for (std::size_t k = 0; k < points.size(); ++k)
+    rise[static_cast<Eigen::Index>(k)] = scene.fluid.weight() * (points[k].x.y() - vertices[state.fluid.inlet].x.y());
+  return rise;
+}
+
 // The rock at a time (s) as the flow sees it: openings and their change with the pressures, in equilibrium with all
 // surfaces.
 RockModel rock_of(const Scene& scene, double time, State& state, QuasistaticModel& model) {
@@ -120,14 +129,15 @@ RockModel rock_of(const Scene& scene, double time, State& state, QuasistaticMode
   }
   if (model.dw_dP_of != model.factor.pieces) model.dw_dP.resize(0, 0);
   const Eigen::VectorXd lost = lost_by(scene, time, state), fronts = conductances_at_fronts(scene, rocks, time, state);
-  return [&scene, time, &state, &model, E_prime, closing, lost, fronts](const Eigen::VectorXd& P) {
+  const Eigen::VectorXd rise = rise_of_cells(scene, state);
+  return [&scene, time, &state, &model, E_prime, closing, lost, fronts, rise](const Eigen::VectorXd& P) {
     set_point_pressures(P, state);
     const Equilibrium at = find_equilibrium(scene, time, state, model);
     if (model.dw_dP_of != at.pieces || model.dw_dP.size() == 0) {  // the same as long as no place opens or closes
       model.dw_dP = opening_per_pressure(state, model.condensed, model.places, at, model.factor);
       model.dw_dP_of = at.pieces;
     }
-    RockResponse rock{Eigen::VectorXd::Zero(P.size()), model.dw_dP, E_prime, closing, lost, fronts};
+    RockResponse rock{Eigen::VectorXd::Zero(P.size()), model.dw_dP, E_prime, closing, lost, fronts, rise};
     for (std::size_t k = 0; k < model.places.size(); ++k) {
       const ContactPlace& place = model.places[k];
       if (place.tie < 0 && place.surface == 0) add_place(place, at.answers[k], at.w[k].dot(place.n), rock);
@@ -145,6 +155,15 @@ Inlet inlet_over(const Scene& scene, const State& state, double start, double en
   return {Inlet::Drive::rate, inlet_rate(scene.fluid, 0.5 * (start + end)) * (half ? 0.5 : 1.0)};
 }
 
+// At closed ends the fluid is at rest.
+void rest_at_ends(const Fluid& fluid, State& state) {
+  const auto &vertices = state.fracture().vertices, &points = state.fracture().points;
+  std::vector<double>& P = state.fluid.P;
+  if (state.fluid.inlet > 0) P.front() = fluid.at_rest(P.front(), vertices.front().x.y() - points.front().x.y());
+  if (state.fluid.inlet < points.size())
+    P.back() = fluid.at_rest(P.back(), vertices.back().x.y() - points.back().x.y());
+}
+
 FluidStep couple(const Scene& scene, double dt, State& state, QuasistaticModel& model) {
   // Of the largest opening, a step: some hundred of them add up to less than a per cent, since what one does wrong the
   // next ones heal.
@@ -159,6 +178,7 @@ FluidStep couple(const Scene& scene, double dt, State& state, QuasistaticModel& 
   state.reynolds = std::move(from.line);
   state.balance = from.balance;
   state.fluid.P = vertex_pressures(state.reynolds);
+  rest_at_ends(scene.fluid, state);
   state.fluid.inlet_Pa = report.inlet_Pa;
   set_point_pressures(
       Eigen::Map<const Eigen::VectorXd>(state.reynolds.P.data(), static_cast<Eigen::Index>(state.reynolds.P.size())),
@@ -195,17 +215,20 @@ void fill_fracture(const Scene& scene, State& state, QuasistaticModel& model) {
   // A thousandth below the least closing stress, so that contact holds every face: at it all are between open and
   // closed, and Newton's method may go round in circles. Rough faces hold as much less than they would at it.
   constexpr double held = 1e-3;
+  const Eigen::VectorXd rise = rise_of_cells(scene, state);
   if (scene.fluid.rate_m2_s) {
-    const auto least = std::ranges::min_element(points, {}, &SurfacePoint::closing_stress);
-    P = least->closing_stress() - held * std::abs(least->closing_stress());
+    P = HUGE_VAL;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const double closing = points[k].closing_stress();
+      P = std::min(P, closing - held * std::abs(closing) + rise[static_cast<Eigen::Index>(k)]);
+    }
   }
-  const RockResponse rock =
-      rock_of(scene, state.time, state, model)(Eigen::VectorXd::Constant(static_cast<Eigen::Index>(points.size()), P));
+  const RockResponse rock = rock_of(scene, state.time, state, model)((P - rise.array()).matrix());
   std::vector<double> length;
   for (const SurfacePoint& s : points) length.push_back(s.A);
-  state.reynolds = full_line(scene.fluid, length, state.fluid.inlet, P, rock.w, state.balance);
-  std::fill(state.fluid.P.begin(), state.fluid.P.end(), P);
+  state.reynolds = full_line(scene.fluid, length, state.fluid.inlet, P, rock.w, state.balance, rise);
   state.fluid.inlet_Pa = P;
+  rest_fluid(scene.fluid, state);
 }
 
 double lag_error(const Scene& scene, const FluidLine& before, std::span<const double> w_before, double time,
@@ -262,7 +285,7 @@ FluidStep advance_fluid(const Scene& scene, double dt, State& state, Quasistatic
   if (scene.fluid.law == Fluid::Law::reynolds) return couple(scene, dt, state, model);
   if (scene.fluid.law == Fluid::Law::uniform) {
     if (dt > 0.0) state.fluid.inlet_Pa = inlet_pressure(scene.fluid, state.time + dt);
-    std::fill(state.fluid.P.begin(), state.fluid.P.end(), state.fluid.inlet_Pa);
+    rest_fluid(scene.fluid, state);
   } else if (dt > 0.0) {
     diffuse_in_steps(scene, state, openings_midway(scene, dt, state, model), state.time, dt, state.fluid);
   }

@@ -18,15 +18,17 @@ std::ptrdiff_t shift_of(const State& state, const GrowthTrial& trial) {
 }
 
 // The trial's load: the state's own and, on a new segment, the pressure of the tip (it is wetted).
-void load_trial(const State& state, GrowthTrial& trial) {
+void load_trial(const Fluid& fluid, const State& state, GrowthTrial& trial) {
   auto& tried = trial.state.fracture().points;
   const auto& points = state.fracture().points;
   const std::ptrdiff_t shift = shift_of(state, trial);
-  const double tip_P = state.tips[trial.tip].at_back ? state.fluid.P.back() : state.fluid.P.front();
+  const Tip& tip = state.tips[trial.tip];
+  const double tip_P = tip.at_back ? state.fluid.P.back() : state.fluid.P.front(), tip_y = tip_position(state, tip).y();
   for (std::ptrdiff_t q = 0; q < std::ssize(tried); ++q) {
     const std::ptrdiff_t own = q - shift;
     const bool old = own >= 0 && own < std::ssize(points);
-    tried[static_cast<std::size_t>(q)].P = old ? points[static_cast<std::size_t>(own)].P : tip_P;
+    SurfacePoint& s = tried[static_cast<std::size_t>(q)];
+    s.P = old ? points[static_cast<std::size_t>(own)].P : fluid.at_rest(tip_P, s.x.y() - tip_y);
   }
 }
 
@@ -148,7 +150,7 @@ std::vector<GrowthTrial> build_trials(const Scene& scene, const Rocks& rocks, St
 
 double energy_release(const Scene& scene, const State& state, const QuasistaticModel& model,
                       const Equilibrium& equilibrium, GrowthTrial& trial) {
-  load_trial(state, trial);
+  load_trial(scene.fluid, state, trial);
   inherit_friction(state, model.places, trial);
   if (trial.parts()) begin_parting(state, model, equilibrium, trial);
   const double there = energy_of(trial.model, find_equilibrium(scene, state.time, trial.state, trial.model));

@@ -249,13 +249,16 @@ void lengthen(const Scene& scene, std::vector<Growing>& growing, State& state) {
   for (Growing& g : growing) {
     Tip& tip = state.tips[g.tip];
     const std::size_t points = state.fracture().points.size();
+    const double y = tip_position(state, tip).y();
     note_growth(state, tip);
     g.increment = extend_tip(scene, state, tip, g.increment);
     const std::size_t added = state.fracture().points.size() - points;
     add_fluid_cells(scene, tip.at_back, added, state);
     auto& all = state.fracture().points;
-    for (std::size_t q = 0; q < added; ++q)
-      all[tip.at_back ? points + q : q].P = g.P;  // wetted, to measure the release
+    for (std::size_t q = 0; q < added; ++q) {
+      SurfacePoint& s = all[tip.at_back ? points + q : q];
+      s.P = scene.fluid.at_rest(g.P, s.x.y() - y);  // wetted, to measure the release
+    }
   }
 }
 

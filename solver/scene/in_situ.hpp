@@ -9,8 +9,6 @@
 
 namespace strata {
 
-constexpr double standard_gravity = 9.80665;  // m/s^2
-
 // Stress at a place (Pa), positive in compression; shear is sigma_xy, so that positive shear on the face towards +x
 // acts towards +y.
 struct InSituStress {

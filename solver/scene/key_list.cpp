@@ -197,6 +197,11 @@ constexpr Key keys[] = {
          "that conserves mass.",
          "paper, uniform, reynolds"),
     number("fluid.bulk_modulus_Pa", at<&Scene::fluid, &Fluid::bulk_modulus_Pa>, "Pa", positive, "Bulk modulus M."),
+    number(
+        "fluid.density_kg_m3", at<&Scene::fluid, &Fluid::density_kg_m3>, "kg/m^3", not_negative,
+        "Density, by which the pressure of the fluid at rest falls by rho g upwards (g = 9.80665 m/s^2); 0: it has no "
+        "weight. Under law = \"uniform\" inlet's pressure is that at the inlet's height.",
+        "Water has 1000."),
     number("fluid.viscosity_Pa_s", at<&Scene::fluid, &Fluid::viscosity_Pa_s>, "Pa s", positive, "Dynamic viscosity.",
            "For a fluid without viscosity use law = \"uniform\"."),
     number("fluid.minimum_opening_m", at<&Scene::fluid, &Fluid::minimum_opening_m>, "m", not_negative,

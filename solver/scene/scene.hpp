@@ -14,6 +14,8 @@
 
 namespace strata {
 
+constexpr double standard_gravity = 9.80665;  // m/s^2
+
 // Beside each enumeration stand the words that a scene has for its values, in their order.
 enum class Edge { symmetry, fixed, traction };
 constexpr std::string_view words(Edge) {
@@ -213,8 +215,14 @@ struct Fluid {
   std::vector<std::array<double, 2>> table;
   TableOf table_of = TableOf::rate_m2_s;
   double cavitation_Pa = 0.0;  // absolute lower bound of the fluid pressure
+  double density_kg_m3 = 0.0;  // 0: without weight
   NewPoint new_point = NewPoint::dry;
   TimeRule time_rule = TimeRule::trapezoid;
+
+  // The pressure (Pa) of fluid at rest so far (m) above a place where it is P; none falls below cavitation by its
+  // weight.
+  double weight() const { return density_kg_m3 * standard_gravity; }  // N/m^3
+  double at_rest(double P, double above) const { return std::max(P - weight() * above, std::min(P, cavitation_Pa)); }
   bool operator==(const Fluid&) const = default;
 };
 

@@ -338,6 +338,10 @@ void check_fluid(Reading& reading) {
     reading.refuse_if(rock.leakoff_m_sqrt_s > 0.0 && !conserves, "rock." + rock.name + ".leakoff_m_sqrt_s",
                       "{} = \"{}\". Use law = \"reynolds\", or leave it out.", why, word_of(fluid.law));
   }
+  reading.refuse_if(
+      fluid.density_kg_m3 != 0.0 && fluid.law == Fluid::Law::paper, "fluid.density_kg_m3",
+      "gives the fluid a weight, which the study's diffusion, fluid.law = \"paper\", does not have. Use law "
+      "= \"reynolds\" or \"uniform\", or leave it out.");
   const bool pressed = reading.usable("fluid.inlet.start_Pa") && !fluid.rate_m2_s;
   reading.refuse_if(pressed && fluid.cavitation_Pa > fluid.start_Pa, "fluid.cavitation_Pa",
                     "is above fluid.inlet.start_Pa = {}, but no pressure may be below it. Lower it, or start higher.",

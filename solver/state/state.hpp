@@ -206,6 +206,19 @@ inline Vec2 tip_position(const State& state, const Tip& tip) {
   return tip.at_back ? state.fracture().vertices.back().x : state.fracture().vertices.front().x;
 }
 
+/// Sets the pressure at the fracture's vertices to that of a fluid at rest under its inlet's; throws nothing.
+inline void rest_fluid(const Fluid& fluid, State& state) {
+  const auto& at = state.fracture().vertices;
+  for (std::size_t k = 0; k < at.size(); ++k)
+    state.fluid.P[k] = fluid.at_rest(state.fluid.inlet_Pa, at[k].x.y() - at[state.fluid.inlet].x.y());
+}
+
+/// Sets the pressure of the fracture's points to the mean of the vertices beside; throws nothing.
+inline void pass_to_points(State& state) {
+  auto& points = state.fracture().points;
+  for (std::size_t k = 0; k < points.size(); ++k) points[k].P = 0.5 * (state.fluid.P[k] + state.fluid.P[k + 1]);
+}
+
 // How far ahead of a tip its rock is looked up (cells). A tip that stands on an interface follows the rock, by about a
 // millimetre per MPa, while the layers' borders stay: the rock ahead must not be taken for the one behind.
 constexpr double ahead_cells = 0.1;
