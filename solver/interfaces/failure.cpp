@@ -421,10 +421,10 @@ Columns failing_columns(const Scene& scene, const State& state, const Bonds& bon
   return columns;
 }
 
-void let_go(const Columns& columns, const Bonds& bonds, State& state) {
+void let_go(const Columns& columns, const Bonds& bonds, State& state, SideWord mask, SideWord sides) {
   for (const BondedPlace& place : bonds.places) {
     SurfacePoint& s = state.surfaces[place.surface].points[place.point];
-    if (!columns.contains({place.surface, s.column})) continue;
+    if (!columns.contains({place.surface, s.column}) || (s.sides & mask) != sides) continue;
     s.split = true;
     s.failed_s = state.time;
     s.bonded = s.w;  // what neighbours' splitting let it open while bonded is no gap, and no overlap to push back

@@ -40,8 +40,9 @@ using Columns = std::set<std::pair<std::size_t, int>>;
 Columns failing_columns(const Scene& scene, const State& state, const Bonds& bonds);
 
 /// Lets the bonded places in some columns go. The law takes over from what they carried: compression, and shear as what
-/// friction remembers, which the law then bounds. The copies must then be rebuilt. Throws nothing.
-void let_go(const Columns& columns, const Bonds& bonds, State& state);
+/// friction remembers, which the law then bounds. The copies must then be rebuilt. mask: of other surfaces, of whose
+/// sides places must have `sides`. Throws nothing.
+void let_go(const Columns& columns, const Bonds& bonds, State& state, SideWord mask = 0, SideWord sides = 0);
 
 /// Gives the points of interfaces what the bonded block of the in-situ state `loaded` hands over there, as tractions
 /// whose forces on the columns are those of the rock on the - side:

@@ -23,7 +23,11 @@ Parting parting_from(const Scene& scene, const Rocks& rocks, const State& state,
   if (first.point == (back ? surface.points.size() - 1 : 0)) return parting;
   // What has parted ends at the first node that is whole, as a fracture does.
   Vec2 from = surface.vertices[first.point + (back ? 1 : 0)].x;
-  if (surface.points[back ? first.point + 1 : first.point - 1].split) from[along_x ? 0 : 1] = column_at(s.column);
+  if (surface.points[back ? first.point + 1 : first.point - 1].split) {
+    from[along_x ? 0 : 1] = column_at(s.column);
+  } else {
+    parting.mask = state.fracture().mask(), parting.sides = s.sides & parting.mask;
+  }
   const double at = from[along_x ? 0 : 1], wanted = (1.0 - 1e-6) * scene.fracture->crossing_increment();
   const int end = surface.points[last.point].column, way = back ? -1 : 1;
   for (int c = s.column; c != end + way && parting.length < wanted; c += way) {
@@ -65,6 +69,7 @@ std::vector<Parting> next_partings(const Scene& scene, const Rocks& rocks, const
         for (const auto& [of, column] : Columns{parting.columns}) parting.columns.emplace(of, state.grid.nx - column);
         parting.from.push_back({2.0 * middle - parting.from[0].x(), parting.from[0].y()});
         parting.length *= 2.0;
+        parting.mask = parting.sides = 0;
       }
       partings.push_back(std::move(parting));
     }

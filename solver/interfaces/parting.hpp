@@ -10,9 +10,10 @@ namespace strata {
 // Columns that part at once from an edge of what is bonded, or at both ends of what parts in mirror images.
 struct Parting {
   Columns columns;
-  std::vector<Vec2> from;  // the edges (m)
-  double length = 0.0;     // of what parts (m)
-  double J_c = 0.0;        // what that takes per length, K^2 (1/E'_1 + 1/E'_2)/2 by the rocks on both sides (N/m)
+  SideWord mask = 0, sides = 0;  // of the fracture, where it parts on one side alone: places with these sides
+  std::vector<Vec2> from;        // the edges (m)
+  double length = 0.0;           // of what parts (m)
+  double J_c = 0.0;              // what that takes per length, K^2 (1/E'_1 + 1/E'_2)/2 by the rocks on both sides (N/m)
 };
 
 /// What interfaces that have a toughness may part next: from each place where they are bonded no further, since they

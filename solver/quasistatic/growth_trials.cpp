@@ -140,7 +140,8 @@ std::vector<GrowthTrial> build_trials(const Scene& scene, const Rocks& rocks, St
     trial.length = parting.length;
     trial.state = beside_surfaces(scene, state, parting.from, parting.length);
     for (const auto& [surface, column] : parting.columns) {
-      for (SurfacePoint& s : trial.state.surfaces[surface].points) s.split = s.split || s.column == column;
+      for (SurfacePoint& s : trial.state.surfaces[surface].points)
+        s.split = s.split || (s.column == column && (s.sides & parting.mask) == parting.sides);
     }
     trial.parting = std::move(parting);
     prepare(trial);

@@ -212,11 +212,11 @@ void rebuild_all(const Scene& scene, const Rocks& rocks, State& state, Quasistat
 
 // Lets what fails or parts go; where half a block answers for the whole, with its mirror image, which is as bad but for
 // round-off.
-void let_columns_go(Columns columns, const Quasistatic& run, State& state) {
+void let_columns_go(Columns columns, const Quasistatic& run, State& state, SideWord mask = 0, SideWord sides = 0) {
   if (run.model.body->halved()) {
     for (const auto& [surface, column] : Columns{columns}) columns.emplace(surface, state.grid.nx - column);
   }
-  let_go(columns, run.model.bonds, state);
+  let_go(columns, run.model.bonds, state, mask, sides);
   for (const BondedPlace& place : run.model.bonds.places) {
     SurfacePoint& s = state.surfaces[place.surface].points[place.point];
     if (s.split)
@@ -309,7 +309,7 @@ void grow_or_fail(const Scene& scene, const Rocks& rocks, State& state, Quasista
   } else if (parts_first(run)) {
     const Parting& parting = run.trials[run.parting].parting;
     surface = parting.J_c * parting.length;
-    let_columns_go(parting.columns, run, state);
+    let_columns_go(parting.columns, run, state, parting.mask, parting.sides);
   } else {
     growing = tips_that_grow(scene, rocks, state, run);
     energy_before = find_equilibrium(scene, state.time, state, run.model).energy;  // against friction's present memory

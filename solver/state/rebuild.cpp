@@ -164,7 +164,21 @@ NodeMasks node_masks(const Scene& scene, const State& state) {
   return masks;
 }
 
-void make_cut_nodes(const State& state, const NodeMasks& masks, Copies& copies) {
+// Bonded places in a column that has parted on the fracture's other side.
+std::vector<std::pair<const Surface*, const SurfacePoint*>> half_parted(const State& state) {
+  std::vector<std::pair<const Surface*, const SurfacePoint*>> bonded;
+  for (const Surface& surface : state.surfaces) {
+    const auto& points = surface.points;
+    for (std::size_t q = 0; q + 1 < points.size(); ++q) {
+      const SurfacePoint &a = points[q], &b = points[q + 1];
+      if (a.column == b.column && a.split != b.split) bonded.emplace_back(&surface, a.split ? &b : &a);
+    }
+  }
+  return bonded;
+}
+
+void make_cut_nodes(const Scene& scene, const State& state, const NodeMasks& masks, Copies& copies) {
+  const auto bonded = half_parted(state);
   copies.cut_of_node.assign(masks.word.size(), -1);
   copies.cut.clear();
   copies.node_of_record.resize(masks.word.size());
@@ -180,6 +194,12 @@ void make_cut_nodes(const State& state, const NodeMasks& masks, Copies& copies) 
     const int tip = masks.ahead[node] - 1;
     if (cut.fracture != 0 && interfaces != 0)
       cut.entered = entered_sides(state, interfaces, tip < 0 ? nullptr : &state.tips[static_cast<std::size_t>(tip)]);
+    for (const auto& [surface, point] : bonded) {  // there it is whole
+      const int i = static_cast<int>(node);
+      const int column = scene.strata.along == Strata::Along::y ? state.grid.column(i) : state.grid.row(i);
+      if ((cut.mask & surface->mask()) == 0 || column != point->column) continue;
+      cut.joined.push_back({cut.key(point->sides), cut.key(point->sides | surface->mask())});
+    }
     copies.cut.push_back(std::move(cut));
   }
 }
@@ -388,7 +408,7 @@ SideWord sides_at(const State& state, const Vec2& x, int except) {
 
 void rebuild_copies(const Scene& scene, State& state) {
   const NodeMasks masks = node_masks(scene, state);
-  make_cut_nodes(state, masks, state.copies);
+  make_cut_nodes(scene, state, masks, state.copies);
   const std::vector<SideWord> reach = reach_of(state.grid, masks.word);
   std::vector<SortKey> keys = sort_keys(state, reach);
   if (!std::ranges::is_sorted(keys)) std::ranges::sort(keys);
