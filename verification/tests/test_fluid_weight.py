@@ -38,17 +38,20 @@ def test_stress_that_falls_as_the_fluids_pressure_does_takes_the_weight_away() -
     assert lower == pytest.approx(upper, rel=1e-9) and lower == pytest.approx(light[0], rel=1e-9)
 
 
+def starts(variant: str, settings: tuple[str, ...] = ()) -> tuple[float, float]:
+    """When the lower and the upper tip of a fracture fed at its middle begin to grow, s; no fluid may be missing."""
+    summary = completed(SCENE, variant, settings).summary
+    assert abs(summary.monitors["volume_balance"]) < 1e-8
+    lower, upper = sorted((event for event in summary.events if event.kind == "start"), key=lambda event: event.tip_y_m)
+    return lower.time_s, upper.time_s
+
+
 def test_a_fed_fracture_grows_as_without_weight_in_such_a_stress() -> None:
-    """As high to both ends; inlet pressure to 0.1 % of the net one; no fluid lost. In even stress the heavy fluid sinks."""
-    heavy, light = completed(SCENE, "fed_balanced").summary, completed(SCENE, "fed", WEIGHTLESS).summary
-    ends = [sorted(tip.y_m for tip in s.tips) for s in (heavy, light)]
-    assert ends[0] == pytest.approx(ends[1]) and ends[0][0] == pytest.approx(48.0 - ends[0][1]) and ends[0][1] > 28.0
-    assert heavy.inlet_Pa - 20e6 == pytest.approx(light.inlet_Pa - 20e6, rel=2e-3)
-    sinks = completed(SCENE, "fed").summary
-    low, high = sorted(tip.y_m for tip in sinks.tips)
-    assert 24.0 - low > high - 24.0 + 1.0
-    for summary in (heavy, light, sinks):
-        assert abs(summary.monitors["volume_balance"]) < 1e-8
+    """Both ends start together, to 0.2 % when those under a weightless fluid do. In even stress the weight brings the lower one first: K of
+    the two is 7 % more and less than their mean, and K^2 rises about as the time does."""
+    light, heavy, sinks = starts("fed", WEIGHTLESS), starts("fed_balanced"), starts("fed")
+    assert heavy[0] == pytest.approx(heavy[1], rel=1e-3) and heavy[0] == pytest.approx(light[0], rel=2e-3)
+    assert sinks[0] < 0.985 * light[0] and sinks[1] > 1.015 * light[0]
 
 
 def test_with_inertia_it_comes_to_rest_at_the_same_K() -> None:
