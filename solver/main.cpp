@@ -62,6 +62,13 @@ int resolve(const Arguments& arguments) {
   return report(read.errors);
 }
 
+int list_sweep(const Arguments& arguments) {
+  strata::SweepList list = strata::list_sweep(arguments.file);
+  if (list.errors.empty() && list.runs.empty()) list.errors.push_back(arguments.file + ": the scene has no [sweep].");
+  if (list.errors.empty()) fmt::print("runs = [\n  {},\n]\n", fmt::join(list.runs, ",\n  "));
+  return report(list.errors);
+}
+
 int log(const Arguments& arguments) {
   const strata::LogResult result = strata::scene_of_log(arguments.file);
   fmt::print("{}", result.toml);
@@ -88,10 +95,13 @@ int parse_and_do(int argc, char** argv) {
   }
   run_command->add_option("--out", arguments.options.out, "folder of the run; by default runs/SCENE/VARIANT");
   run_command->add_flag("--replace", arguments.options.replace, "in place of a run that the folder holds");
-  CLI::App* check_command = app.add_subcommand("check", "all errors of scenes and their variants, nothing run");
+  CLI::App* check_command = app.add_subcommand("check", "all errors of scenes, variants and sweeps, nothing run");
   check_command->add_option("scenes", arguments.files, "scene files")->required();
   CLI::App* variants_command = app.add_subcommand("variants", "names of a scene's variants, one a line");
   variants_command->add_option("scene", arguments.file, "scene file")->required();
+  CLI::App* sweep_command =
+      app.add_subcommand("sweep", "runs of a scene's [sweep] as TOML, one a line: name, settings");
+  sweep_command->add_option("scene", arguments.file, "scene file")->required();
   CLI::App* resume_command = app.add_subcommand("resume", "go on with a run from its last checkpoint");
   resume_command->add_option("dir", arguments.file, "folder of the run")->required();
   for (CLI::App* command : {run_command, resume_command}) {
@@ -121,6 +131,7 @@ int parse_and_do(int argc, char** argv) {
   if (check_command->parsed()) return report(strata::check(arguments.files));
   if (resolve_command->parsed()) return resolve(arguments);
   if (variants_command->parsed()) return list_variants(arguments);
+  if (sweep_command->parsed()) return list_sweep(arguments);
   if (log_command->parsed()) return log(arguments);
   if (resume_command->parsed()) return resume(arguments);
   if (new_command->parsed()) return report(strata::write_new_scene(arguments.file));

@@ -40,7 +40,7 @@ std::vector<std::string> names_in_table(std::string_view path) {
     const std::string name(key.path.substr(table.size(), key.path.find_first_of(".[", table.size()) - table.size()));
     if (std::ranges::find(names, name) == names.end()) names.push_back(name);
   }
-  if (path.empty()) names.emplace_back("variants");
+  if (path.empty()) names.insert(names.end(), {"variants", "sweep"});
   return names;
 }
 

@@ -120,7 +120,8 @@ std::vector<std::string> as_lines(std::vector<Fault> faults) {
   std::set<std::string> seen;
   for (const auto& [where, text] : faults) {
     const std::string place = where.line == 0 ? "" : fmt::format(":{}:{}", where.line, where.column);
-    const std::size_t longest = where.rank < 2 ? where.source.npos : 200;  // a file's name is needed whole
+    const std::size_t longest =
+        where.rank < 2 || where.line > 0 ? where.source.npos : 200;  // a file's name is needed whole
     const std::string source = shortened(with_visible_controls(where.source), longest);
     std::string line = source + place + ": " + shortened(with_visible_controls(text), 1000);
     if (seen.insert(line).second) lines.push_back(std::move(line));

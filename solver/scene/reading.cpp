@@ -76,20 +76,26 @@ bool Reading::sound(std::string_view path) const {
   return true;
 }
 
-std::string as_typed(const toml::node& value) {
+std::string as_one_line(const toml::node& value) {
   if (const auto* number = value.as_floating_point()) return number_text(number->get());
   std::ostringstream out;
   out << toml::toml_formatter{value, toml::format_flags::allow_unicode_strings};
   std::string text = out.str();
   std::ranges::replace(text, '\n', ' ');
+  return text;
+}
+
+std::string as_typed(const toml::node& value) {
   constexpr std::size_t longest = 60;  // what fits in a line beside the rest of a message
-  return shortened(text, longest);
+  return shortened(as_one_line(value), longest);
 }
 
 void take_value(Reading& reading, const std::string& path, const toml::node& value, const Where& where) {
   if (!check_table_name(reading, path, where)) return;
-  if (where.rank > 0 && (path.starts_with("variants") || path.starts_with("claim"))) {
-    reading.fault(where, "{}: a variant and --set may replace keys of the scene, not claims or variants.", path);
+  if (where.rank > 0 && (path.starts_with("variants") || path.starts_with("claim") || path.starts_with("sweep"))) {
+    reading.fault(where,
+                  "{}: a variant, a sweep and --set may replace keys of the scene, not claims, variants or a sweep.",
+                  path);
     return;
   }
   const Key* key = find_key(path);
@@ -117,7 +123,7 @@ void take_table(Reading& reading, const toml::table& table, const std::string& p
   for (const auto& [key, value] : table) {
     const std::string name(key.str()), path = prefix.empty() ? name : prefix + '.' + name;
     const Where where = where_of(source, key.source());
-    if (source.rank == 0 && path == "variants") continue;
+    if (source.rank == 0 && (path == "variants" || path == "sweep")) continue;
     if (source.rank == 0 && name.find_first_of(".[") != name.npos) {
       reading.fault(where, "unknown key \"{}\". Outside [variants] write a path without quotes.", name);
     } else {

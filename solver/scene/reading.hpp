@@ -17,6 +17,9 @@
 
 namespace strata {
 
+/// A value as TOML on one line.
+std::string as_one_line(const toml::node& value);
+
 /// A value as it would be typed, cut short where it is long.
 std::string as_typed(const toml::node& value);
 

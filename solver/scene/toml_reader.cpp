@@ -11,6 +11,7 @@
 
 #include "scene/derived.hpp"
 #include "scene/reading.hpp"
+#include "scene/sweep.hpp"
 
 namespace strata {
 namespace {
@@ -32,6 +33,7 @@ struct Parsed {
   toml::table table;
   std::set<unsigned> mended;  // lines that are no TOML, with nan for the value, so that the rest could be read
   bool whole = true;          // whether all lines could be read so
+  std::vector<Fault> faults;
 };
 
 // A line "key = what is no TOML" as TOML; nothing where it is another, or does not end what it begins.
@@ -43,7 +45,7 @@ std::optional<std::string> mended(std::string_view line) {
   return fmt::format("{} = nan", key);
 }
 
-Parsed parse_toml(std::string_view text, const Where& source, std::vector<Fault>& faults) {
+Parsed parse_toml(std::string_view text, const Where& source) {
   constexpr std::size_t most_lines = 50;  // each asks for the text to be parsed anew
   Parsed parsed;
   std::vector<std::string> lines = split(text, "\n");
@@ -59,10 +61,10 @@ Parsed parse_toml(std::string_view text, const Where& source, std::vector<Fault>
       const bool is_new = parsed.mended.insert(number).second;  // else what is wrong with the line begins above
       parsed.whole = is_new && as_toml && parsed.mended.size() < most_lines;
       if (!is_new) break;
-      faults.push_back({where_of(source, error.source()),
-                        fmt::format("this is not TOML: {}: {}. Write key = value: text in quotes, lists in [ ], "
-                                    "numbers with a decimal point and no unit, which stands in the key.",
-                                    shortened(trimmed(line), 60), error.description())});
+      parsed.faults.push_back({where_of(source, error.source()),
+                               fmt::format("this is not TOML: {}: {}. Write key = value: text in quotes, lists in [ ], "
+                                           "numbers with a decimal point and no unit, which stands in the key.",
+                                           shortened(trimmed(line), 60), error.description())});
       line = as_toml.value_or("");
     }
   }
@@ -105,13 +107,18 @@ std::vector<Variant> variants_of(const toml::table& root, const std::string& fil
   return variants;
 }
 
+std::vector<std::string> names_of(const std::vector<Variant>& variants) {
+  std::vector<std::string> names;
+  for (const Variant& variant : variants) names.push_back(variant.name);
+  return names;
+}
+
 // The chosen variant replaces keys of the scene; what is wrong with the others is a fault too.
 void take_variants(Reading& reading, const std::vector<Variant>& variants, const std::string& chosen,
                    const std::string& file_name) {
   const Reading scene = reading;
-  std::vector<std::string> names;
+  const std::vector<std::string> names = names_of(variants);
   for (const auto& [name, where, table] : variants) {
-    names.push_back(name);
     Reading other = scene;
     take_table(name == chosen ? reading : other, *table, "", where);
     reading.faults.insert(reading.faults.end(), other.faults.begin(), other.faults.end());
@@ -121,9 +128,15 @@ void take_variants(Reading& reading, const std::vector<Variant>& variants, const
                 names.empty() ? "no variants" : fmt::format("{}", fmt::join(names, ", ")), did_you_mean(chosen, names));
 }
 
-// Takes up one "key.path=value"; the table that will hold the value must live as long as the reading.
-void take_setting(Reading& reading, const std::string& setting, toml::table& table) {
-  const Where where{"--set " + setting, 2};
+// A text "key.path=value" from the command line, or from a sweep in the scene.
+struct Setting {
+  std::string text;
+  Where where;
+};
+
+// Takes up a setting; the table that will hold its value must live as long as the reading.
+void take_setting(Reading& reading, const Setting& given, toml::table& table) {
+  const auto& [setting, where] = given;
   const std::size_t equals = setting.find('=');
   const std::string path(trimmed(std::string_view(setting).substr(0, equals)));
   if (equals == std::string::npos || path.empty()) return reading.fault(where, "this is not key.path=value.");
@@ -156,20 +169,20 @@ void start_at_symmetry_line(Scene& scene) {
   if (path_m.back()[1] == 0.0 && path_m.front()[1] != 0.0) std::ranges::reverse(path_m);
 }
 
-}  // namespace
-
-ReadResult read_scene_text(std::string_view text, const std::string& file_name, const std::string& variant,
-                           const std::vector<std::string>& set) {
+// A scene of a parsed text with a variant and settings; `runs`, where asked for, are those of its sweep.
+ReadResult read_parsed(const Parsed& parsed, const std::string& file_name, const std::string& variant,
+                       const std::vector<Setting>& set, std::vector<SweepRun>* runs) {
   const Where source{file_name};
-  std::vector<Fault> of_syntax;
-  const Parsed parsed = parse_toml(text, source, of_syntax);
-  if (!parsed.whole) return {std::nullopt, as_lines(of_syntax)};
+  if (!parsed.whole) return {std::nullopt, as_lines(parsed.faults)};
   Reading reading;
   reading.entries[""].where = {file_name, 0, 1, 1};
   take_table(reading, parsed.table, "", source);
-  take_variants(reading, variants_of(parsed.table, file_name, reading.faults), variant, file_name);
+  const std::vector<Variant> variants = variants_of(parsed.table, file_name, reading.faults);
+  const toml::node* sweep = parsed.table.get("sweep");
+  if (runs != nullptr && sweep != nullptr) *runs = take_sweep(reading, *sweep, source, names_of(variants));
+  take_variants(reading, variants, variant, file_name);
   std::deque<toml::table> settings;
-  for (const std::string& setting : set) take_setting(reading, setting, settings.emplace_back());
+  for (const Setting& setting : set) take_setting(reading, setting, settings.emplace_back());
   build_scene(reading);
   Scene& scene = reading.scene;
   if (scene.name.empty()) scene.name = std::filesystem::path(file_name).stem().string();
@@ -177,11 +190,46 @@ ReadResult read_scene_text(std::string_view text, const std::string& file_name, 
   check_scene(reading);
   // Of a line that is no TOML enough has been said.
   std::erase_if(reading.faults, [&](const Fault& fault) { return parsed.mended.contains(fault.where.line); });
-  reading.faults.insert(reading.faults.end(), of_syntax.begin(), of_syntax.end());
+  reading.faults.insert(reading.faults.end(), parsed.faults.begin(), parsed.faults.end());
   if (!reading.faults.empty()) return {std::nullopt, as_lines(reading.faults)};
   start_at_symmetry_line(scene);
   scene.resolved_toml = resolved_toml(scene, claims_text(parsed.table));
   return {std::move(scene), {}};
+}
+
+}  // namespace
+
+ReadResult read_scene_text(std::string_view text, const std::string& file_name, const std::string& variant,
+                           const std::vector<std::string>& set) {
+  std::vector<Setting> settings;
+  for (const std::string& setting : set) settings.push_back({setting, {"--set " + setting, 2}});
+  std::vector<SweepRun> runs;
+  return read_parsed(parse_toml(text, {file_name}), file_name, variant, settings, &runs);
+}
+
+SweepList list_sweep_text(std::string_view text, const std::string& file_name) {
+  const Parsed parsed = parse_toml(text, {file_name});
+  std::vector<SweepRun> runs;
+  SweepList list{{}, read_parsed(parsed, file_name, "", {}, &runs).errors};
+  if (!list.errors.empty()) return list;
+  constexpr std::size_t most_lines = 20;
+  std::set<std::string> said;
+  for (const SweepRun& run : runs) {
+    std::vector<Setting> settings;
+    toml::array set;
+    for (const auto& [key, value, where] : run.values) {
+      settings.push_back({key + '=' + value, where});
+      set.push_back(settings.back().text);
+    }
+    for (const std::string& line : read_parsed(parsed, file_name, run.variant, settings, nullptr).errors) {
+      if (said.insert(line).second && said.size() <= most_lines)
+        list.errors.push_back(fmt::format("{} [run {}]", line, run.name));
+    }
+    toml::table line{{"name", run.name}, {"set", set}, {"variant", run.variant}};
+    line.is_inline(true);
+    list.runs.push_back(as_one_line(line));
+  }
+  return list;
 }
 
 std::string text_of_file(const std::filesystem::path& file, std::vector<std::string>& errors) {
@@ -208,18 +256,21 @@ ReadResult read_scene(const std::filesystem::path& file, const std::string& vari
 }
 
 VariantList list_variants_text(std::string_view text, const std::string& file_name) {
-  std::vector<Fault> faults;
-  const Parsed parsed = parse_toml(text, {file_name}, faults);
-  if (!faults.empty()) return {{}, as_lines(faults)};
-  VariantList list;
-  for (const Variant& variant : variants_of(parsed.table, file_name, faults)) list.names.push_back(variant.name);
-  return list;
+  Parsed parsed = parse_toml(text, {file_name});
+  if (!parsed.faults.empty()) return {{}, as_lines(parsed.faults)};
+  return {names_of(variants_of(parsed.table, file_name, parsed.faults)), {}};
 }
 
 VariantList list_variants(const std::filesystem::path& file) {
   VariantList list;
   const std::string text = text_of_file(file, list.errors);
   return list.errors.empty() ? list_variants_text(text, file.string()) : list;
+}
+
+SweepList list_sweep(const std::filesystem::path& file) {
+  SweepList list;
+  const std::string text = text_of_file(file, list.errors);
+  return list.errors.empty() ? list_sweep_text(text, file.string()) : list;
 }
 
 ReadResult read_scene_that_fits(const std::filesystem::path& file, const std::string& variant,
@@ -243,6 +294,9 @@ std::vector<std::string> check(const std::vector<std::string>& files) {
         if (!known) lines.push_back(line + " [variant " + variant + "]");
       }
     }
+    if (!of_scene.empty()) continue;
+    const std::vector<std::string> of_runs = list_sweep(file).errors;
+    lines.insert(lines.end(), of_runs.begin(), of_runs.end());
   }
   return lines;
 }

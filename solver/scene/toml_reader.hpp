@@ -24,6 +24,13 @@ struct VariantList {
   std::vector<std::string> errors;
 };
 
+// The runs of a scene's sweep, each a table of TOML on a line, {name, set = [settings], variant}, or else what is
+// wrong.
+struct SweepList {
+  std::vector<std::string> runs;
+  std::vector<std::string> errors;
+};
+
 /// A file's text; why there is none goes to `errors`.
 std::string text_of_file(const std::filesystem::path& file, std::vector<std::string>& errors);
 
@@ -42,12 +49,19 @@ VariantList list_variants(const std::filesystem::path& file);
 /// The same from text. file_name: what messages call it.
 VariantList list_variants_text(std::string_view text, const std::string& file_name);
 
+/// The runs of a scene file's table [sweep], none where it has none. Each run's scene is read: what is wrong with one
+/// of them ends in "[run NAME]".
+SweepList list_sweep(const std::filesystem::path& file);
+
+/// The same from text. file_name: what messages call it.
+SweepList list_sweep_text(std::string_view text, const std::string& file_name);
+
 /// As read_scene(), and an error where the machine has not the memory that a run of the scene would take.
 ReadResult read_scene_that_fits(const std::filesystem::path& file, const std::string& variant,
                                 const std::vector<std::string>& set);
 
-/// All that is wrong with scene files, as lines: of each the scene itself and all its variants; what only a variant is
-/// guilty of ends in "[variant NAME]". files: paths.
+/// All that is wrong with scene files, as lines: of each the scene itself, its variants and the runs of its sweep; what
+/// only a variant is guilty of ends in "[variant NAME]". files: paths.
 std::vector<std::string> check(const std::vector<std::string>& files);
 
 }  // namespace strata
