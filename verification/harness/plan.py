@@ -76,5 +76,5 @@ def made_words(made: Made) -> str:
 
 
 def make_all(jobs: Sequence[Job], at_a_time: int, words: Callable[[Made], str] = made_words) -> list[Made]:
-    """Make all jobs, so many at a time, each on one thread, with a line for each."""
-    return side_by_side([Task(name_of(job), partial(make, job), words, expected_s(job)) for job in jobs], at_a_time)
+    """Make all jobs on so many threads, with a line for each."""
+    return side_by_side([Task(name_of(job), partial(make, job), words, expected_s(job), job.threads) for job in jobs], at_a_time)

@@ -1,7 +1,9 @@
 """Runs one variant of a scene into a folder, unless that folder already holds the same run by the same solver."""
 
+import fcntl
 import hashlib
 import json
+import os
 import resource
 import shutil
 import signal
@@ -12,6 +14,7 @@ import tomllib
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +27,7 @@ OUTCOME = "outcome.json"
 BAD_INPUT, INTERRUPTED = 2, 130
 MEANING = {0: "completed", 1: "a bug in the solver", BAD_INPUT: "bad input", 3: "numerics failed", INTERRUPTED: "interrupted"}
 FINAL = (0, 3)
+CUT_SHORT = (INTERRUPTED, -signal.SIGKILL, -signal.SIGTERM)  # such a run goes on from its checkpoint
 TOO_LONG = 124  # a run that was killed since it took longer than was asked for
 
 # How often a run that may be interrupted is looked at, and how long it then has to write its checkpoint, s.
@@ -66,15 +70,22 @@ class Outcome:
         return {BAD_INPUT: "refused", TOO_LONG: "too long"}.get(self.exit_status, self.status)
 
 
+@lru_cache(maxsize=None)
+def _digest(binary: Path, _: tuple[int, int]) -> bytes:
+    """The hash of a file; the second argument is its time of change and size."""
+    return hashlib.sha256(binary.read_bytes()).digest()
+
+
 def key_of(job: Job, binary: Path) -> str:
-    """A hash of what decides on a run: solver, settings, and the scene but for its title, claims and other variants. Threads do not."""
+    """A hash of what decides on a run: solver, settings, and the scene but for its title, claims, sweep and other variants. Threads do not."""
     scene = tomllib.loads(job.scene.read_text(encoding="utf-8"))
-    content = {key: value for key, value in scene.items() if key not in ("claim", "title", "variants")}
+    content = {key: value for key, value in scene.items() if key not in ("claim", "sweep", "title", "variants")}
     if job.variant:
         content["variant"] = scene.get("variants", {}).get(job.variant, f"no variant {job.variant}")
     digest = hashlib.sha256(json.dumps(content, sort_keys=True, default=str).encode())
     digest.update(json.dumps([job.variant, list(job.settings)]).encode())
-    digest.update(hashlib.sha256(binary.read_bytes()).digest())
+    now = binary.stat()
+    digest.update(_digest(binary, (now.st_mtime_ns, now.st_size)))
     return digest.hexdigest()
 
 
@@ -109,6 +120,16 @@ def clear(folder: Path) -> None:
     if folder.is_dir():
         shutil.rmtree(folder)
     folder.mkdir(parents=True)
+
+
+def wait_for_solver(folder: Path) -> None:
+    """Wait until no solver writes to a folder: one outlives a driver that was killed, and holds the folder's lock."""
+    with suppress(FileNotFoundError):
+        held = os.open(folder, os.O_RDONLY)
+        try:
+            fcntl.flock(held, fcntl.LOCK_EX)
+        finally:
+            os.close(held)
 
 
 def reason_of(folder: Path, exit_status: int, log: str) -> str:
@@ -157,18 +178,21 @@ def timed(action: Callable[[], Any]) -> tuple[Any, Timed]:
 
 def run(job: Job, binary: Path | None = None, force: bool = False, limit_s: float | None = None, stop: threading.Event | None = None) -> Outcome:
     """Run a job unless its folder has it already; the outcome says how it ended and never raises for a failed run. A run that takes longer than
-    limit_s is killed: it failed, with exit status TOO_LONG. One that `stop` interrupts goes on where it was the next time."""
+    limit_s is killed: it failed, with exit status TOO_LONG. One that `stop` interrupts, or that is killed, by itself or with what runs it, goes on
+    where it was the next time."""
     binary = binary or solver()
     done, before = (None, None) if force else (done_before(job, binary), load_outcome(job.out))
     if done is not None:
         return replace(done, skipped=True)
+    wait_for_solver(job.out)
     start, key = time.monotonic(), key_of(job, binary)
-    if before is not None and before.key == key and before.exit_status == INTERRUPTED and (job.out / "scene.toml").is_file():
+    if before is not None and before.key == key and before.exit_status in CUT_SHORT and (job.out / "scene.toml").is_file():
         words = [str(binary), "resume", str(job.out), "--threads", str(job.threads), "--quiet"]
         start -= before.wall_s
     else:
         clear(job.out)
         words = command_of(job, binary)
+        store.write(Outcome(job.scene.stem, job.variant, "failed", INTERRUPTED, "killed with what ran it", 0.0, key, job.settings), job.out / OUTCOME)
     exit_status, said = ended(words, limit_s, stop)
     wall_s = round(time.monotonic() - start, 6)
     (job.out / "log.txt").write_text(said, encoding="utf-8")
