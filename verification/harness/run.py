@@ -132,11 +132,17 @@ def wait_for_solver(folder: Path) -> None:
             os.close(held)
 
 
+def summary_in(folder: Path) -> dict[str, Any]:
+    """What a run's summary says; nothing where there is none that can be read."""
+    with suppress(OSError, ValueError):
+        return dict(json.loads((folder / "summary.json").read_text(encoding="utf-8")))
+    return {}
+
+
 def reason_of(folder: Path, exit_status: int, log: str) -> str:
     """Why a run failed: its summary's reason, or the end of what it said."""
-    with suppress(OSError, ValueError):
-        if reason := json.loads((folder / "summary.json").read_text(encoding="utf-8")).get("reason"):
-            return str(reason)
+    if reason := summary_in(folder).get("reason"):
+        return str(reason)
     meaning = MEANING.get(exit_status, f"killed by signal {-exit_status}" if exit_status < 0 else "unknown exit status")
     return " / ".join(log.strip().splitlines()[-3:]) or meaning
 
@@ -196,7 +202,10 @@ def run(job: Job, binary: Path | None = None, force: bool = False, limit_s: floa
     exit_status, said = ended(words, limit_s, stop)
     wall_s = round(time.monotonic() - start, 6)
     (job.out / "log.txt").write_text(said, encoding="utf-8")
-    complete = exit_status == 0 and (job.out / "summary.json").is_file()
+    ending = summary_in(job.out).get("status")
+    if exit_status == 0 and ending == "failed":  # it had ended so before, and was resumed since what ran it was killed just then
+        exit_status = 3
+    complete = exit_status == 0 and ending is not None
     status, reason = ("completed", "") if complete else ("failed", reason_of(job.out, exit_status, said))
     outcome = Outcome(job.scene.stem, job.variant, status, exit_status, reason, wall_s, key, job.settings)
     store.write(outcome, job.out / OUTCOME)

@@ -106,9 +106,11 @@ def missing(jobs: Sequence[Job], observe: str) -> list[Job]:
 
 def row_of(job: Job) -> Row:
     """A run's row: its name and keys, how it ended, what was observed."""
-    outcome = load_outcome(job.out)
-    ended = ("missing", "not made") if outcome is None else (outcome.word, outcome.reason)
-    return {"run": job.out.name, **axes_of(job), "status": ended[0], "reason": ended[1], **(kept_of(job)["row"] if ended[0] == "completed" else {})}
+    outcome, row = load_outcome(job.out), kept_of(job).get("row", {})
+    status, reason = ("missing", "not made") if outcome is None else (outcome.word, outcome.reason)
+    if status == "completed" and not row:
+        status, reason = "failed", "completed, but what it wrote cannot be read"
+    return {"run": job.out.name, **axes_of(job), "status": status, "reason": reason, **(row if status == "completed" else {})}
 
 
 def write_csv(rows: Sequence[Row], path: Path) -> Path:
