@@ -1,6 +1,7 @@
 """What a fracture did at an interface: crossed it, stopped at it, or made it give way."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 
@@ -55,3 +56,9 @@ def verdict_of(run: Run) -> Verdict:
     before = [arrays for time_s, arrays in frames(run, "interfaces") if not passed or time_s < run.history["time_s"][end] - 1e-9]
     slid = slid_length_m(before[-1], number, float(run.path[-1][0])) if before else 0.0
     return Verdict(judged(rise, passed, slid), arrival, rise, passed, slid, tuple(mark.monitor for mark in run.summary.suspect))
+
+
+def seen(run: Run) -> dict[str, Any]:
+    """The verdict as a row of a sweep, numbers to five digits."""
+    row = asdict(verdict_of(run))
+    return {name: float(f"{value:.5g}") if isinstance(value, float) else value for name, value in row.items()} | {"suspect": " ".join(row["suspect"])}
