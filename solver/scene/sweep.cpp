@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numeric>
 #include <random>
 #include <set>
@@ -22,7 +23,7 @@ struct Range {
   double at(double share) const {
     if (share <= 0.0 || share >= 1.0) return share <= 0.0 ? from : to;
     const double value = is_log != 0.0 ? from * std::pow(to / from, share) : from + share * (to - from);
-    return std::stod(fmt::format("{:.6g}", value));
+    return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr);
   }
 };
 
@@ -118,7 +119,10 @@ class SweepReader {
       const bool is_key = path == "variant" || find_key(path) != nullptr, is_table = !names_in_table(path).empty();
       Where where = where_of(source_, name.source());
       where.rank = 2;
-      if (!is_key && !is_table) {
+      const std::string meant = prefix.empty() ? did_you_mean(path, {"together", "sample", "variant"}) : "";
+      if (!is_key && !is_table && !meant.empty()) {
+        reading_.fault(where, "unknown key sweep.{}.{}", path, meant);
+      } else if (!is_key && !is_table) {
         take_value(values_, path, value, where);  // which says what is wrong
       } else if (value.is_table() && !is_key) {
         take_keys(*value.as_table(), path, together);
@@ -199,8 +203,10 @@ class SweepReader {
 
   void take_sample(const toml::node& node) {
     auto& [count, seed, method] = sampled_.emplace();
-    const toml::table none, *table = node.as_table();
-    take_entries(table != nullptr ? *table : none, "sweep.sample",
+    if (!node.is_table())
+      return reading_.fault(at(node), "sweep.sample = {} is not a table. Write {{method, count, seed}}.",
+                            as_typed(node));
+    take_entries(*node.as_table(), "sweep.sample",
                  {{word("method", "latin_hypercube"), method},
                   {number("count", {2.0, most_runs, false, false}), count},
                   {number("seed", {0.0, 0x1p53, false, false}), seed}});
