@@ -103,7 +103,7 @@ TEST_CASE("A variant and --set may replace a key of an element of a list that is
       errors(layered, "", {"strata.interfaces[0]=3"}),
       Catch::EndsWith("strata.interfaces[0] = 3 is not a table. Write {...} with keys of name, from_m, to_m.\n"));
   CHECK_THAT(errors(layered, "", {"strata.layers[0]=soft"}), Catch::Contains("Write {...} with keys of rock, "));
-  CHECK_THAT(errors(layered, "", {"claim[0].id=x"}), Catch::Contains("not claims or variants"));
+  CHECK_THAT(errors(layered, "", {"claim[0].id=x"}), Catch::Contains("not claims, variants or a sweep"));
 }
 
 TEST_CASE("An interface that --set or a variant names, alone or by its key, takes the place of that in the list") {

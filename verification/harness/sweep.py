@@ -35,8 +35,10 @@ from verification.harness.command import command
 from verification.harness.load import Run, read_history
 from verification.harness.paths import ROOT, RUNS, need_solver, solver
 from verification.harness.plan import Made, make
-from verification.harness.run import FINAL, Job, done_before, load_outcome
+from verification.harness.run import CUT_SHORT, FINAL, Job, done_before, load_outcome
 from verification.harness.side_by_side import Task, duration, say, side_by_side
+
+TRIES = 3  # of runs that are killed each time
 
 Row = dict[str, Any]
 OBSERVED = "verification.harness.sweep:observed"
@@ -209,13 +211,15 @@ def main(arguments: list[str] | None = None) -> int:
     say(f"{len(rest)} runs to make, {len(jobs) - len(rest)} done before for the same scene and solver")
     element = [sys.executable, "-s", "-m", "verification.harness.sweep", str(scene), f"--out={out}", f"--threads={options.threads}", f"--chunk={chunk}",
                f"--observe={observe}", *["--lean"] * options.lean, "--element"]  # fmt: skip
-    while rest:
+    idle = 0
+    while rest and idle < TRIES:
         if options.slurm:
             by_slurm(rest, sorted({jobs.index(job) // chunk for job in rest}), element, out, options.threads, shlex.split(options.sbatch))
         else:
             here(rest, options.jobs, observe, options.lean)
-        before, rest = rest, missing(rest, observe)
-        if len(rest) == len(before):
+        before, rest = len(rest), missing(rest, observe)
+        idle = idle + 1 if len(rest) == before else 0
+        if idle and not any(outcome is None or outcome.exit_status in CUT_SHORT for outcome in (load_outcome(job.out) for job in rest)):
             break  # what was killed is tried again, what fails each time is not
     rows = [row_of(job) for job in jobs]
     failed = [row for row in rows if row["status"] != "completed"]

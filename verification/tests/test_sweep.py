@@ -1,0 +1,179 @@
+"""Sweeps: runs by hand-written lists, the strata of a sample, what is refused where, failures as rows, and tables that no kill changes.
+
+Mutations that were tried by hand and failed here or in solver/tests/test_scene_sweep.cpp: the first axis fastest, ratios even on a linear scale, ends left
+out, keys of one axis as two, a stratum drawn twice, points of a stratum's middle only, an outcome kept before its row, a killed run taken for a done
+one, a run done before taken for one that failed since, rows in the order of their ends.
+"""
+
+import csv
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import h5py
+import pytest
+
+from verification.harness import sweep
+from verification.harness.load import load
+from verification.harness.paths import ROOT
+from verification.harness.run import CUT_SHORT, Job, load_outcome
+from verification.tests.cases import strata
+from verification.tests.fake_run import climb, write_run
+
+SCENE = ROOT / "verification" / "tests" / "sweep.toml"
+BASE = SCENE.read_text(encoding="utf-8").partition("[sweep]")[0]
+
+
+def scene_of(folder: Path, axes: str) -> Path:
+    """The small scene with another sweep, its text behind the base."""
+    path = folder / "scene.toml"
+    path.write_text(BASE + axes, encoding="utf-8")
+    return path
+
+
+def runs(folder: Path, axes: str) -> list[tuple[str, dict[str, str]]]:
+    """Names and keys of a sweep's runs."""
+    return [(job.out.name, sweep.axes_of(job)) for job in sweep.jobs_of(scene_of(folder, axes), folder)]
+
+
+def test_products_and_ranges(tmp_path: Path) -> None:
+    """By hand: 2 x 3 runs in the order of the file, the last axis fastest; even ratios 1, sqrt(10), 10 and even steps 0.2, 0.5, 0.8, ends as given."""
+    axes = '[sweep]\nrock.shale.toughness_Pa_sqrt_m = [2e6, 1e6]\n"in_situ.vertical_Pa" = {from = 1e6, to = 10e6, count = 3, scale = "log"}\n'
+    assert runs(tmp_path, axes) == [
+        (f"{k}_{s}", {"rock.shale.toughness_Pa_sqrt_m": f"{k}.0", "in_situ.vertical_Pa": f"{s}.0"})
+        for k in (2000000, 1000000) for s in (1000000, 3162280, 10000000)
+    ]  # fmt: skip
+    found = runs(tmp_path, "[sweep]\ninterface.joint.coefficient = {from = 0.2, to = 0.8, count = 3}\n")
+    assert [keys["interface.joint.coefficient"] for _, keys in found] == ["0.2", "0.5", "0.8"]
+
+
+def test_axes_that_move_together(tmp_path: Path) -> None:
+    """Keys of a [[sweep.together]] are one axis, a variant may be one of them; lists and tables are values, and are numbers in names."""
+    axes = """[variants.stiff]
+rock.shale.youngs_modulus_Pa = 20e9
+[variants.soft]
+rock.shale.youngs_modulus_Pa = 5e9
+[[sweep.together]]
+variant = ["stiff", "soft"]
+fracture.path_m = [[[10, 0], [10, 4]], [[10, 0], [10, 6.5]]]
+stop.inlet_Pa = {from = 3e6, to = 5e6, count = 2}
+[sweep]
+fluid.inlet = [{start_Pa = 2e6, rate_Pa_s = 1e5}]
+"""
+    found = sweep.jobs_of(scene_of(tmp_path, axes), tmp_path)
+    assert [(job.out.name, job.variant) for job in found] == [("stiff_1", "stiff"), ("soft_1", "soft")]
+    assert found[1].settings == ("fracture.path_m=[ [ 10, 0 ], [ 10, 6.5 ] ]", "stop.inlet_Pa=5000000.0", "fluid.inlet={ rate_Pa_s = 100000.0, start_Pa = 2000000.0 }")
+    for job in found:
+        assert strata(tmp_path, "resolve", job.scene, "--variant", job.variant, *(word for one in job.settings for word in ("--set", one))).returncode == 0
+
+
+def test_a_latin_hypercube_has_a_run_in_each_stratum(tmp_path: Path) -> None:
+    """Of 40 runs each fortieth of an axis, by ratios on a log scale, has one, each of two words twenty; another seed draws others, the same the same."""
+    axes = """[sweep]
+sample = {method = "latin_hypercube", count = 40, seed = %d}
+rock.shale.toughness_Pa_sqrt_m = {from = 1e6, to = 3e6}
+in_situ.vertical_Pa = {from = 1e5, to = 1e7, scale = "log"}
+fracture.direction = ["straight", "max_hoop"]
+"""
+    found = [keys for _, keys in runs(tmp_path, axes % 7)]
+    even = [(float(keys["rock.shale.toughness_Pa_sqrt_m"]) - 1e6) / 2e6 for keys in found]
+    ratio = [math.log10(float(keys["in_situ.vertical_Pa"]) / 1e5) / 2.0 for keys in found]
+    for places in (even, ratio):
+        assert sorted(int(40.0 * place) for place in places) == list(range(40))
+    assert [keys["fracture.direction"] for keys in found].count('"straight"') == 20
+    assert [keys for _, keys in runs(tmp_path, axes % 7)] == found != [keys for _, keys in runs(tmp_path, axes % 8)]
+
+
+def test_every_run_is_checked_where_its_value_stands(tmp_path: Path) -> None:
+    """What is wrong with a run alone is told at its value, once, with the first run that meets it; nothing is run then. The base runs as it is."""
+    scene = scene_of(tmp_path, "[sweep]\nnumerics.cell_m = [1, 3]\nrock.shal.poisson_ratio = [0.2, 0.3]\n")
+    line = BASE.count("\n") + 2
+    for command in ("check", "sweep"):
+        said = strata(tmp_path, command, scene).stderr
+        assert f"{scene}:{line}:23: numerics.cell_m = 3 does not divide the block of 20 m x 20 m" in said and said.count("does not divide") == 1
+        assert f"{scene}:{line + 1}:28: there is no [rock.shal] in the scene, and no layer uses it. Did you mean shale? [run 1_0.2]" in said
+    assert sweep.main([str(scene), f"--out={tmp_path / 'out'}"]) == 2 and not (tmp_path / "out").exists()
+    assert strata(tmp_path, "run", scene, "--out", "X", "--quiet", "--set", "stop.tip_y_m=6").returncode == 0
+    assert "[sweep" not in (tmp_path / "X" / "scene.toml").read_text()
+    assert "no [sweep]" in strata(tmp_path, "sweep", scene_of(tmp_path, "")).stderr
+
+
+def test_what_a_row_says(tmp_path: Path) -> None:
+    """On a made-up climb: first events' pressures, two arrests (on the way and at the end) and one restart, the highest tip, marks."""
+    write_run(tmp_path / "a" / "run", end_Pa=3e6, steps=climb(to_m=14.0, plateaus={10.0: 0.2e6}), mechanics="quasistatic")
+    row = sweep.observed(load(tmp_path / "a" / "run"))
+    events = {event.kind: event for event in reversed(load(tmp_path / "a" / "run").summary.events)}
+    assert (row["start_Pa"], row["arrest_Pa"], row["restart_Pa"], row["stop_Pa"]) == tuple(events[kind].inlet_Pa for kind in ("start", "arrest", "restart", "stop"))
+    assert (row["arrests"], row["restarts"], row["arrest_y_m"]) == (2, 1, 10.0) and row["restart_Pa"] > row["arrest_Pa"] and math.isnan(row["reach_interface_Pa"])
+    assert row["highest_tip_y_m"] == max(tip.y_m for tip in load(tmp_path / "a" / "run").summary.tips)
+
+
+AXES = "[sweep]\nin_situ.vertical_Pa = [2e6, 4e6]\ninterface.joint.coefficient = [0.0, 0.6]\n"
+
+
+def command(scene: Path, out: Path) -> list[str]:
+    """A sweep as a process of its own."""
+    return [sys.executable, "-s", "-m", "verification.harness.sweep", str(scene), f"--out={out}", "--jobs=2", "--lean"]
+
+
+def tables(out: Path) -> list[bytes]:
+    """What a sweep leaves."""
+    return [(out / name).read_bytes() for name in ("sweep.csv", "sweep.h5")]
+
+
+@pytest.mark.smoke
+def test_failures_are_rows_and_no_kill_changes_a_table(tmp_path: Path) -> None:
+    """Without friction the upper block is a mechanism: two rows with that reason. A sweep whose driver and runs are killed again and again comes to the
+    same tables; what is done is not done again, also where an axis grows; a table of twice the numbers is another."""
+    scene, out, other = scene_of(tmp_path, AXES), tmp_path / "out", tmp_path / "other"
+    done = subprocess.run(command(scene, out), capture_output=True, text=True, check=False, cwd=ROOT)
+    assert done.returncode == 3 and done.stdout.count("failed: ") == 2, done.stdout + done.stderr
+    rows = list(csv.DictReader((out / "sweep.csv").read_text().splitlines()))
+    assert [row["run"] for row in rows] == ["2000000_0", "2000000_0.6", "4000000_0", "4000000_0.6"]
+    assert [row["status"] for row in rows] == ["failed", "completed"] * 2
+    assert rows[0]["reason"].startswith("the block has become a mechanism") and rows[0]["start_Pa"] == "" and float(rows[1]["start_Pa"]) > 2e6
+    with h5py.File(out / "sweep.h5") as file:
+        assert list(file["table/start_Pa"][()])[1] == float(rows[1]["start_Pa"]) and set(file["histories"]) == {"2000000_0.6", "4000000_0.6"}
+        history, run = file["histories/2000000_0.6"], load(out / "runs" / "2000000_0.6")
+        assert list(history.attrs["columns"]) == list(run.history) and history[-1, list(run.history).index("tip_y_m")] == run.history["tip_y_m"][-1]
+    assert not (out / "runs" / "2000000_0.6" / "result.h5").exists()
+    first = tables(out)
+    for pause in (0.6, 0.9, 1.2):
+        driver = subprocess.Popen(command(scene, other), stdout=subprocess.DEVNULL, cwd=ROOT)
+        time.sleep(pause)
+        driver.kill()
+        driver.wait()
+    subprocess.run(command(scene, other), capture_output=True, check=False, cwd=ROOT)
+    assert tables(other) == first
+    times = {path: path.stat().st_mtime_ns for path in (out / "runs").glob("*/summary.json")}
+    more = scene_of(tmp_path, AXES.replace("[2e6, 4e6]", "[2e6, 4e6, 5e6]"))
+    again = subprocess.run(command(more, out), capture_output=True, text=True, check=False, cwd=ROOT)
+    assert "2 runs to make, 4 done before" in again.stdout and all(path.stat().st_mtime_ns == then for path, then in times.items())
+    assert tables(out) != first
+
+
+def test_a_killed_run_is_made_again(tmp_path: Path) -> None:
+    """kill -9 of the solver alone: the same command makes the run again; what is kept of it says that it was cut short, should that be killed too."""
+    scene = scene_of(tmp_path, "[sweep]\nnumerics.cell_m = [0.25]\n")
+    driver = subprocess.Popen(command(scene, tmp_path / "out"), stdout=subprocess.PIPE, text=True, cwd=ROOT)
+    run = tmp_path / "out" / "runs" / "0.25"
+    begun = time.monotonic()
+    while not (run / "scene.toml").exists():
+        assert time.monotonic() - begun < 60.0 and driver.poll() is None
+        time.sleep(0.01)
+    kept = load_outcome(run)
+    assert kept is not None and not kept.ok and kept.exit_status in CUT_SHORT
+    pids = subprocess.run(["pgrep", "-P", str(driver.pid)], capture_output=True, text=True, check=False).stdout.split()
+    os.kill(int(pids[0]), signal.SIGKILL)
+    said, _ = driver.communicate()
+    assert driver.returncode == 0 and "killed by signal 9" in said and "1 runs, 0 failed" in said
+
+
+def test_an_unread_run_is_no_completed_one(tmp_path: Path) -> None:
+    """A run that was never made, and one whose row is lost with its fields, say so."""
+    job = Job(SCENE, "", tmp_path / "gone", ("numerics.cell_m=1",))
+    assert sweep.row_of(job) == {"run": "gone", "numerics.cell_m": "1", "status": "missing", "reason": "not made"}
