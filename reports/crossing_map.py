@@ -15,7 +15,7 @@ from reports.charts.style import TWO_COLUMNS, save
 from reports.figures import Figure, Table, Topic, words_of
 from reports.shown import Shown
 from verification.crossing_map.criteria import blanton, first_slip, griffith_means, gu_weng, mean_slip, renshaw_pollard
-from verification.crossing_map.maps import INCLINED_MPa, MAPS, RECORDS, Verdicts, read_table
+from verification.crossing_map.maps import INCLINED_MPa, MAPS, RECORDS, Verdicts, bears, read_table
 from verification.crossing_map.verdict import CROSSES, WAY_M
 
 # The strength of rock that goes with K_Ic = 1.45 and an increment of 1 m: a crack of 1 m from a free face, K = 1.1215 T0 sqrt(pi d), releases as much.
@@ -45,12 +45,16 @@ def boundaries(friction: float, strength: float, closing: float) -> dict[str, fl
     }
 
 
-def lines_of(name: str) -> dict[str, tuple[list[float], list[float]]]:
+def lines_of(name: str, verdicts: Verdicts) -> dict[str, tuple[list[float], list[float]]]:
     """Lines over a map: x and y of each criterion."""
-    one = MAPS[name]
-    ys = list(np.linspace(one.y.first, one.y.last, 31))
-    if name == "weak":
-        return {"mean shear over 1 m, like rocks": ([1.0], [NET_MPa * griffith_means(HALF_M, 1.0)[0]])}
+    ends = [[end(at[k] for at in verdicts) for end in (min, max)] for k in (0, 1)]
+    ys = list(np.linspace(*ends[1], 31))
+    if name in ("weak", "strength"):
+        like = [1.0] if name == "weak" else list(np.geomspace(*ends[0], 9))
+        return {"mean shear over 1 m, like rocks": (like, [NET_MPa * griffith_means(HALF_M, 1.0)[0]] * len(like))}
+    if name == "contrast":  # under 1 MPa
+        slides = [mean_slip(mu, NET_MPa, HALF_M, WAY_M) for mu in ys]
+        return {"mean over 2 m slides, like rocks": ([1.0], [float(np.interp(1.0, slides[::-1], ys[::-1]))])}
     if name == "inclined":
         return {"Gu & Weng": ([gu_weng(STRENGTH_MPa, *INCLINED_MPa, math.radians(y)) for y in ys], ys)}
     given = {"friction": lambda y: (y, 1.0, CLOSING_MPa), "closing": lambda y: (0.4, 1.0, y), "increment": lambda y: (0.4, y, CLOSING_MPa)}[name]
@@ -59,10 +63,11 @@ def lines_of(name: str) -> dict[str, tuple[list[float], list[float]]]:
 
 
 def panel_of(name: str, folder: Path) -> Shown:
-    """A map as it is drawn."""
-    one = MAPS[name]
-    return Shown(heading=name, x=one.x, y=one.y, lines=lines_of(name),
-                 runs=[(*at, found.verdict, found.rise_Pa / 1e6) for at, found in read_table(one, folder).items()])
+    """A map as it is drawn: of the inclined one what is at rest before the fracture does anything."""
+    one, verdicts = MAPS[name], read_table(MAPS[name], folder)
+    shown = {at: found for at, found in verdicts.items() if name != "inclined" or bears(*at)}
+    return Shown(heading=name, x=one.x, y=one.y, lines=lines_of(name, shown),
+                 runs=[(*at, found.verdict, found.rise_Pa / 1e6) for at, found in shown.items()])
 
 
 def parting(folder: Path) -> str:

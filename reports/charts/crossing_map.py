@@ -12,6 +12,7 @@ _VERDICTS = {"crosses": ("#0067a5", "s"), "stops": ("#d9a400", "^"), "gives way"
 _LINES = {
     "Renshaw & Pollard": (INK, "-"), "Gu & Weng": (INK, DASHED), "Blanton": (INK, DOTTED), "slip 1 m ahead of the tip": (PALE, DASHED),
     "mean over 2 m slides": ("#00845f", "-"), "mean shear over 1 m, like rocks": ("#00845f", "none"),
+    "mean over 2 m slides, like rocks": ("#9b59b6", "none"),
 }  # fmt: skip
 
 
@@ -25,7 +26,7 @@ def draw_crossing_map(data: Shown, width_mm: float) -> Figure:
                 axes.scatter(*zip(*chosen), color=colour, marker=marker, linewidths=0.5)
         for name, (xs, ys) in panel.lines.items():
             colour, dashes = _LINES[name]
-            axes.plot(xs, ys, color=colour, linestyle=dashes, linewidth=1.4, marker="*" if len(xs) == 1 else None, markersize=9, zorder=4)
+            axes.plot(xs, ys, color=colour, linestyle=dashes, linewidth=1.4, marker="*" if dashes == "none" else None, markersize=9, zorder=4)
         axes.set_xscale("log" if panel.x.log else "linear")
         axes.set_yscale("log" if panel.y.log else "linear")
         for axis, own in ((axes.xaxis, panel.x), (axes.yaxis, panel.y)):
@@ -34,7 +35,8 @@ def draw_crossing_map(data: Shown, width_mm: float) -> Figure:
                 axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
                 axis.set_minor_locator(NullLocator())
         margins = (0.85, 1.18) if panel.x.log else (0.9, 1.05)
-        axes.set(title=panel.heading, xlabel=panel.x.label, ylabel=panel.y.label, xlim=(panel.x.first * margins[0], panel.x.last * margins[1]))
+        ends = [end(x for x, *_ in panel.runs) for end in (min, max)]
+        axes.set(title=panel.heading, xlabel=panel.x.label, ylabel=panel.y.label, xlim=(ends[0] * margins[0], ends[1] * margins[1]))
     handles = [entry(word, color=colour, marker=marker, linestyle="none") for word, (colour, marker) in _VERDICTS.items()
                if any(run[2] == word for panel in data.panels for run in panel.runs)]
     handles += [entry(name, color=_LINES[name][0], linestyle=_LINES[name][1], marker="*" if _LINES[name][1] == "none" else None)

@@ -1,6 +1,7 @@
 """Maps: what their axes are called, their scenes, and their tables as they are kept."""
 
 import csv
+import math
 import re
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -39,8 +40,19 @@ class Map:
         sweep = (HERE / "maps" / f"{self.name}.toml").read_text(encoding="utf-8")
         path = folder / f"{self.name}.toml"
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text((HERE / "crossing.toml").read_text(encoding="utf-8") + (re.sub(r"count = \d+", f"count = {size}", sweep) if size else sweep), encoding="utf-8")
+        sweep = re.sub(r"count = \d+", f"count = {size}", sweep) if size else sweep
+        path.write_text((HERE / "crossing.toml").read_text(encoding="utf-8") + sweep, encoding="utf-8")
         return path
+
+
+INCLINED_MPa = (1.2, 0.5)  # along and across the inclined fracture
+
+
+def bears(friction: float, angle_deg: float) -> bool:
+    """Whether friction holds the interface of the inclined map under the in-situ stress, by a twentieth."""
+    (along, across), turn = INCLINED_MPa, math.radians(angle_deg)
+    c, s = math.cos(turn), math.sin(turn)
+    return (along - across) * s * c < 0.95 * friction * (along * s * s + across * c * c)
 
 
 VERTICAL = Axis("in_situ.vertical_Pa", "stress normal to the interface (MPa)", 1e6, log=True)

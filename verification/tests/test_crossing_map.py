@@ -5,7 +5,6 @@ or on the shorter side, slip of one sign alone; in the criteria flipped signs, t
 """
 
 import math
-import threading
 from pathlib import Path
 
 import h5py
@@ -14,10 +13,14 @@ import pytest
 
 from verification.crossing_map import criteria
 from verification.crossing_map.__main__ import main
-from verification.crossing_map.maps import MAPS, bears, found, jobs_of, read_table, write_table
+from verification.crossing_map.maps import MAPS, bears, read_table
 from verification.crossing_map.verdict import CROSSES, GIVES_WAY, STOPS, Verdict, verdict_of
+from verification.harness import sweep
 from verification.harness.load import load
 from verification.tests.fake_run import climb, write_run
+
+
+FAILED_RUNS: dict[str, list[tuple[float, float]]] = {}
 
 
 def made(folder: Path, rise_Pa: float, slid_m: float, at_Pa: float = 2.42e6, to_m: float = 14.0, slip_m: float = 1e-4, end_Pa: float = 3e6) -> Verdict:
@@ -79,22 +82,28 @@ def test_gu_weng() -> None:
 
 
 @pytest.mark.smoke
-def test_two_corners(tmp_path: Path) -> None:
-    """Little friction under little stress gives way and holds the fracture, much of both lets it pass at once; asked again, the kept verdict is the same."""
-    for size, verdict in (((0.1, 0.05), GIVES_WAY), ((10.0, 1.0), CROSSES)):
-        job = jobs_of(MAPS["friction"], (2, 2), tmp_path)[size]
-        first = found(job, threading.Event())
-        assert first.verdict == verdict and first.passed and not first.suspect
-        assert first.rise_Pa > 0.5e6 if verdict == GIVES_WAY else first.rise_Pa == 0.0
-        assert found(job, threading.Event()) == first and not (job.out / "result.h5").exists()
+def test_corners(tmp_path: Path) -> None:
+    """Little friction under little stress gives way and holds the fracture, much of both lets it pass at once; asked again, nothing is made and the table is the same."""
+    wanted = ["--family=friction", "--size=2", f"--runs={tmp_path}", f"--out={tmp_path / 'records'}"]
+    assert main(wanted) == 0
+    found = read_table(MAPS["friction"], tmp_path / "records")
+    assert list(found) == [(0.1, 0.05), (10.0, 0.05), (0.1, 1.0), (10.0, 1.0)]
+    weak, strong = found[0.1, 0.05], found[10.0, 1.0]
+    assert weak.verdict == GIVES_WAY and weak.passed and weak.rise_Pa > 0.5e6 and not weak.suspect
+    assert strong == Verdict(CROSSES, strong.arrival_Pa, 0.0, True, 0.0) and 2.2e6 < strong.arrival_Pa < 2.3e6
+    table = (tmp_path / "records" / "friction.csv").read_bytes()
+    assert main(wanted) == 0 and (tmp_path / "records" / "friction.csv").read_bytes() == table
+    assert not list(tmp_path.glob("crossing_map/*/runs/*/result.h5"))
 
 
 def test_tables(tmp_path: Path) -> None:
-    """A table comes back as it was written, a failed run with its nothing; the inclined map leaves out what slides before anything is done."""
-    held, failed = Verdict(STOPS, 2.25e6, 1e5, False, 1.5, ("one", "two")), Verdict("failed", math.nan, math.nan, False, math.nan)
-    write_table(MAPS["friction"], {(1.0, 0.5): held, (2.0, 0.5): failed}, tmp_path)
+    """A table's verdicts by hand, a failed run with its reason; the inclined map knows what slides before anything is done; one value is no axis."""
+    head = "run,interface.friction.coefficient,in_situ.vertical_Pa,status,reason,verdict,arrival_Pa,rise_Pa,passed,slid_m,suspect\n"
+    rows = "a,0.5,1000000.0,completed,,stops,2250000.0,100000.0,False,1.5,one two\nb,0.5,2000000.0,failed,why,,,,,,\n"
+    (tmp_path / "friction.csv").write_text(head + rows)
     back = read_table(MAPS["friction"], tmp_path)
-    assert back[1.0, 0.5] == held and back[2.0, 0.5].verdict == "failed" and math.isnan(back[2.0, 0.5].rise_Pa)
+    assert back[1.0, 0.5] == Verdict(STOPS, 2.25e6, 1e5, False, 1.5, ("one", "two"))
+    assert (back[2.0, 0.5].verdict, back[2.0, 0.5].suspect) == ("failed", ("why",)) and math.isnan(back[2.0, 0.5].rise_Pa)
     assert bears(0.5, 60.0) and not bears(0.3, 60.0) and bears(0.01, 90.0)
     with pytest.raises(SystemExit):
         main(["--size", "1"])
@@ -102,12 +111,13 @@ def test_tables(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", list(MAPS))
 def test_kept_tables_are_whole(name: str, tmp_path: Path) -> None:
-    """Every run of a map has its line, and none failed, but for those under 60 degrees that README.md names."""
+    """Every run of a map has its line, and none failed, but for those that README.md names."""
     one = MAPS[name]
     kept = read_table(one)
-    assert list(kept) == list(jobs_of(one, one.size, tmp_path))
+    rows = [sweep.axes_of(job) for job in sweep.jobs_of(one.scene(tmp_path), tmp_path)]
+    assert list(kept) == [(one.x.value(row), one.y.value(row)) for row in rows]
     failed = [at for at, found in kept.items() if found.verdict not in (CROSSES, STOPS, GIVES_WAY)]
-    assert failed == ([(0.8, 60.0), (0.9, 60.0), (1.0, 60.0)] if name == "inclined" else [])
+    assert failed == FAILED_RUNS.get(name, [])
 
 
 def test_the_border_is_where_slip_comes_two_metres_far() -> None:
