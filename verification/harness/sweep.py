@@ -172,7 +172,7 @@ def by_slurm(rest: Sequence[Job], elements: Sequence[int], element: Sequence[str
     start, said = time.monotonic(), -1
     if not asked(*queue):
         numbers, run = ",".join(map(str, elements)), f'exec {shlex.join(element)} "$SLURM_ARRAY_TASK_ID"'
-        asked("sbatch", f"--array={numbers}", f"--job-name={name}", f"--cpus-per-task={threads}", f"--chdir={ROOT}", f"--output={out}/slurm/%a.txt",
+        asked("sbatch", "--no-requeue", f"--array={numbers}", f"--job-name={name}", f"--cpus-per-task={threads}", f"--chdir={ROOT}", f"--output={out}/slurm/%a.txt",
               *options, "--wrap", run)  # fmt: skip
         say(f"slurm: {len(elements)} elements of a job array, {name}; `scancel --name={name}` ends them, this command may be ended and given again")
     while asked(*queue):
