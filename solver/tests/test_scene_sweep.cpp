@@ -30,14 +30,18 @@ TEST_CASE("A latin hypercube pairs the strata of its axes at random, and fills e
   CHECK(points == latin_hypercube(count, 2, 3));
   CHECK(points != others);
   // Independent axes: the mean of (x - 1/2)(y - 1/2) is 0 with a deviation of 1/(12 sqrt(n)), that of the place within
-  // a stratum 1/2 with one of 1/sqrt(12 n). Four deviations are asked for.
-  double product = 0.0, within = 0.0;
+  // a stratum 1/2 with one of 1/sqrt(12 n), that of its square from there 1/12 with one of 1/sqrt(180 n). Four
+  // deviations are asked for.
+  double product = 0.0, within = 0.0, square = 0.0;
   for (const auto& point : points) {
     product += (point[0] - 0.5) * (point[1] - 0.5) / count;
-    within += (point[0] * count - std::floor(point[0] * count)) / count;
+    const double place = point[0] * count - std::floor(point[0] * count);
+    within += place / count;
+    square += (place - 0.5) * (place - 0.5) / count;
   }
   CHECK(std::abs(product) < 4.0 / (12.0 * std::sqrt(count)));
   CHECK(std::abs(within - 0.5) < 4.0 / std::sqrt(12.0 * count));
+  CHECK(std::abs(square - 1.0 / 12.0) < 4.0 / std::sqrt(180.0 * count));
 }
 
 TEST_CASE("A scene without a sweep has no runs, and one with a sweep is read as its base", "[sweep]") {
