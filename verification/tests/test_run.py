@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from verification.harness import run as harness
+from verification.harness import store
 from verification.harness.run import Job, Outcome, key_of, load_outcome, run
 from verification.tests.cases import wait_for
 from verification.tests.fake_run import program
@@ -104,6 +105,21 @@ def test_an_interrupted_run_ends_at_once_and_goes_on(tmp_path: Path, solver: Pat
     interrupted(job := Job(scene, "long", tmp_path / "other"), solver)
     solver.write_text(SOLVER.replace("long)", "short)"))
     assert run(job, solver).ok and "resume" not in (solver.parent / "calls").read_text().splitlines()[-1]
+
+
+def test_a_driver_that_is_killed_leaves_what_can_go_on(tmp_path: Path, solver: Path, scene: Path) -> None:
+    """While a run is made its outcome is that it was cut short. One that had failed just before its driver was killed is no completed one: the solver leaves
+    a finished run as it is and ends with 0, but the summary says how it had ended."""
+    job = Job(scene, "one", tmp_path / "out")
+    solver.write_text('#!/bin/sh\n[ "$1" = run ] && cp "$4/outcome.json" "$4/../before.json"; exit 0\n')
+    assert not run(job, solver).ok
+    before = store.read(Outcome, tmp_path / "before.json")
+    assert before is not None and not before.ok and before.exit_status in harness.CUT_SHORT
+    store.write(before, job.out / "outcome.json")
+    (job.out / "scene.toml").touch()
+    (job.out / "summary.json").write_text('{"status": "failed", "reason": "the block"}')
+    outcome = run(job, solver)
+    assert (outcome.status, outcome.exit_status, outcome.reason) == ("failed", 3, "the block")
 
 
 def test_a_run_that_hears_no_interrupt_is_killed(tmp_path: Path, solver: Path, scene: Path, monkeypatch: pytest.MonkeyPatch) -> None:
