@@ -19,6 +19,7 @@ import subprocess
 import sys
 import time
 import tomllib
+import typing
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
@@ -32,7 +33,7 @@ from verification.harness import store
 from verification.harness.campaign import result_line
 from verification.harness.choose import claimed
 from verification.harness.command import command
-from verification.harness.load import Run, read_history
+from verification.harness.load import LoadError, Run, read_history
 from verification.harness.paths import ROOT, RUNS, need_solver, solver
 from verification.harness.plan import Made, make
 from verification.harness.run import CUT_SHORT, FINAL, Job, done_before, load_outcome
@@ -80,14 +81,26 @@ def observed(run: Run) -> Row:
     return row | {"suspect": " ".join(mark.monitor for mark in run.summary.suspect)}
 
 
+def observer(name: str) -> Callable[[Run], Row]:
+    """The function MODULE:FUNCTION; raises ValueError where there is none."""
+    module, _, function = name.partition(":")
+    try:
+        return typing.cast(Callable[[Run], Row], getattr(importlib.import_module(module), function))
+    except (ImportError, AttributeError, ValueError) as error:
+        raise ValueError(f"--observe {name}: {error}. Write MODULE:FUNCTION") from error
+
+
 def made(job: Job, observe: str, lean: bool, stop: Event) -> Made:
     """Make a run and keep what is observed of it beside its summary."""
     with claimed(job.out):
         outcome, run = make(job, stop)
-        kept = {"key": outcome.key, "observe": observe}
+        kept: Row = {"key": outcome.key, "observe": observe}
         if run is not None and outcome.ok and (not outcome.skipped or not kept.items() <= kept_of(job).items()):
-            module, _, function = observe.partition(":")
-            store.write(kept | {"row": getattr(importlib.import_module(module), function)(run)}, job.out / "row.json")
+            try:
+                kept["row"] = observer(observe)(run)
+            except (LoadError, LookupError, ValueError, TypeError, ArithmeticError, OSError) as error:
+                kept["why"] = f"not observed: {type(error).__name__}: {error}"
+            store.write(kept, job.out / "row.json")
             for name in ("result.h5", "result.xdmf") if lean else ():
                 (job.out / name).unlink(missing_ok=True)
     return outcome, run
@@ -108,11 +121,11 @@ def missing(jobs: Sequence[Job], observe: str) -> list[Job]:
 
 def row_of(job: Job) -> Row:
     """A run's row: its name and keys, how it ended, what was observed."""
-    outcome, row = load_outcome(job.out), kept_of(job).get("row", {})
+    outcome, kept = load_outcome(job.out), kept_of(job)
     status, reason = ("missing", "not made") if outcome is None else (outcome.word, outcome.reason)
-    if status == "completed" and not row:
-        status, reason = "failed", "completed, but what it wrote cannot be read"
-    return {"run": job.out.name, **axes_of(job), "status": status, "reason": reason, **(row if status == "completed" else {})}
+    if status == "completed" and "row" not in kept:
+        status, reason = "failed", kept.get("why", "completed, but what it wrote cannot be read")
+    return {"run": job.out.name, **axes_of(job), "status": status, "reason": reason, **(kept["row"] if status == "completed" else {})}
 
 
 def write_csv(rows: Sequence[Row], path: Path) -> Path:
@@ -199,6 +212,7 @@ def main(arguments: list[str] | None = None) -> int:
     out = (options.out or RUNS / "sweep" / scene.stem).resolve()
     try:
         need_solver()
+        observer(observe)
         jobs = jobs_of(scene, out, options.threads)
     except ValueError as error:
         print(error, file=sys.stderr)

@@ -12,6 +12,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import h5py
@@ -173,7 +174,24 @@ def test_a_killed_run_is_made_again(tmp_path: Path) -> None:
     assert driver.returncode == 0 and "killed by signal 9" in said and "1 runs, 0 failed" in said
 
 
-def test_an_unread_run_is_no_completed_one(tmp_path: Path) -> None:
-    """A run that was never made, and one whose row is lost with its fields, say so."""
+def test_what_cannot_be_observed_is_a_row(tmp_path: Path) -> None:
+    """A run that was never made, and one that a function cannot make a row of, say so; a function that is not there is bad input. Another function's
+    row replaces it without a new run."""
     job = Job(SCENE, "", tmp_path / "gone", ("numerics.cell_m=1",))
     assert sweep.row_of(job) == {"run": "gone", "numerics.cell_m": "1", "status": "missing", "reason": "not made"}
+    scene, out = scene_of(tmp_path, "[sweep]\nnumerics.cell_m = [2.5]\nfracture.increment_m = [2.5]\n"), tmp_path / "out"
+    assert sweep.main([str(scene), f"--out={out}", "--observe=json:dumpz"]) == 2
+    assert sweep.main([str(scene), f"--out={out}", "--observe=json:dumps"]) == 3
+    assert "not observed: TypeError" in (out / "sweep.csv").read_text()
+    then = (out / "runs" / "2.5_2.5" / "history.csv").stat().st_mtime_ns
+    assert sweep.main([str(scene), f"--out={out}"]) == 0 and (out / "runs" / "2.5_2.5" / "history.csv").stat().st_mtime_ns == then
+    assert "not observed" not in (out / "sweep.csv").read_text()
+
+
+def test_both_tips_are_in_a_row(tmp_path: Path) -> None:
+    """K and place are those of the highest tip, the lowest is told by its height."""
+    write_run(tmp_path / "a" / "run", end_Pa=3e6, steps=climb(to_m=14.0), mechanics="quasistatic")
+    run = load(tmp_path / "a" / "run")
+    low = replace(run.summary.tips[0], y_m=-3.0, K_I_Pa_sqrt_m=7.0)
+    row = sweep.observed(replace(run, summary=replace(run.summary, tips=(run.summary.tips[0], low))))
+    assert (row["lowest_tip_y_m"], row["highest_tip_y_m"]) == (-3.0, run.summary.tips[0].y_m) and row["highest_tip_K_I_Pa_sqrt_m"] != 7.0
