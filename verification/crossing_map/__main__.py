@@ -16,6 +16,8 @@ from verification.harness.choose import beginnings, choose
 from verification.harness.command import command
 from verification.harness.paths import RUNS
 
+LONGEST_S = 300.0  # a hundred times what a run takes
+
 
 def main(arguments: list[str] | None = None) -> int:
     """Make the maps."""
@@ -35,7 +37,7 @@ def main(arguments: list[str] | None = None) -> int:
     for one in maps.values():
         runs = options.runs.resolve() / "crossing_map"
         out = runs / one.name
-        wanted = [str(one.scene(runs, options.size)), f"--out={out}", f"--jobs={options.jobs}", "--lean"]
+        wanted = [str(one.scene(runs, options.size)), f"--out={out}", f"--jobs={options.jobs}", "--lean", f"--longest={LONGEST_S}"]
         statuses.append(sweep.main([*wanted, "--observe=verification.crossing_map.verdict:seen"]))
         if statuses[-1] != 2:
             options.out.mkdir(parents=True, exist_ok=True)

@@ -1,6 +1,7 @@
 """The runs of a scene's [sweep], made here or as a Slurm job array, and one table of all of them.
 
-usage: ci/sweep SCENE [--jobs N] [--threads N] [--out DIR] [--lean] [--observe MODULE:FUNCTION] [--slurm [--chunk N] [--sbatch OPTIONS]]
+usage: ci/sweep SCENE [--jobs N] [--threads N] [--out DIR] [--lean] [--longest S] [--observe MODULE:FUNCTION]
+                [--slurm [--chunk N] [--sbatch OPTIONS]]
 
 Makes what is not there for the same scene and solver below DIR (runs/sweep/SCENE), a folder a run; runs that were cut short go on. Then writes
 DIR/sweep.csv, a row a run: keys, how it ended and why, what was observed; and DIR/sweep.h5, the same with each run's history. Both are the same to the
@@ -9,12 +10,14 @@ what is taken of a run, verification.harness.sweep:observed for one. --slurm has
 Exit status: 0 all runs completed, 3 some did not (the table says why), 2 for bad input.
 """
 
+import argparse
 import csv
 import hashlib
 import importlib
 import json
 import math
 import shlex
+import shutil
 import subprocess
 import sys
 import time
@@ -90,10 +93,10 @@ def observer(name: str) -> Callable[[Run], Row]:
         raise ValueError(f"--observe {name}: {error}. Write MODULE:FUNCTION") from error
 
 
-def made(job: Job, observe: str, lean: bool, stop: Event) -> Made:
+def made(job: Job, observe: str, lean: bool, longest_s: float | None, stop: Event) -> Made:
     """Make a run and keep what is observed of it beside its summary."""
     with claimed(job.out):
-        outcome, run = make(job, stop)
+        outcome, run = make(job, stop, limit_s=longest_s)
         kept: Row = {"key": outcome.key, "observe": observe}
         if run is not None and outcome.ok and (not outcome.skipped or not kept.items() <= kept_of(job).items()):
             try:
@@ -160,9 +163,15 @@ def write_h5(rows: Sequence[Row], jobs: Sequence[Job], path: Path) -> Path:
     return new.replace(path)
 
 
-def here(jobs: Sequence[Job], at_a_time: int, observe: str, lean: bool) -> None:
+def here(jobs: Sequence[Job], at_a_time: int, how: argparse.Namespace) -> None:
     """Make runs side by side."""
-    side_by_side([Task(job.out.name, partial(made, job, observe, lean), result_line, 1.0, job.threads) for job in jobs], at_a_time)
+    side_by_side([Task(job.out.name, partial(made, job, how.observe, how.lean, how.longest), result_line, 1.0, job.threads) for job in jobs], at_a_time)
+
+
+def cut_short(job: Job) -> bool:
+    """Whether a run was killed, or what was to make it."""
+    outcome = load_outcome(job.out)
+    return outcome is None or outcome.exit_status in CUT_SHORT
 
 
 def asked(*words: str) -> str:
@@ -203,6 +212,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--lean", action="store_true")
     parser.add_argument("--observe", default=OBSERVED)
+    parser.add_argument("--longest", type=float, help="seconds after which a run is given up")
     parser.add_argument("--slurm", action="store_true")
     parser.add_argument("--chunk", type=int, default=1)
     parser.add_argument("--sbatch", default="", help="options of sbatch, in quotes")
@@ -213,28 +223,32 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         need_solver()
         observer(observe)
+        if options.slurm and shutil.which("sbatch") is None:
+            raise ValueError("there is no sbatch: --slurm is for a machine from which jobs are submitted")
         jobs = jobs_of(scene, out, options.threads)
     except ValueError as error:
         print(error, file=sys.stderr)
         return 2
     chunk = max(options.chunk, math.ceil(len(jobs) / MOST_ELEMENTS))
     if options.element is not None:
-        here(jobs[options.element * chunk :][:chunk], options.threads, observe, options.lean)
+        here(jobs[options.element * chunk :][:chunk], options.threads, options)
         return 0
     rest = missing(jobs, observe)
     say(f"{len(rest)} runs to make, {len(jobs) - len(rest)} done before for the same scene and solver")
     element = [sys.executable, "-s", "-m", "verification.harness.sweep", str(scene), f"--out={out}", f"--threads={options.threads}", f"--chunk={chunk}",
-               f"--observe={observe}", *["--lean"] * options.lean, "--element"]  # fmt: skip
+               f"--observe={observe}", *["--lean"] * options.lean, *[f"--longest={options.longest}"] * bool(options.longest), "--element"]  # fmt: skip
     idle = 0
     while rest and idle < TRIES:
         if options.slurm:
-            by_slurm(rest, sorted({jobs.index(job) // chunk for job in rest}), element, out, options.threads, shlex.split(options.sbatch))
+            try:
+                by_slurm(rest, sorted({jobs.index(job) // chunk for job in rest}), element, out, options.threads, shlex.split(options.sbatch))
+            except ValueError as error:
+                print(error, file=sys.stderr)
+                return 2
         else:
-            here(rest, options.jobs, observe, options.lean)
-        before, rest = len(rest), missing(rest, observe)
+            here(rest, options.jobs, options)
+        before, rest = len(rest), [job for job in missing(rest, observe) if cut_short(job)]
         idle = idle + 1 if len(rest) == before else 0
-        if idle and not any(outcome is None or outcome.exit_status in CUT_SHORT for outcome in (load_outcome(job.out) for job in rest)):
-            break  # what was killed is tried again, what fails each time is not
     rows = [row_of(job) for job in jobs]
     failed = [row for row in rows if row["status"] != "completed"]
     print(*(f"{row['status']}: {row['run']}: {row['reason']}" for row in failed), f"{len(rows)} runs, {len(failed)} failed", sep="\n")
