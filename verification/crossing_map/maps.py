@@ -23,8 +23,8 @@ class Axis:
     log: bool = False
 
     def value(self, row: dict[str, str]) -> float:
-        """A row's place along the axis; of words ("45 degrees") the number that they begin with."""
-        return float(f"{float(row[self.key].strip(chr(34)).split()[0]) / self.unit:.6g}")
+        """A row's place along the axis; of words (45 degrees) the number that they begin with."""
+        return float(f"{float(row[self.key].split()[0]) / self.unit:.6g}")
 
 
 @dataclass(frozen=True)

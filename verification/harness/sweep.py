@@ -63,7 +63,8 @@ def jobs_of(scene: Path, out: Path, threads: int = 1) -> list[Job]:
 
 def axes_of(job: Job) -> dict[str, str]:
     """What a run's scene has that others of the sweep have not, by keys."""
-    return ({"variant": job.variant} if job.variant else {}) | dict(setting.partition("=")[::2] for setting in job.settings)
+    given = (setting.partition("=")[::2] for setting in job.settings)
+    return ({"variant": job.variant} if job.variant else {}) | {key: value.strip("\"'") for key, value in given}
 
 
 def observed(run: Run) -> Row:

@@ -20,7 +20,7 @@ from verification.harness.load import load
 from verification.tests.fake_run import climb, write_run
 
 
-FAILED_RUNS: dict[str, list[tuple[float, float]]] = {}
+FAILED_RUNS = {"inclined": [(0.8, 60.0), (0.9, 60.0), (1.0, 60.0)]}
 
 
 def made(folder: Path, rise_Pa: float, slid_m: float, at_Pa: float = 2.42e6, to_m: float = 14.0, slip_m: float = 1e-4, end_Pa: float = 3e6) -> Verdict:

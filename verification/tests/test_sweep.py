@@ -85,7 +85,7 @@ fracture.direction = ["straight", "max_hoop"]
     ratio = [math.log10(float(keys["in_situ.vertical_Pa"]) / 1e5) / 2.0 for keys in found]
     for places in (even, ratio):
         assert sorted(int(40.0 * place) for place in places) == list(range(40))
-    assert [keys["fracture.direction"] for keys in found].count('"straight"') == 20
+    assert [keys["fracture.direction"] for keys in found].count("straight") == 20
     assert [keys for _, keys in runs(tmp_path, axes % 7)] == found != [keys for _, keys in runs(tmp_path, axes % 8)]
 
 
