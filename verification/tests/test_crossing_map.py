@@ -83,7 +83,7 @@ def test_gu_weng() -> None:
 
 @pytest.mark.smoke
 def test_corners(tmp_path: Path) -> None:
-    """Little friction under little stress gives way and holds the fracture, much of both lets it pass at once; asked again, nothing is made and the table is the same."""
+    """Little friction under little stress gives way and holds the fracture, much of both lets it pass at once; asked again it is the same table."""
     wanted = ["--family=friction", "--size=2", f"--runs={tmp_path}", f"--out={tmp_path / 'records'}"]
     assert main(wanted) == 0
     found = read_table(MAPS["friction"], tmp_path / "records")
