@@ -135,7 +135,7 @@ def _write_fields(folder: Path, inlet: np.ndarray, height: np.ndarray, plan: Pla
             cloud = store.create_group(f"particles/{index:05d}")
             cloud["x_m"], cloud["y_m"], cloud["volume_m2"] = x_m, y_m, np.ones_like(x_m)
             near = np.exp(-np.hypot(x_m - 40.0, y_m - height[row]) / 5.0)
-            cloud["s_xx_Pa"] = -2.0e6 + 0.5e6 * near
+            cloud["s_xx_Pa"], cloud["s_yy_Pa"], cloud["s_xy_Pa"] = -2.0e6 + 0.5e6 * near, np.full_like(x_m, -3.0e6), np.zeros_like(x_m)
 
 
 def write_both(root: Path, number: int, plan: Plan) -> None:

@@ -82,7 +82,7 @@ void watch_deformation(State& state) {
 void require_finite(const State& state) {
   if (state.ledger.finite()) return;
   std::string which;
-  for (const auto& [name, value] : ledger_energies) {
+  for (const auto& [name, value, description] : ledger_energies) {
     if (!std::isfinite(state.ledger.*value)) which += (which.empty() ? "" : ", ") + std::string(name);
   }
   throw NumericalFailure(

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numeric>
+#include <string_view>
 #include <system_error>
 
 #include "output/hdf5_io.hpp"
@@ -27,29 +27,40 @@ Vec2 tangent(const SurfacePoint& s) {
 }
 
 // Writes a field of a surface's points: value(point).
-void put(hdf5::Id file, const std::string& path, const char* unit, const std::vector<SurfacePoint>& points,
+void put(hdf5::Id file, const std::string& path, const hdf5::Meaning& meaning, const std::vector<SurfacePoint>& points,
          const auto& value) {
   std::vector<double> field(points.size());
   std::ranges::transform(points, field.begin(), value);
-  hdf5::write(file, path, field, unit);
+  hdf5::write(file, path, field, meaning);
+}
+
+// The positions as vectors, as ParaView wants them.
+void put_positions(hdf5::Id file, const std::string& group) {
+  hdf5::write_vectors(file, group + "/vectors/position_m", {group + "/x_m", group + "/y_m"}, {"m", "place: x, y, 0"});
 }
 
 void write_places(hdf5::Id file, const std::string& group, const std::vector<SurfacePoint>& points) {
-  put(file, group + "/x_m", "m", points, [](const SurfacePoint& s) { return s.x.x() + s.u.x(); });
-  put(file, group + "/y_m", "m", points, [](const SurfacePoint& s) { return s.x.y() + s.u.y(); });
-  put(file, group + "/opening_m", "m", points, [](const SurfacePoint& s) { return s.opening(); });
-  put(file, group + "/slip_m", "m", points, [](const SurfacePoint& s) { return s.w.dot(tangent(s)); });
+  put(file, group + "/x_m", {"m", "place, moved with the rock: x"}, points,
+      [](const SurfacePoint& s) { return s.x.x() + s.u.x(); });
+  put(file, group + "/y_m", {"m", "place, moved with the rock: y"}, points,
+      [](const SurfacePoint& s) { return s.x.y() + s.u.y(); });
+  put(file, group + "/opening_m", {"m", "opening face to face, negative where faces overlap"}, points,
+      [](const SurfacePoint& s) { return s.opening(); });
+  put(file, group + "/slip_m", {"m", "slip: motion of the + side (on the left of the path) along the path"}, points,
+      [](const SurfacePoint& s) { return s.w.dot(tangent(s)); });
+  put_positions(file, group);
 }
 
 void write_fracture(hdf5::Id file, const std::string& group, const Scene& scene, const State& state) {
   const std::vector<SurfacePoint>& vertices = state.fracture().vertices;
   write_places(file, group, vertices);
-  put(file, group + "/arc_m", "m", vertices, [](const SurfacePoint& s) { return s.arc; });
-  put(file, group + "/permeability_m2", "m^2", vertices, [&](const SurfacePoint& s) {
-    const double w = std::max(s.opening(), scene.fluid.minimum_opening_m);
-    return w * w / 12.0;  // between parallel plates
-  });
-  hdf5::write(file, group + "/pressure_Pa", state.fluid.P, "Pa");
+  put(file, group + "/arc_m", {"m", "length along the path"}, vertices, [](const SurfacePoint& s) { return s.arc; });
+  put(file, group + "/permeability_m2", {"m^2", "w^2/12, of the opening w or its floor"}, vertices,
+      [&](const SurfacePoint& s) {
+        const double w = std::max(s.opening(), scene.fluid.minimum_opening_m);
+        return w * w / 12.0;  // between parallel plates
+      });
+  hdf5::write(file, group + "/pressure_Pa", state.fluid.P, {"Pa", "fluid pressure, positive in compression"});
   hdf5::set_attribute(file, group, "time_s", state.time);
   hdf5::set_attribute(file, group, "inlet_Pa", state.fluid.inlet_Pa);
 }
@@ -63,12 +74,16 @@ void write_interface(hdf5::Id file, const std::string& interfaces, const Scene& 
   const std::string group = fmt::format("{}/{}", interfaces, nearest - places.begin());
   const std::vector<SurfacePoint>& points = surface.points;
   write_places(file, group, points);
-  put(file, group + "/reaction_n_Pa", "Pa", points, [](const SurfacePoint& s) { return s.reaction.dot(s.n); });
-  put(file, group + "/reaction_t_Pa", "Pa", points, [](const SurfacePoint& s) { return s.reaction.dot(tangent(s)); });
-  put(file, group + "/failed_s", "s", points, [](const SurfacePoint& s) { return s.failed_s; });
+  put(file, group + "/reaction_n_Pa", {"Pa", "traction on the + face normal to the interface, positive in compression"},
+      points, [](const SurfacePoint& s) { return s.reaction.dot(s.n); });
+  put(file, group + "/reaction_t_Pa", {"Pa", "traction on the + face along the interface"}, points,
+      [](const SurfacePoint& s) { return s.reaction.dot(tangent(s)); });
+  put(file, group + "/failed_s", {"s", "time at which the place let go, -1 where it has not"}, points,
+      [](const SurfacePoint& s) { return s.failed_s; });
   std::vector<std::int32_t> split;
   for (const SurfacePoint& s : points) split.push_back(s.split ? 1 : 0);
-  hdf5::write(file, group + "/split", split, "1");
+  hdf5::write(file, group + "/split", split,
+              {"1", "1 where the law acts between two sides, 0 where the rock is whole"});
   hdf5::set_attribute(file, group, "law", scene.laws.at(surface.law).name);
   hdf5::set_attribute(file, group, "at_m", nearest->at_m);
 }
@@ -86,35 +101,48 @@ std::vector<std::size_t> by_id(const Particles& particles) {
 // The low bytes of others are noise, over which its search takes as long as small runs do and of which it leaves three
 // quarters.
 template <class Number>
-void put(hdf5::Id file, const std::string& path, const char* unit, const std::vector<std::size_t>& order, bool packed,
-         const auto& value_of) {
+void put(hdf5::Id file, const std::string& path, const hdf5::Meaning& meaning, const std::vector<std::size_t>& order,
+         bool packed, const auto& value_of) {
   std::vector<Number> field;
   field.reserve(order.size());
   for (const std::size_t p : order) field.push_back(static_cast<Number>(value_of(p)));
   const bool one_value = std::ranges::adjacent_find(field, std::not_equal_to{}) == field.end();
-  hdf5::write(file, path, field, unit, packed || one_value);
+  hdf5::write(file, path, field, meaning, packed || one_value);
 }
 
 void write_particles(hdf5::Id file, const std::string& group, const Scene& scene, const State& state) {
   const Particles& of = state.particles;
   const Rocks rocks = make_elasticities(scene);
   const std::vector<std::size_t> order = by_id(of);
-  const auto field = [&](const char* name, const char* unit, bool packed, const auto& value_of) {
-    put<float>(file, group + name, unit, order, packed, value_of);
+  const auto field = [&](const char* name, const hdf5::Meaning& meaning, bool packed, const auto& value_of) {
+    put<float>(file, group + name, meaning, order, packed, value_of);
   };
   const double moved = scene.numerics.keeps_places() ? 1.0 : 0.0;  // positions are where the rock now is
-  field("/x_m", "m", true, [&](std::size_t p) { return of.x[p] + moved * of.u_x[p]; });
-  field("/y_m", "m", true, [&](std::size_t p) { return of.y[p] + moved * of.u_y[p]; });
-  field("/volume_m2", "m^2", true, [&](std::size_t p) { return of.V[p]; });
-  field("/u_x_m", "m", false, [&](std::size_t p) { return of.u_x[p]; });
-  field("/u_y_m", "m", false, [&](std::size_t p) { return of.u_y[p]; });
-  field("/v_x_m_s", "m/s", false, [&](std::size_t p) { return of.v_x[p]; });
-  field("/v_y_m_s", "m/s", false, [&](std::size_t p) { return of.v_y[p]; });
-  field("/s_xx_Pa", "Pa", false, [&](std::size_t p) { return total_stress(rocks, of, p).xx; });
-  field("/s_yy_Pa", "Pa", false, [&](std::size_t p) { return total_stress(rocks, of, p).yy; });
-  field("/s_xy_Pa", "Pa", false, [&](std::size_t p) { return total_stress(rocks, of, p).xy; });
-  put<std::int32_t>(file, group + "/id", "1", order, true, [&](std::size_t p) { return of.id[p]; });
-  put<std::int32_t>(file, group + "/rock", "1", order, true, [&](std::size_t p) { return of.rock[p]; });
+  field("/x_m", {"m", "place, moved with the rock: x"}, true,
+        [&](std::size_t p) { return of.x[p] + moved * of.u_x[p]; });
+  field("/y_m", {"m", "place, moved with the rock: y"}, true,
+        [&](std::size_t p) { return of.y[p] + moved * of.u_y[p]; });
+  field("/volume_m2", {"m^2", "area"}, true, [&](std::size_t p) { return of.V[p]; });
+  field("/u_x_m", {"m", "displacement: x"}, false, [&](std::size_t p) { return of.u_x[p]; });
+  field("/u_y_m", {"m", "displacement: y"}, false, [&](std::size_t p) { return of.u_y[p]; });
+  field("/v_x_m_s", {"m/s", "velocity: x"}, false, [&](std::size_t p) { return of.v_x[p]; });
+  field("/v_y_m_s", {"m/s", "velocity: y"}, false, [&](std::size_t p) { return of.v_y[p]; });
+  const auto stress = [&](const char* name, const char* component, double Stress::*value) {
+    const std::string what = "total stress (in-situ and its change), tension positive: ";
+    field(name, {"Pa", what + component}, false, [&](std::size_t p) { return total_stress(rocks, of, p).*value; });
+  };
+  stress("/s_xx_Pa", "xx", &Stress::xx);
+  stress("/s_yy_Pa", "yy", &Stress::yy);
+  stress("/s_xy_Pa", "xy", &Stress::xy);
+  put<std::int32_t>(file, group + "/id", {"1", "number of the particle"}, order, true,
+                    [&](std::size_t p) { return of.id[p]; });
+  put<std::int32_t>(file, group + "/rock", {"1", "number of its rock in the scene, from 0"}, order, true,
+                    [&](std::size_t p) { return of.rock[p]; });
+  put_positions(file, group);
+  hdf5::write_vectors(file, group + "/vectors/displacement_m", {group + "/u_x_m", group + "/u_y_m"},
+                      {"m", "displacement: x, y, 0"});
+  hdf5::write_vectors(file, group + "/vectors/velocity_m_s", {group + "/v_x_m_s", group + "/v_y_m_s"},
+                      {"m/s", "velocity: x, y, 0"});
   hdf5::set_attribute(file, group, "time_s", state.time);
 }
 
@@ -123,48 +151,53 @@ void set_made_with(hdf5::Id file, const MadeWith& made) {
   hdf5::set_attribute(file, ".", "version", made.version);
 }
 
-// The points of a kind at an output time, with some of their fields; topology: how they hang together.
-std::string xdmf_grid(const char* kind, std::size_t k, std::size_t n, int precision, const std::string& topology,
-                      const std::vector<const char*>& fields) {
-  const auto item = [&](const char* field) {
-    return fmt::format(
-        "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"{}\" Dimensions=\"{}\">result.h5:{}/{}</DataItem>",
-        precision, n, group_of(kind, k), field);
+// The points of a group with all their fields; topology: how they hang together.
+std::string xdmf_grid(hdf5::Id result, const std::string& group, const std::string& name, const char* topology) {
+  std::string geometry, attributes;
+  std::uint64_t n = 0;
+  const auto add = [&](const std::string& field) {
+    const hdf5::Layout layout = hdf5::layout(result, group + "/" + field);
+    n = layout.shape.front();
+    const std::string item = fmt::format(
+        "<DataItem Format=\"HDF\" NumberType=\"{}\" Precision=\"{}\" Dimensions=\"{}\">result.h5:{}/{}</DataItem>",
+        layout.integer ? "Int" : "Float", layout.bytes, fmt::join(layout.shape, " "), group, field);
+    if (field == "vectors/position_m") {
+      geometry = fmt::format("          <Geometry GeometryType=\"XYZ\">{}</Geometry>\n", item);
+    } else {
+      attributes +=
+          fmt::format("          <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Node\">{}</Attribute>\n",
+                      field.substr(field.rfind('/') + 1), layout.shape.size() == 2 ? "Vector" : "Scalar", item);
+    }
   };
-  std::string text = fmt::format(
-      "        <Grid Name=\"{}\" GridType=\"Uniform\">\n          {}\n          <Geometry "
-      "GeometryType=\"X_Y\">{}{}</Geometry>\n",
-      kind, topology, item("x_m"), item("y_m"));
-  for (const char* field : fields) {
-    text += fmt::format("          <Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Node\">{}</Attribute>\n",
-                        field, item(field));
+  for (const std::string& field : hdf5::names(result, group)) {
+    if (field != "vectors") add(field);
   }
-  return text + "        </Grid>\n";
+  for (const std::string& field : hdf5::names(result, group + "/vectors")) add("vectors/" + field);
+  const bool line = std::string_view(topology) == "Polyline";
+  return fmt::format(
+      "        <Grid Name=\"{}\" GridType=\"Uniform\">\n          <Topology TopologyType=\"{}\" "
+      "NumberOfElements=\"{}\" "
+      "NodesPerElement=\"{}\"/>\n{}{}        </Grid>\n",
+      name, topology, line ? 1 : n, line ? n : 1, geometry, attributes);
 }
 
+// In a form that all of ParaView's readers of .xdmf take: positions of three components, lines through points in the
+// order in which they are stored.
 std::string xdmf_text(hdf5::Id result, const std::vector<double>& times) {
   std::string text =
-      "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n"
+      "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n"
       "    <Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
   for (std::size_t k = 0; k < times.size(); ++k) {
-    const auto points = [&](const char* kind) { return hdf5::read(result, group_of(kind, k) + "/x_m").size(); };
     text += fmt::format(
         "      <Grid Name=\"{:05}\" GridType=\"Collection\" CollectionType=\"Spatial\">\n        <Time "
         "Value=\"{}\"/>\n",
         k, times[k]);
-    const std::size_t particles = points("particles");
-    text += xdmf_grid("particles", k, particles, 4,
-                      fmt::format("<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\"/>", particles),
-                      {"u_x_m", "u_y_m", "v_x_m_s", "v_y_m_s", "s_xx_Pa", "s_yy_Pa", "s_xy_Pa", "volume_m2"});
-    if (hdf5::exists(result, group_of("fracture", k))) {
-      std::vector<std::size_t> path(points("fracture"));
-      std::iota(path.begin(), path.end(), std::size_t{0});
-      text += xdmf_grid("fracture", k, path.size(), 8,
-                        fmt::format("<Topology TopologyType=\"Polyline\" NumberOfElements=\"1\" "
-                                    "NodesPerElement=\"{0}\"><DataItem Format=\"XML\" NumberType=\"Int\" "
-                                    "Dimensions=\"1 {0}\">{1}</DataItem></Topology>",
-                                    path.size(), fmt::join(path, " ")),
-                        {"opening_m", "slip_m", "pressure_Pa", "permeability_m2", "arc_m"});
+    text += xdmf_grid(result, group_of("particles", k), "particles", "Polyvertex");
+    const std::string fracture = group_of("fracture", k), interfaces = group_of("interfaces", k);
+    if (hdf5::exists(result, fracture)) text += xdmf_grid(result, fracture, "fracture", "Polyline");
+    if (hdf5::exists(result, interfaces)) {
+      for (const std::string& number : hdf5::names(result, interfaces))
+        text += xdmf_grid(result, interfaces + "/" + number, "interface " + number, "Polyline");
     }
     text += "      </Grid>\n";
   }
@@ -195,11 +228,11 @@ void gather_fields(const RunFolder& folder, const std::vector<HistoryColumn>& co
   const auto write_head = [&](hdf5::Id file) {
     if (!times.empty()) set_made_with(file, made_with(folder));
     for (const char* kind : {"particles", "fracture", "interfaces"}) hdf5::make_group(file, kind);
-    hdf5::write(file, "times", times, "s");
+    hdf5::write(file, "times", times, {"s", "output times"});
     std::vector<double> values(rows.size());
     for (std::size_t c = 0; c < columns.size(); ++c) {
       std::ranges::transform(rows, values.begin(), [&](const HistoryRow& row) { return row[c]; });
-      hdf5::write(file, "history/" + columns[c].name, values, columns[c].unit);
+      hdf5::write(file, "history/" + columns[c].name, values, {columns[c].unit, columns[c].description});
     }
   };
   const auto copy_fields = [&](hdf5::Id file) {

@@ -42,6 +42,17 @@ Handle with_groups() {
   return {links, H5Pclose, "links"};
 }
 
+Handle data_set(Id parent, const std::string& path) {
+  return {H5Dopen2(parent, path.c_str(), H5P_DEFAULT), H5Dclose, path};
+}
+
+// How data sets are made: without the time, so that files of equal runs are equal.
+Handle made_so() {
+  const Id properties = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_obj_track_times(properties, false);
+  return {properties, H5Pclose, "data set"};
+}
+
 Handle text_type() {
   const Id type = H5Tcopy(H5T_C_S1);
   H5Tset_size(type, H5T_VARIABLE);
@@ -61,6 +72,11 @@ void get_attribute(Id parent, const std::string& path, const std::string& attrib
   const Handle from(H5Aopen_by_name(parent, path.c_str(), attribute.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
                     path + "@" + attribute);
   require(H5Aread(from, type, value), path);
+}
+
+void set_meaning(Id set, const Meaning& meaning) {
+  set_attribute(set, ".", "unit", meaning.unit);
+  set_attribute(set, ".", "description", meaning.description);
 }
 
 }  // namespace
@@ -125,14 +141,12 @@ void copy(Id from, const std::string& path, Id to) {
 }
 
 template <class Number>
-void write(Id parent, const std::string& path, const std::vector<Number>& values, const std::string& unit,
-           bool packed) {
+void write(Id parent, const std::string& path, const std::vector<Number>& values, const Meaning& meaning, bool packed) {
   const Id type = std::is_same_v<Number, double>  ? H5T_NATIVE_DOUBLE
                   : std::is_same_v<Number, float> ? H5T_NATIVE_FLOAT
                                                   : H5T_NATIVE_INT32;
   const hsize_t n = values.size();
-  const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, path);
-  H5Pset_obj_track_times(properties, false);  // files of equal runs are equal
+  const Handle properties = made_so();
   if (packed && n > 0) {
     const hsize_t chunk = std::min(n, hsize_t{1} << 18U);  // one for most fields
     H5Pset_chunk(properties, 1, &chunk);
@@ -143,14 +157,41 @@ void write(Id parent, const std::string& path, const std::vector<Number>& values
   const Handle set(H5Dcreate2(parent, path.c_str(), type, space, with_groups(), properties, H5P_DEFAULT), H5Dclose,
                    path);
   require(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), path);
-  set_attribute(set, ".", "unit", unit);
+  set_meaning(set, meaning);
 }
-template void write(Id, const std::string&, const std::vector<double>&, const std::string&, bool);
-template void write(Id, const std::string&, const std::vector<float>&, const std::string&, bool);
-template void write(Id, const std::string&, const std::vector<std::int32_t>&, const std::string&, bool);
+template void write(Id, const std::string&, const std::vector<double>&, const Meaning&, bool);
+template void write(Id, const std::string&, const std::vector<float>&, const Meaning&, bool);
+template void write(Id, const std::string&, const std::vector<std::int32_t>&, const Meaning&, bool);
+
+void write_vectors(Id parent, const std::string& path, const std::vector<std::string>& components,
+                   const Meaning& meaning) {
+  const Handle first = data_set(parent, components.front());
+  const Handle type(H5Dget_type(first), H5Tclose, path), points(H5Dget_space(first), H5Sclose, path);
+  const hsize_t shape[] = {static_cast<hsize_t>(H5Sget_simple_extent_npoints(points)), 3}, column[] = {shape[0], 1};
+  const Handle properties = made_so(), space(H5Screate_simple(2, shape, nullptr), H5Sclose, path);
+  for (hsize_t c = 0; c < components.size() && shape[0] > 0; ++c) {
+    const hsize_t start[] = {0, c};
+    require(H5Sselect_hyperslab(space, H5S_SELECT_SET, start, nullptr, column, nullptr), path);
+    require(H5Pset_virtual(properties, space, ".", components[c].c_str(), points), path);  // ".": the same file
+  }
+  const Handle set(H5Dcreate2(parent, path.c_str(), type, space, with_groups(), properties, H5P_DEFAULT), H5Dclose,
+                   path);
+  set_meaning(set, meaning);
+}
+
+Layout layout(Id parent, const std::string& path) {
+  const Handle set = data_set(parent, path);
+  const Handle space(H5Dget_space(set), H5Sclose, path), type(H5Dget_type(set), H5Tclose, path);
+  Layout found{H5Tget_class(type) == H5T_INTEGER, H5Tget_size(type), {}};
+  hsize_t shape[H5S_MAX_RANK];
+  const int rank = H5Sget_simple_extent_dims(space, shape, nullptr);
+  require(rank, path);
+  found.shape.assign(shape, shape + rank);
+  return found;
+}
 
 std::vector<double> read(Id parent, const std::string& path) {
-  const Handle set(H5Dopen2(parent, path.c_str(), H5P_DEFAULT), H5Dclose, path);
+  const Handle set = data_set(parent, path);
   const Handle space(H5Dget_space(set), H5Sclose, path);
   std::vector<double> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
   require(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), path);

@@ -50,13 +50,34 @@ std::vector<std::string> names(Id parent, const std::string& path = ".");
 /// Copies what is at `path` below `from` to the same path below `to`, with the groups above it.
 void copy(Id from, const std::string& path, Id to);
 
-/// Writes a 1-D data set of double, float or std::int32_t, with its attribute `unit` and the groups above it; packed:
-/// shuffled and deflated.
+// What a data set says of itself by its attributes of these names.
+struct Meaning {
+  std::string unit;
+  std::string description;
+};
+
+/// Writes a 1-D data set of double, float or std::int32_t, with its meaning and the groups above it; packed: shuffled
+/// and deflated.
 template <class Number>
-void write(Id parent, const std::string& path, const std::vector<Number>& values, const std::string& unit,
+void write(Id parent, const std::string& path, const std::vector<Number>& values, const Meaning& meaning,
            bool packed = false);
 
-/// Values of a 1-D data set, converted to double.
+/// Writes vectors of three components, (n, 3), which are those of 1-D data sets of the file, by their paths from its
+/// root, and 0 beyond: virtual, so that nothing is stored twice.
+void write_vectors(Id parent, const std::string& path, const std::vector<std::string>& components,
+                   const Meaning& meaning);
+
+// How a data set is stored.
+struct Layout {
+  bool integer = false;
+  std::size_t bytes = 0;  // of a number
+  std::vector<std::uint64_t> shape;
+};
+
+/// How the data set at `path` is stored.
+Layout layout(Id parent, const std::string& path);
+
+/// Values of a data set, row by row, converted to double.
 std::vector<double> read(Id parent, const std::string& path);
 
 /// Attributes of what is at `path`.

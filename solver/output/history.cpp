@@ -97,38 +97,47 @@ std::vector<HistoryColumn> history_columns(const Scene& scene, const State& stat
   const Vec2 x = tip ? tip_position(state, *tip) : Vec2{nan, nan};
   const TipNumbers told = tip ? tip_numbers(scene, *tip) : TipNumbers{nan, nan, nan, nan, nan, ""};
   std::vector<HistoryColumn> all{
-      {"time_s", "s", state.time},
-      {"inlet_Pa", "Pa", state.has_fracture ? state.fluid.inlet_Pa : 0.0},
-      {"tip_x_m", "m", x.x()},
-      {"tip_y_m", "m", x.y()},
-      {"height_m", "m", x.y()},  // above y = 0, the symmetry line
-      {"J_N_m", "N/m", told.J_N_m},
-      {"K_I_Pa_sqrt_m", "Pa m^0.5", told.K_I_Pa_sqrt_m},
-      {"K_II_Pa_sqrt_m", "Pa m^0.5", told.K_II_Pa_sqrt_m},
-      {"mouth_opening_m", "m", mouth_opening(state)},
-      {"fracture_volume_m2", "m^2", fracture_volume(state)},
+      {"time_s", "s", state.time, "time"},
+      {"inlet_Pa", "Pa", state.has_fracture ? state.fluid.inlet_Pa : 0.0, "fluid pressure at the inlet"},
+      {"tip_x_m", "m", x.x(), "place of the leading tip, the one with the largest y: x"},
+      {"tip_y_m", "m", x.y(), "place of the leading tip: y"},
+      {"height_m", "m", x.y(), "height of the leading tip above the symmetry line y = 0"},
+      {"J_N_m", "N/m", told.J_N_m, "J of the leading tip, from its domain integral"},
+      {"K_I_Pa_sqrt_m", "Pa m^0.5", told.K_I_Pa_sqrt_m, "K_I of the leading tip, from the interaction integral"},
+      {"K_II_Pa_sqrt_m", "Pa m^0.5", told.K_II_Pa_sqrt_m, "K_II of the leading tip, from the interaction integral"},
+      {"mouth_opening_m", "m", mouth_opening(state),
+       "opening face to face at the symmetry line, or the largest where the fracture does not reach it"},
+      {"fracture_volume_m2", "m^2", fracture_volume(state), "area between the faces in the modelled domain"},
   };
   const auto add_energies = [&](bool first) {
-    for (const auto& [name, value] : ledger_energies) {
+    for (const auto& [name, value, description] : ledger_energies) {
       const bool later = value == &Ledger::body_work || value == &Ledger::initial_kinetic;
-      if (first != later) all.push_back({name + std::string("_J"), "J/m", state.ledger.*value});
+      if (first != later) all.push_back({name + std::string("_J"), "J/m", state.ledger.*value, description});
     }
   };
   add_energies(true);
-  all.insert(all.end(), {{"energy_closure", "1", state.ledger.closure()},
-                         {"J_spread", "1", told.J_spread},
-                         {"kink_deg", "deg", told.kink_deg},
-                         {"at_interface", "1", tip ? at_interface(*tip) : nan},
-                         {"ring_m", "m", tip ? tip->ring_m : nan},
-                         {"G_N_m", "N/m", tip ? tip->G : nan},
-                         {"G_by_J_N_m", "N/m", tip ? tip->G_by_J : nan},
-                         {"fluid_volume_balance", "1", state.monitors.volume_balance}});
+  all.insert(
+      all.end(),
+      {{"energy_closure", "1", state.ledger.closure(),
+        "share of the largest energy that the ledger leaves unexplained"},
+       {"J_spread", "1", told.J_spread, "(max - min)/mean of J over its rings"},
+       {"kink_deg", "deg", told.kink_deg, "next growth direction from the present one, counter-clockwise positive"},
+       {"at_interface", "1", tip ? at_interface(*tip) : nan,
+        "1 where an interface or a border of rocks is too near for J and K, else 0"},
+       {"ring_m", "m", tip ? tip->ring_m : nan, "outer radius of the widest ring on which J is measured"},
+       {"G_N_m", "N/m", tip ? tip->G : nan, "energy released per length over the next finite increment"},
+       {"G_by_J_N_m", "N/m", tip ? tip->G_by_J : nan, "the same from J along the increment"},
+       {"fluid_volume_balance", "1", state.monitors.volume_balance, "reynolds: fluid missing over fluid injected"}});
   add_energies(false);
-  all.push_back({"near", "1", tip ? static_cast<double>(tip->near) : nan});
-  if (scene.leaks()) all.push_back({"leaked_m2", "m^2", leaked_volume(state)});
+  all.push_back({"near", "1", tip ? static_cast<double>(tip->near) : nan,
+                 "what is too near to the leading tip: 0 nothing, 1 interface, 2 rock border, 3 symmetry line, 4 edge, "
+                 "5 fracture"});
+  if (scene.leaks()) all.push_back({"leaked_m2", "m^2", leaked_volume(state), "fluid that the rock has taken"});
   if (scene.parts_by_energy()) {
-    all.push_back({"G_crossing_N_m", "N/m", tip && weighs_energy(*tip) ? tip->G_trial : nan});
-    all.push_back({"G_along_N_m", "N/m", tip ? tip->G_along : nan});
+    all.push_back({"G_crossing_N_m", "N/m", tip && weighs_energy(*tip) ? tip->G_trial : nan,
+                   "energy released per length by going on across, over crossing_increment_m"});
+    all.push_back({"G_along_N_m", "N/m", tip ? tip->G_along : nan,
+                   "energy released per length by parting the interface, over crossing_increment_m"});
   }
   return all;
 }

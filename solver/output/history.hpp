@@ -37,11 +37,12 @@ double fracture_volume(const State& state);
 /// Fluid that the rock has taken through the faces there (m^2). Throws nothing.
 double leaked_volume(const State& state);
 
-// A column's name, which ends in its unit, the unit apart, and its value in a state.
+// A column's name, which ends in its unit, the unit apart, its value in a state, and what it is.
 struct HistoryColumn {
   std::string name;
   const char* unit;
   double value;
+  const char* description;
 };
 
 /// The columns in the order of history.csv, with their values in a state: of the leading tip, nan where it has no such

@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 Json energy_json(const Ledger& ledger) {
   Json json;
-  for (const auto& [name, value] : ledger_energies) json[name + std::string("_J")] = ledger.*value;
+  for (const auto& [name, value, description] : ledger_energies) json[name + std::string("_J")] = ledger.*value;
   json.update({{"stored_J", ledger.stored()},
                {"supplied_J", ledger.supplied()},
                {"dissipated_J", ledger.dissipated()},

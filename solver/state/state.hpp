@@ -75,24 +75,12 @@ struct Event {
   std::string by;             // what decided it: "J", "K" or "energy"
 };
 
-// Energy per metre of thickness (J/m) since the start. Work done on the rock is positive, and so is dissipation.
+// Energy per metre of thickness (J/m) since the start: what each is says `ledger_energies`. Work done on the rock is
+// positive, and so is dissipation.
 struct Ledger {
-  double kinetic = 0.0;           // of the particles, now
-  double strain = 0.0;            // of the change from the in-situ state, now
-  double interface_strain = 0.0;  // in the springs of soft interfaces and of tips, now
-  double fluid_work = 0.0;        // integral of P dV
-  double in_situ_work = 0.0;      // of the in-situ tractions released on surfaces
-  double body_work = 0.0;         // of the body force
-  double initial_kinetic = 0.0;   // of the velocities that particles start with
-  double edge_work = 0.0;    // of the edges' tractions beyond the in-situ ones: none, edges keep these or do not move
-  double damping = 0.0;      // dissipated by damping_1_s
-  double transfer = 0.0;     // dissipated between particles and grid
-  double integration = 0.0;  // lost by the time step itself: sum of dt^2 (f M^-1 f - v K v)/2, most of it at shocks
-  double friction = 0.0;     // dissipated by sliding and the implicit step of springs
-  double failure = 0.0;      // released by bonded places that let go
-  double fracture = 0.0;     // what new surface takes: J_c times its length
-  double excess = 0.0;   // released by growth beyond that (also from springs of tips, see TipTie), which nothing takes
-                         // up; < 0: what growth lacked. With inertia surface costs the motion nothing: all is lacking
+  double kinetic = 0.0, strain = 0.0, interface_strain = 0.0;
+  double fluid_work = 0.0, in_situ_work = 0.0, body_work = 0.0, initial_kinetic = 0.0, edge_work = 0.0;
+  double damping = 0.0, transfer = 0.0, integration = 0.0, friction = 0.0, failure = 0.0, fracture = 0.0, excess = 0.0;
   double largest = 0.0;  // largest fluid, in-situ or body work or kinetic energy so far, the scale for closure()
 
   double supplied() const { return fluid_work + in_situ_work + edge_work + body_work + initial_kinetic; }
@@ -113,25 +101,29 @@ struct Ledger {
 struct LedgerEnergy {
   const char* name;
   double Ledger::*value;
+  const char* description;
 };
 
 // All of them, those that are stored first, then what was supplied and what was dissipated.
 inline constexpr LedgerEnergy ledger_energies[] = {
-    {"kinetic", &Ledger::kinetic},
-    {"strain", &Ledger::strain},
-    {"interface_strain", &Ledger::interface_strain},
-    {"fluid_work", &Ledger::fluid_work},
-    {"in_situ_work", &Ledger::in_situ_work},
-    {"edge_work", &Ledger::edge_work},
-    {"body_work", &Ledger::body_work},
-    {"initial_kinetic", &Ledger::initial_kinetic},
-    {"damping", &Ledger::damping},
-    {"transfer", &Ledger::transfer},
-    {"integration", &Ledger::integration},
-    {"friction", &Ledger::friction},
-    {"failure", &Ledger::failure},
-    {"fracture", &Ledger::fracture},
-    {"excess", &Ledger::excess},
+    {"kinetic", &Ledger::kinetic, "kinetic energy of the particles, now"},
+    {"strain", &Ledger::strain, "strain energy of the change from the in-situ state, now"},
+    {"interface_strain", &Ledger::interface_strain, "energy in the springs of soft interfaces and of tips, now"},
+    {"fluid_work", &Ledger::fluid_work, "work of the fluid on the rock: integral of P dV"},
+    {"in_situ_work", &Ledger::in_situ_work, "work of the in-situ tractions released on surfaces"},
+    {"edge_work", &Ledger::edge_work,
+     "work of the edges' tractions beyond the in-situ ones: none, edges keep these or do not move"},
+    {"body_work", &Ledger::body_work, "work of the body force"},
+    {"initial_kinetic", &Ledger::initial_kinetic, "kinetic energy that particles start with"},
+    {"damping", &Ledger::damping, "dissipated by damping"},
+    {"transfer", &Ledger::transfer, "dissipated between particles and grid"},
+    {"integration", &Ledger::integration,
+     "lost by the time step itself, most of it at shocks: sum of dt^2 (f M^-1 f - v K v)/2"},
+    {"friction", &Ledger::friction, "dissipated by sliding and the implicit step of springs"},
+    {"failure", &Ledger::failure, "released by bonded places that let go"},
+    {"fracture", &Ledger::fracture, "what new surface takes: J_c times its length"},
+    // Also from springs of tips (TipTie). With inertia surface costs the motion nothing: all is lacking.
+    {"excess", &Ledger::excess, "released by growth beyond that, which nothing takes up; negative: what growth lacked"},
 };
 static_assert(sizeof(Ledger) == (std::size(ledger_energies) + 1) * sizeof(double), "all but the scale are listed");
 
