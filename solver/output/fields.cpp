@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <string_view>
 #include <system_error>
 
@@ -34,9 +35,12 @@ void put(hdf5::Id file, const std::string& path, const hdf5::Meaning& meaning, c
   hdf5::write(file, path, field, meaning);
 }
 
-// The positions as vectors, as ParaView wants them.
-void put_positions(hdf5::Id file, const std::string& group) {
-  hdf5::write_vectors(file, group + "/vectors/position_m", {group + "/x_m", group + "/y_m"}, {"m", "place: x, y, 0"});
+// What ParaView takes of n points: vectors, and which points its cells are made of.
+void put_positions(hdf5::Id file, const std::string& group, std::size_t n) {
+  hdf5::write_vectors(file, group + "/paraview/position_m", {group + "/x_m", group + "/y_m"}, {"m", "place: x, y, 0"});
+  std::vector<std::int32_t> order(n);
+  std::iota(order.begin(), order.end(), 0);
+  hdf5::write(file, group + "/paraview/order", order, {"1", "the points, from 0, in their order"}, true);
 }
 
 void write_places(hdf5::Id file, const std::string& group, const std::vector<SurfacePoint>& points) {
@@ -48,7 +52,7 @@ void write_places(hdf5::Id file, const std::string& group, const std::vector<Sur
       [](const SurfacePoint& s) { return s.opening(); });
   put(file, group + "/slip_m", {"m", "slip: motion of the + side (on the left of the path) along the path"}, points,
       [](const SurfacePoint& s) { return s.w.dot(tangent(s)); });
-  put_positions(file, group);
+  put_positions(file, group, points.size());
 }
 
 void write_fracture(hdf5::Id file, const std::string& group, const Scene& scene, const State& state) {
@@ -138,10 +142,10 @@ void write_particles(hdf5::Id file, const std::string& group, const Scene& scene
                     [&](std::size_t p) { return of.id[p]; });
   put<std::int32_t>(file, group + "/rock", {"1", "number of its rock in the scene, from 0"}, order, true,
                     [&](std::size_t p) { return of.rock[p]; });
-  put_positions(file, group);
-  hdf5::write_vectors(file, group + "/vectors/displacement_m", {group + "/u_x_m", group + "/u_y_m"},
+  put_positions(file, group, order.size());
+  hdf5::write_vectors(file, group + "/paraview/displacement_m", {group + "/u_x_m", group + "/u_y_m"},
                       {"m", "displacement: x, y, 0"});
-  hdf5::write_vectors(file, group + "/vectors/velocity_m_s", {group + "/v_x_m_s", group + "/v_y_m_s"},
+  hdf5::write_vectors(file, group + "/paraview/velocity_m_s", {group + "/v_x_m_s", group + "/v_y_m_s"},
                       {"m/s", "velocity: x, y, 0"});
   hdf5::set_attribute(file, group, "time_s", state.time);
 }
@@ -153,36 +157,34 @@ void set_made_with(hdf5::Id file, const MadeWith& made) {
 
 // The points of a group with all their fields; topology: how they hang together.
 std::string xdmf_grid(hdf5::Id result, const std::string& group, const std::string& name, const char* topology) {
-  std::string geometry, attributes;
-  std::uint64_t n = 0;
-  const auto add = [&](const std::string& field) {
-    const hdf5::Layout layout = hdf5::layout(result, group + "/" + field);
-    n = layout.shape.front();
-    const std::string item = fmt::format(
+  const auto layout = [&](const std::string& field) { return hdf5::layout(result, group + "/" + field); };
+  const auto item = [&](const std::string& field) {
+    const hdf5::Layout as = layout(field);
+    return fmt::format(
         "<DataItem Format=\"HDF\" NumberType=\"{}\" Precision=\"{}\" Dimensions=\"{}\">result.h5:{}/{}</DataItem>",
-        layout.integer ? "Int" : "Float", layout.bytes, fmt::join(layout.shape, " "), group, field);
-    if (field == "vectors/position_m") {
-      geometry = fmt::format("          <Geometry GeometryType=\"XYZ\">{}</Geometry>\n", item);
-    } else {
-      attributes +=
-          fmt::format("          <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Node\">{}</Attribute>\n",
-                      field.substr(field.rfind('/') + 1), layout.shape.size() == 2 ? "Vector" : "Scalar", item);
-    }
+        as.integer ? "Int" : "Float", as.bytes, fmt::join(as.shape, " "), group, field);
   };
-  for (const std::string& field : hdf5::names(result, group)) {
-    if (field != "vectors") add(field);
-  }
-  for (const std::string& field : hdf5::names(result, group + "/vectors")) add("vectors/" + field);
+  const std::uint64_t n = layout("paraview/order").shape.front();
   const bool line = std::string_view(topology) == "Polyline";
-  return fmt::format(
+  std::string text = fmt::format(
       "        <Grid Name=\"{}\" GridType=\"Uniform\">\n          <Topology TopologyType=\"{}\" "
       "NumberOfElements=\"{}\" "
-      "NodesPerElement=\"{}\"/>\n{}{}        </Grid>\n",
-      name, topology, line ? 1 : n, line ? n : 1, geometry, attributes);
+      "NodesPerElement=\"{}\">{}</Topology>\n          <Geometry GeometryType=\"XYZ\">{}</Geometry>\n",
+      name, topology, line ? 1 : n, line ? n : 1, item("paraview/order"), item("paraview/position_m"));
+  const auto add = [&](const std::string& field, const char* type) {
+    text += fmt::format("          <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Node\">{}</Attribute>\n",
+                        field.substr(field.rfind('/') + 1), type, item(field));
+  };
+  for (const std::string& field : hdf5::names(result, group)) {
+    if (field != "paraview" && field != "x_m" && field != "y_m") add(field, "Scalar");
+  }
+  for (const std::string& field : hdf5::names(result, group + "/paraview")) {
+    if (field != "order" && field != "position_m") add("paraview/" + field, "Vector");
+  }
+  return text + "        </Grid>\n";
 }
 
-// In a form that all of ParaView's readers of .xdmf take: positions of three components, lines through points in the
-// order in which they are stored.
+// In a form that all of ParaView's readers of .xdmf take: places of three components in one data set, and cells named.
 std::string xdmf_text(hdf5::Id result, const std::vector<double>& times) {
   std::string text =
       "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n"

@@ -10,10 +10,12 @@
 //   /particles/00000/...         in the order of their id: id, rock, x_m, y_m, u_x_m, u_y_m, v_x_m_s, v_y_m_s, s_xx_Pa,
 //                                s_yy_Pa, s_xy_Pa (total stress, tension positive), volume_m2; attribute time_s
 //
-// Every data set has an attribute `unit`. The number of particles may change. The normal points from the - to the +
-// side, on the left of the path, along which the tangent runs. Particles are stored in single precision, all else in
-// double. While a run goes on each output time is a file of its own, RunFolder::fields(k), with the same paths: it
-// costs the same whatever was written before, and whenever the process is killed all can be read.
+// Each of these groups has paraview/position_m, the particles' paraview/displacement_m and velocity_m_s as well: (n, 3)
+// made of the above with z = 0, virtual; and paraview/order: 0 to n - 1. Every data set has attributes `unit` and
+// `description`, and the .xdmf names all that the groups hold. The number of particles may change. The normal points
+// from the - to the + side, on the left of the path, along which the tangent runs. Particles are stored in single
+// precision, all else in double. While a run goes on each output time is a file of its own, RunFolder::fields(k), with
+// the same paths: it costs the same whatever was written before, and whenever the process is killed all can be read.
 #pragma once
 
 #include <cstddef>

@@ -307,7 +307,7 @@ def frames(run: Run, group: str) -> list[tuple[float, dict[str, Array]]]:
 
 def joined(group: h5py.Group | dict[str, Any]) -> dict[str, Array]:
     """The data sets of a group, and those that are components of one thing as one array as well."""
-    found = {name: item[()] for name, item in group.items()}
+    found = {name: item[()] for name, item in group.items() if isinstance(item, h5py.Dataset)}
     return found | {name: np.stack([found[part] for part in parts], axis=-1) for name, parts in COMPONENTS.items() if parts[0] in found}
 
 
