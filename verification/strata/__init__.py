@@ -67,10 +67,6 @@ class Tip:
     G_N_m: float = math.nan
 
 
-# The monitor that says that speeds of growth are no result: no verdict is about speeds.
-OF_SPEEDS = "surface_energy_share"
-
-
 @dataclass(frozen=True)
 class Suspicion:
     """Why a run is suspect: the monitor, its value (NaN where it was no finite number), the threshold and a sentence. The threshold is NaN for a
@@ -298,22 +294,10 @@ def opened(run: Run) -> Iterator[h5py.File]:
         raise LoadError(f"{path}: {error}") from error
 
 
-def frames(run: Run, group: str) -> list[tuple[float, dict[str, Array]]]:
-    """Output times (s) of a group of result.h5, such as 'fracture', with the arrays stored at each, by their names."""
-    with opened(run) as store:
-        times = store["times"][()]
-        return [(float(times[int(name)]), arrays_of(item)) for name, item in sorted(store[group].items()) if name.isdigit()]
-
-
 def joined(group: h5py.Group | dict[str, Any]) -> dict[str, Array]:
     """The data sets of a group, and those that are components of one thing as one array as well."""
     found = {name: item[()] for name, item in group.items() if isinstance(item, h5py.Dataset)}
     return found | {name: np.stack([found[part] for part in parts], axis=-1) for name, parts in COMPONENTS.items() if parts[0] in found}
-
-
-def arrays_of(group: h5py.Group) -> dict[str, Array]:
-    """All data sets below a group, by their names from it."""
-    return {name: item[()] for name, item in items_below(group) if isinstance(item, h5py.Dataset)}
 
 
 def items_below(group: h5py.Group, path: str = "") -> Iterator[tuple[str, h5py.Group | h5py.Dataset]]:
