@@ -8,7 +8,9 @@ import pytest
 from PIL import Image
 
 from reports.animation import animations, chosen, largest_principal, main, movie
+from reports.charts.animation import write_animation
 from reports.runs import load_run, load_runs
+from reports.shown import Shown
 from reports.tests.synthetic import OUTPUTS, Plan, write_run
 
 SOFT = Plan("soft", ("soft",), stop_at_m=10.0, restart_Pa=3.2e6)
@@ -57,6 +59,18 @@ def test_a_gif_moves_and_its_words_stand_beside_it(tmp_path: Path, capsys: pytes
         assert np.mean(np.any(first != np.asarray(picture.convert("RGB")), axis=-1)) > 0.01
     assert (tmp_path / "out" / "exp1_single_interface.gif").stat().st_size < 1e6
     assert set(json.loads((tmp_path / "out" / "exp1_single_interface.json").read_text())) == {"caption", "alt"}
+
+
+@pytest.mark.parametrize("name", ["stress_MPa", "pressure_MPa", "opening_mm", "y_m", "height_m", "time_s"])
+def test_whatever_changes_is_seen(tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Frames that differ in one thing are two pictures; equal ones are one."""
+    monkeypatch.setattr("reports.charts.animation.HOLD", 0)
+    data = movie(load_run(write_run(tmp_path, 1, SOFT)))
+    first = data.frames[4]
+    for shift, pictures in ((0.0, 1), (1.0, 2)):
+        data.frames = [first, Shown(**{**vars(first), name: getattr(first, name) + shift})]
+        with Image.open(write_animation(data, tmp_path / "two.gif")) as picture:
+            assert picture.n_frames == pictures
 
 
 def test_nothing_to_animate_is_said(tmp_path: Path) -> None:
