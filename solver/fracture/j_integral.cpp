@@ -100,11 +100,23 @@ void weigh_faces(const State& state, const TipGeometry& at, bool at_back, Visit 
   }
 }
 
-// w . d(t q)/ds of J, and the interaction's term.
-void sum_face(const Surface& fracture, const Frame& frame, const RingFace& face, TipSums& sums) {
+// Reactions of the fracture's points (Pa), where they rub as nodes carry them: shear that single points have too much
+// or too little of would be a K_II even of faces that stick.
+std::vector<Vec2> face_reactions(const Scene& scene, const State& state) {
+  std::vector<Vec2> r;
+  if (!state.has_fracture) return r;
+  if (scene.fracture && scene.fracture->friction > 0.0)
+    return nodal_reactions(state.fracture(), state.point_stencils.front());
+  for (const SurfacePoint& s : state.fracture().points) r.push_back(s.reaction);
+  return r;
+}
+
+// w . d(t q)/ds of J, and the interaction's term; r: the faces' reactions (Pa).
+void sum_face(const Surface& fracture, const std::vector<Vec2>& r, const Frame& frame, const RingFace& face,
+              TipSums& sums) {
   const auto net = [&](std::size_t k) -> Vec2 {
     const SurfacePoint& s = fracture.points[k];
-    return s.P * s.n - s.in_situ + s.reaction;
+    return s.P * s.n - s.in_situ + r[k];
   };
   const SurfacePoint& s = fracture.points[face.point];
   const Vec2 t = net(face.point);
@@ -180,24 +192,26 @@ std::vector<TipRule> make_tip_rules(const Scene& scene, const Rocks& rocks, cons
 }
 
 void measure_tips(const Scene& scene, const Rocks& rocks, const std::vector<TipRule>& rules, State& state) {
+  const std::vector<Vec2> r = face_reactions(scene, state);
   for (std::size_t t = 0; t < rules.size(); ++t) {
     const Frame& frame = rules[t].at.frame;
     TipSums sums;
     for (const RingParticle& of : rules[t].particles) sum_particle(scene, rocks, state, frame.e_1, of, sums);
-    for (const RingFace& face : rules[t].faces) sum_face(state.fracture(), frame, face, sums);
+    for (const RingFace& face : rules[t].faces) sum_face(state.fracture(), r, frame, face, sums);
     finish_tip(scene, rules[t].at, state, sums, state.tips[t]);
   }
 }
 
 // Without rules, which would take memory in each step.
 void measure_tips(const Scene& scene, const Rocks& rocks, State& state) {
+  const std::vector<Vec2> r = face_reactions(scene, state);
   for (Tip& tip : state.tips) {
     const TipGeometry at = tip_geometry(scene, rocks, state, tip);
     TipSums sums;
     weigh_particles(scene, rocks, state, at,
                     [&](const RingParticle& of) { sum_particle(scene, rocks, state, at.frame.e_1, of, sums); });
     weigh_faces(state, at, tip.at_back,
-                [&](const RingFace& face) { sum_face(state.fracture(), at.frame, face, sums); });
+                [&](const RingFace& face) { sum_face(state.fracture(), r, at.frame, face, sums); });
     finish_tip(scene, at, state, sums, tip);
   }
 }

@@ -80,4 +80,9 @@ struct SurfaceStencil {
 /// The copy of a node that a place with these sides belongs to: index of its record, or -1 where no such copy exists.
 int record_of(const Copies& copies, int node, SideWord sides);
 
+/// Reactions (Pa) of a surface's points as nodes carry them: r(s) = sum N_i R_i/sum N_i over the nodes that tell its
+/// sides apart, R_i = sum A N_i r/sum A N_i. The points of a cell share its jump, so what one of them takes of the
+/// force on a node is not determined. A split point without such a node, at a tip, has what the next one has.
+std::vector<Vec2> nodal_reactions(const Surface& surface, const std::vector<SurfaceStencil>& stencils);
+
 }  // namespace strata

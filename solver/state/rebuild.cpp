@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <compare>
+#include <map>
 #include <numeric>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 
 #include "state/blocks.hpp"
 #include "state/elasticity.hpp"
@@ -372,6 +374,38 @@ SideWord CutNode::key(SideWord sides) const {
   const SideWord own = everywhere || std::ranges::count(entered, interfaces) > 0 ? all : interfaces;
   const auto corner = std::ranges::find(joined, own, [](const auto& pair) { return pair[0]; });
   return corner == joined.end() ? own : (*corner)[1];
+}
+
+std::vector<Vec2> nodal_reactions(const Surface& surface, const std::vector<SurfaceStencil>& stencils) {
+  struct Force {
+    Vec2 r = Vec2::Zero();  // N/m
+    double length = 0.0;    // m
+  };
+  const std::vector<SurfacePoint>& points = surface.points;
+  std::map<std::pair<int, int>, Force> nodes;  // by the records of the two sides
+  const auto visit = [&](std::size_t q, const auto& of) {
+    const SurfaceStencil& s = stencils[q];
+    for (std::size_t n = 0; n < 9 && points[q].split; ++n) {
+      if (s.plus[n] != s.minus[n] && s.N[n] > 0.0) of(nodes[{s.plus[n], s.minus[n]}], s.N[n]);
+    }
+  };
+  for (std::size_t q = 0; q < points.size(); ++q) {
+    const double A = points[q].A;
+    visit(q, [&](Force& at, double N) { at.r += A * N * points[q].reaction, at.length += A * N; });
+  }
+  std::vector<Vec2> r;
+  std::vector<double> weight(points.size(), 0.0);
+  for (std::size_t q = 0; q < points.size(); ++q) {
+    Vec2 sum = Vec2::Zero();
+    visit(q, [&](const Force& at, double N) { sum += N / at.length * at.r, weight[q] += N; });
+    r.push_back(weight[q] > 0.0 ? Vec2{sum / weight[q]} : points[q].reaction);
+  }
+  const auto fill = [&](std::size_t q, std::size_t next) {
+    if (points[q].split && weight[q] == 0.0 && weight[next] > 0.0) r[q] = r[next], weight[q] = weight[next];
+  };
+  for (std::size_t q = 1; q < r.size(); ++q) fill(q, q - 1);
+  for (std::size_t q = r.size(); q-- > 1;) fill(q - 1, q);
+  return r;
 }
 
 int record_of(const Copies& copies, int node, SideWord sides) {
