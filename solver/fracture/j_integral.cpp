@@ -100,23 +100,19 @@ void weigh_faces(const State& state, const TipGeometry& at, bool at_back, Visit 
   }
 }
 
-// Reactions of the fracture's points (Pa), where they rub as nodes carry them: shear that single points have too much
-// or too little of would be a K_II even of faces that stick.
-std::vector<Vec2> face_reactions(const Scene& scene, const State& state) {
-  std::vector<Vec2> r;
-  if (!state.has_fracture) return r;
-  if (scene.fracture && scene.fracture->friction > 0.0)
-    return nodal_reactions(state.fracture(), state.point_stencils.front());
-  for (const SurfacePoint& s : state.fracture().points) r.push_back(s.reaction);
-  return r;
+// Reactions (Pa) of faces that rub, as nodes carry them; none of others. Shear that single points have too much or too
+// little of would be a K_II even of faces that stick.
+std::vector<Vec2> rubbing_reactions(const Scene& scene, const State& state) {
+  if (!state.has_fracture || !scene.fracture || scene.fracture->friction == 0.0) return {};
+  return nodal_reactions(state.fracture(), state.point_stencils.front());
 }
 
-// w . d(t q)/ds of J, and the interaction's term; r: the faces' reactions (Pa).
+// w . d(t q)/ds of J, and the interaction's term; r: reactions of rubbing_reactions().
 void sum_face(const Surface& fracture, const std::vector<Vec2>& r, const Frame& frame, const RingFace& face,
               TipSums& sums) {
   const auto net = [&](std::size_t k) -> Vec2 {
     const SurfacePoint& s = fracture.points[k];
-    return s.P * s.n - s.in_situ + r[k];
+    return s.P * s.n - s.in_situ + (r.empty() ? s.reaction : r[k]);
   };
   const SurfacePoint& s = fracture.points[face.point];
   const Vec2 t = net(face.point);
@@ -192,7 +188,7 @@ std::vector<TipRule> make_tip_rules(const Scene& scene, const Rocks& rocks, cons
 }
 
 void measure_tips(const Scene& scene, const Rocks& rocks, const std::vector<TipRule>& rules, State& state) {
-  const std::vector<Vec2> r = face_reactions(scene, state);
+  const std::vector<Vec2> r = rubbing_reactions(scene, state);
   for (std::size_t t = 0; t < rules.size(); ++t) {
     const Frame& frame = rules[t].at.frame;
     TipSums sums;
@@ -204,7 +200,7 @@ void measure_tips(const Scene& scene, const Rocks& rocks, const std::vector<TipR
 
 // Without rules, which would take memory in each step.
 void measure_tips(const Scene& scene, const Rocks& rocks, State& state) {
-  const std::vector<Vec2> r = face_reactions(scene, state);
+  const std::vector<Vec2> r = rubbing_reactions(scene, state);
   for (Tip& tip : state.tips) {
     const TipGeometry at = tip_geometry(scene, rocks, state, tip);
     TipSums sums;

@@ -137,7 +137,13 @@ RockModel rock_of(const Scene& scene, double time, State& state, QuasistaticMode
       model.dw_dP = opening_per_pressure(state, model.condensed, model.places, at, model.factor);
       model.dw_dP_of = at.pieces;
     }
-    RockResponse rock{Eigen::VectorXd::Zero(P.size()), model.dw_dP, E_prime, closing, lost, fronts, rise};
+    RockResponse rock{.w = Eigen::VectorXd::Zero(P.size()),
+                      .dw_dP = model.dw_dP,
+                      .E_prime = E_prime,
+                      .closing = closing,
+                      .lost = lost,
+                      .front = fronts,
+                      .rise = rise};
     for (std::size_t k = 0; k < model.places.size(); ++k) {
       const ContactPlace& place = model.places[k];
       if (place.tie < 0 && place.surface == 0) add_place(place, at.answers[k], at.w[k].dot(place.n), rock);

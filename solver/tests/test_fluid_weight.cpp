@@ -29,7 +29,7 @@ struct Channel {
 
   bool step(const Inlet& inlet, double dt) {
     const RockModel rigid = [this](const VectorXd&) {
-      return RockResponse{w, Eigen::MatrixXd::Zero(w.size(), w.size()), {}, {}, {}, rise};
+      return RockResponse{.w = w, .dw_dP = Eigen::MatrixXd::Zero(w.size(), w.size()), .rise = rise};
     };
     return step_reynolds(fluid, inlet, dt, rigid, line, balance).converged;
   }
