@@ -18,7 +18,8 @@ STEPS = 12  # of colour: few enough for a GIF, whose frames then differ in littl
 
 def write_animation(data: Shown, path: Path) -> Path:
     """Write a GIF whose frames are those of the data."""
-    figure = new_figure(9.0, 4.7, data.title, 110)
+    figure = new_figure(229.0, 119.0)
+    figure.suptitle(data.title, x=0.008, ha="left", fontsize=9, fontweight="bold", wrap=True)
     left, *right = figure.subplot_mosaic([["s", "p"], ["s", "w"], ["s", "h"]], width_ratios=(1.15, 1.0)).values()
     parts = [_draw_rock(figure, left, data), *_draw_lines(right, data)]
     figure.get_layout_engine().set(w_pad=0.1, h_pad=0.06)

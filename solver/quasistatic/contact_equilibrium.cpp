@@ -361,10 +361,9 @@ LawAnswer::Piece beyond(LawAnswer::Piece piece, std::size_t border, const LawLin
 // the jumps are linear in c from one change of a place's piece to the next. c may rise on the way, but the path cannot
 // turn back to where all is held, of which there is one, and jumps stay finite: it ends at c = 0 (Lemke's method; that
 // there is an equilibrium whatever the friction: Klarbring & Pang, SIAM J. Optim. 8, 1998), or something moves freely.
-Equilibrium release(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
-                    TangentFactor& factor) {
-  Condensed held = condensed;  // with slivers of rock held a little all the way
-  held.S.diagonal() *= 1.0 + stiffening;
+// `held`: the body, or with slivers of rock held a little all the way.
+Equilibrium release(const State& state, const Condensed& condensed, const Condensed& held,
+                    const std::vector<ContactPlace>& places, TangentFactor& factor) {
   Equilibrium at;
   Confined path = all_held(state, places);
   factor = TangentFactor{};
@@ -459,7 +458,13 @@ Equilibrium solve_equilibrium(const State& state, const Condensed& condensed, co
       start.size() == condensed.size() ? start : Eigen::VectorXd(Eigen::VectorXd::Zero(condensed.size()));
   at.j = first;
   if (iterate(state, condensed, places, factor, at)) return at;
-  return release(state, condensed, places, factor);
+  try {
+    return release(state, condensed, condensed, places, factor);
+  } catch (const NumericalFailure&) {
+    Condensed held = condensed;
+    held.S.diagonal() *= 1.0 + stiffening;
+    return release(state, condensed, held, places, factor);
+  }
 }
 
 Eigen::MatrixXd opening_per_pressure(const State& state, const Condensed& condensed,

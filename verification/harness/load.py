@@ -3,7 +3,7 @@
 import h5py
 
 from verification.strata import (  # noqa: F401
-    GROWTH_M, Array, Event, LoadError, Run, Summary, Suspicion, Tip, columns_of, items_below, load, opened, read_summary,
+    GROWTH_M, Array, Event, LoadError, Run, Summary, Suspicion, Tip, columns_of, items_below, load, opened, read_history, read_summary,
 )  # fmt: skip
 
 # The monitor that says that speeds of growth are no result: no verdict is about speeds.
