@@ -111,48 +111,31 @@ double LawLines::bound(double n) const {
   return slides ? friction * std::max(0.0, n) : HUGE_VAL;
 }
 
-LawAnswer LawLines::on(LawAnswer::Piece piece) const {
+LawAnswer LawLines::at(double w_n, double w_t, double given) const {
   LawAnswer r;
-  r.piece = piece;
-  const LawLine& line = LawAnswer::line_of(piece) == Piece::closed ? contact : own;
-  r.n_0 = line.at(0.0), r.dn_dn = -line.D;
-  const Shear of = r.shear();
-  if (of == Shear::sticks || !slides) {
-    r.t_0 = shear.at(0.0), r.dt_dt = -shear.D;
-  } else if (of != Shear::free) {
-    const double sign = of == Shear::slips_plus ? 1.0 : -1.0;
-    r.t_0 = sign * friction * r.n_0, r.dt_dn = sign * friction * r.dn_dn;
-  }
-  return r;
-}
-
-LawAnswer LawLines::at(double w_n, double w_t) const {
   const LawLine line = largest_at(*this, w_n);
-  const double n = line.at(w_n), most = bound(n), held = shear.at(w_t), t = std::clamp(held, -most, most);
-  Shear of = held > 0.0 ? Shear::slips_plus : Shear::slips_minus;
-  if (t == held) of = slides ? Shear::sticks : Shear::free;
-  if (most == 0.0) of = Shear::free;
-  LawAnswer r = on(LawAnswer::join(line.piece, of));
-  r.n = n, r.energy = energy(w_n);
-  if (most == 0.0) return r;
-  r.t = t;
-  r.energy +=
-      t == held ? 0.5 * (shear.r_0 + held) * (shear.w_0 - w_t) : 0.5 * (t * t - shear.r_0 * shear.r_0) / shear.D;
-  return r;
-}
-
-std::array<double, 3> LawLines::inside(LawAnswer::Piece piece, double w_n, double w_t) const {
-  const double n = contact.at(w_n), pushed = n - own.at(w_n), held = shear.at(w_t), most = friction * n;
-  switch (LawAnswer::shear_of(piece)) {
-    case Shear::sticks:
-      return {HUGE_VAL, most - held, most + held};
-    case Shear::slips_plus:
-      return {pushed, held - most, HUGE_VAL};
-    case Shear::slips_minus:
-      return {pushed, HUGE_VAL, -held - most};
-    default:
-      return {LawAnswer::line_of(piece) == Piece::closed ? pushed : -pushed, HUGE_VAL, HUGE_VAL};
+  r.piece = line.piece, r.n = line.at(w_n), r.n_0 = line.at(0.0), r.dn_dn = -line.D;
+  r.energy = energy(w_n);
+  const bool follows = given < 0.0;
+  // A bound that is given does not ask for the normal reaction: else friction would jump where a face opens, and the
+  // energy with it.
+  if (slides && (friction == 0.0 || (follows && r.n <= 0.0))) return r;
+  const double held = shear.at(w_t), most = follows || !slides ? bound(r.n) : given;
+  r.t = std::clamp(held, -most, most);
+  if (r.t == held) {
+    if (slides) r.set(Shear::sticks);
+    r.t_0 = shear.at(0.0), r.dt_dt = -shear.D;
+    r.energy += 0.5 * (shear.r_0 + held) * (shear.w_0 - w_t);
+    return r;
   }
+  const double sign = std::copysign(1.0, held);
+  r.set(sign > 0.0 ? Shear::slips_plus : Shear::slips_minus);
+  r.t_0 = follows ? sign * friction * r.n_0 : r.t;
+  r.dt_dn = follows ? sign * friction * r.dn_dn : 0.0;
+  // A given bound makes sliding the gradient of an energy, too.
+  const double slid = follows ? 0.0 : most * std::abs(held - r.t);
+  r.energy += (0.5 * (r.t * r.t - shear.r_0 * shear.r_0) + slid) / shear.D;
+  return r;
 }
 
 // Lines that fall meet the law's answer at the largest of theirs.

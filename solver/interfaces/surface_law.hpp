@@ -21,13 +21,8 @@ struct LawAnswer {
   double dn_dn = 0.0, dt_dt = 0.0, dt_dn = 0.0;  // Pa/m
   double energy = 0.0;  // stored on the way from no jump, that of friction's own dissipation aside (J/m^2)
 
-  static Shear shear_of(Piece piece) { return Shear{static_cast<int>(piece) / 4}; }
-  static Piece line_of(Piece piece) { return Piece{static_cast<char>(static_cast<int>(piece) % 4)}; }
-  static Piece join(Piece line, Shear to) {
-    return Piece{static_cast<char>(static_cast<int>(line) + 4 * static_cast<int>(to))};
-  }
-  Shear shear() const { return shear_of(piece); }
-  void set(Shear to) { piece = join(line_of(piece), to); }
+  Shear shear() const { return Shear{static_cast<int>(piece) / 4}; }
+  void set(Shear to) { piece = Piece{static_cast<char>(static_cast<int>(piece) % 4 + 4 * static_cast<int>(to))}; }
 };
 
 struct Reaction {
@@ -67,14 +62,8 @@ struct LawLines {
   double bound(double n) const;  // of shear, at a normal reaction (Pa)
 
   /// The reaction at a jump (m): continuous and, but for the bound of friction, the gradient of a convex energy.
-  LawAnswer at(double w_n, double w_t) const;
-
-  /// The lines of a piece, as they go on where the jump has left it.
-  LawAnswer on(LawAnswer::Piece piece) const;
-
-  /// How far a jump (m) is inside the borders of a piece (Pa, negative beyond): that to another normal line, that to
-  /// sliding along the tangent or from it, and the same against the tangent.
-  std::array<double, 3> inside(LawAnswer::Piece piece, double w_n, double w_t) const;
+  /// given: the bound of friction where it is not to follow the normal reaction (Pa); it then acts on open faces, too.
+  LawAnswer at(double w_n, double w_t, double given = -1.0) const;
 
   /// The reaction that satisfies at() at the end of a step, in closed form (backward Euler, so stable for any
   /// stiffness): what runs with inertia settle on is the equilibrium of the law itself, whatever the step.

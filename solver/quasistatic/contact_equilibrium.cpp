@@ -33,8 +33,9 @@ Vec2 jump_of(const ContactPlace& place, const Eigen::VectorXd& j) {
   return {times(place.D[0], j), times(place.D[1], j)};
 }
 
-LawLines lines_at(const State& state, const ContactPlace& place) {
-  return lines_of(place.law, place.k, place.start, place.in_situ.dot(place.n) - point_of(state, place).P);
+LawAnswer answer_at(const State& state, const ContactPlace& place, const Vec2& w) {
+  return lines_of(place.law, place.k, place.start, place.in_situ.dot(place.n) - point_of(state, place).P)
+      .at(w.dot(place.n), w.dot(place.t()), place.bound);
 }
 
 void add_force(const ContactPlace& place, const Vec2& traction, Eigen::VectorXd& f) {
@@ -61,7 +62,7 @@ double answer(const State& state, const std::vector<ContactPlace>& places, Equil
   for (std::size_t k = 0; k < places.size(); ++k) {
     const ContactPlace& place = places[k];
     at.w[k] = jump_of(place, at.j) - place.bonded;
-    const LawAnswer& r = at.answers[k] = lines_at(state, place).at(at.w[k].dot(place.n), at.w[k].dot(place.t()));
+    const LawAnswer& r = at.answers[k] = answer_at(state, place, at.w[k]);
     at.pieces[k] = r.piece;
     energy += place.A * (r.energy - net_load(state, place).dot(at.w[k]));
   }
@@ -138,14 +139,13 @@ int unknowns_that_move(const TangentFactor& factor, Eigen::Index n) {
   return static_cast<int>((v.array().abs() > takes_part * v.lpNorm<Eigen::Infinity>()).count());
 }
 
-constexpr double stiffening = 1e-9;
-
 // Factors the tangent at `at` unless `factor` has it already; false where parts of the block move freely. On the way to
 // a solution they may for a while, so the factor is then that of a tangent slightly stiffer. A sliver of rock with
 // fewer particles than its copies of nodes have unknowns (between a fracture and an interface that it meets, or in a
 // sharp turn) has motions without strain, too; no load drives them, and the same stiffening holds them.
 bool factor_tangent(const Condensed& condensed, const std::vector<ContactPlace>& places,
                     const std::vector<LawAnswer>& answers, const State& state, TangentFactor& factor) {
+  constexpr double stiffening = 1e-9;
   constexpr double on_the_way = 1e-6;  // parts that come to rest later: a step that does not leave all sight of it
   constexpr int sliver =
       24;  // unknowns: fewer than the copies of 3 x 3 nodes have with one jump each, and some to spare
@@ -186,8 +186,7 @@ double slope(const State& state, const std::vector<ContactPlace>& places, const 
   double sum = 0.0;
   for (std::size_t k = 0; k < places.size(); ++k) {
     const ContactPlace& place = places[k];
-    const LawAnswer r =
-        lines_at(state, place).at((w[k] + length * dw[k]).dot(place.n), (w[k] + length * dw[k]).dot(place.t()));
+    const LawAnswer r = answer_at(state, place, w[k] + length * dw[k]);
     const Vec2 traction = net_load(state, place) + r.n * place.n + r.t * place.t();
     sum -= place.A * traction.dot(dw[k]);
   }
@@ -232,15 +231,21 @@ bool refine(const State& state, const Condensed& condensed, const std::vector<Co
   return false;
 }
 
-// Newton's method on the pieces from at.j; false where it does not end within its iterations. Without sliding places
-// the laws have an energy, along which steps are shortened.
+// Newton's method on the pieces from at.j; false where it does not end within its iterations. bounds_held: the problem
+// is convex and any state in balance its solution.
 bool iterate(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
-             TangentFactor& factor, Equilibrium& at) {
+             TangentFactor& factor, bool bounds_held, Equilibrium& at) {
   constexpr int most_iterations = 200;
   constexpr int plain_iterations = 15;  // without line search it ends within some 5 where it does
   constexpr int solved_from = 5;        // from this iteration on balance counts, whatever the pieces
   constexpr double lost_digits = 1e-4;  // no more is out of balance for the digits that a factor has lost
-  answer(state, places, at);
+  if (bounds_held) {
+    evaluate(state, condensed, places, at);
+    if (at.residual < least_unbalanced) return true;
+  } else {
+    answer(state, places, at);
+  }
+  bool singular = false, stays = false;
   Pivoting pivoting{first_pieces(places, at.answers, !at.j.isZero(0.0))};
   for (at.iterations = 1; at.iterations <= most_iterations; ++at.iterations) {
     const bool search = at.iterations > plain_iterations && !slips(at.answers);
@@ -251,13 +256,15 @@ bool iterate(const State& state, const Condensed& condensed, const std::vector<C
     }
     const Pieces pieces = pieces_of(pivoting.on);
     if (slips(pivoting.on) && at.iterations > 2 * plain_iterations) return false;
-    const bool singular = !factor_tangent(condensed, places, pivoting.on, state, factor);
-    const Eigen::VectorXd next = solve_on_pieces(state, condensed, places, pivoting.on, factor);
+    singular = !factor_tangent(condensed, places, pivoting.on, state, factor);
+    // A tangent that was stiffened does not solve its pieces at once: from there on by what is out of balance.
+    const Eigen::VectorXd next = stays ? Eigen::VectorXd(at.j + factor.solve(at.unbalanced))
+                                       : solve_on_pieces(state, condensed, places, pivoting.on, factor);
     const double length = search ? step_length(state, condensed, places, at, next) : 1.0;
     at.j = length == 1.0 ? next : Eigen::VectorXd(at.j + length * (next - at.j));
     if (!at.j.allFinite()) report_mechanism(state, places);
     answer(state, places, at);
-    if (at.pieces != pieces && at.iterations < solved_from) continue;
+    if (!bounds_held && at.pieces != pieces && at.iterations < solved_from) continue;
     evaluate(state, condensed, places, at);
     // Places on the border of two pieces go by digits that a factor which has followed changes lost.
     if (length == 1.0 && at.pieces != pieces && factor.changed() && at.residual > least_unbalanced &&
@@ -265,145 +272,63 @@ bool iterate(const State& state, const Condensed& condensed, const std::vector<C
       at.j += factor.solve(at.unbalanced);
       evaluate(state, condensed, places, at);
     }
-    const bool solved = at.residual < least_unbalanced && at.iterations >= solved_from;
-    if (length < 1.0 || (!solved && at.pieces != pieces)) continue;
-    if (singular) report_mechanism(state, places);
+    stays = bounds_held && length < 1.0 && at.pieces == pieces;
+    const bool solved =
+        at.residual < least_unbalanced && (bounds_held || (length == 1.0 && at.iterations >= solved_from));
+    const bool settled = solved || (length == 1.0 && at.pieces == pieces);
+    if (!settled) continue;
+    if (singular && !bounds_held) report_mechanism(state, places);
     if (in_balance(condensed, at)) return true;
-    if (!factor.changed()) return false;
-    if (refine(state, condensed, places, factor, pieces, at)) return true;  // the digits that it lost
-    factor = TangentFactor{};
+    if (factor.changed()) {  // perhaps for the digits that it lost
+      if (refine(state, condensed, places, factor, pieces, at)) return true;
+      factor = TangentFactor{};
+      continue;
+    }
+    if (bounds_held) report_mechanism(state, places);
+    return false;
   }
+  if (bounds_held && singular) report_mechanism(state, places);  // the energy falls without end
   return false;
 }
 
-// A border of a piece (see LawLines::inside()) that is met after some change of the confinement (Pa).
-struct Border {
-  std::size_t place = std::numeric_limits<std::size_t>::max(), which = 0;
-  double away = HUGE_VAL;
-};
-
-// Places pressed together by a confinement c (Pa) beside what presses them anyway: laws and pieces of all, and, as long
-// as no piece changes, their jumps w + c per_c.
-struct Confined {
-  std::vector<LawLines> lines;  // without confinement
-  Pieces on;
-  std::vector<Vec2> w, per_c;  // m, m/Pa
-
-  // Not quite the same everywhere, so that places that are alike give way one after the other.
-  static double share(std::size_t k) { return 1.0 + 1e-3 * std::sin(1.0 + static_cast<double>(k)); }
-
-  LawLines law(std::size_t k, double c) const {
-    LawLines of = lines[k];
-    of.contact.r_0 += c * share(k);
-    return of;
-  }
-
-  std::array<double, 3> inside(const std::vector<ContactPlace>& places, std::size_t k, double c) const {
-    const Vec2 at = w[k] + c * per_c[k];
-    return law(k, c).inside(on[k], at.dot(places[k].n), at.dot(places[k].t()));
-  }
-};
-
-// Everything that can be closed and sticks.
-Confined all_held(const State& state, const std::vector<ContactPlace>& places) {
-  using Piece = LawAnswer::Piece;
-  Confined at;
-  at.w.resize(places.size()), at.per_c.resize(places.size());
-  for (const ContactPlace& place : places) {
-    const LawLines& law = at.lines.emplace_back(lines_at(state, place));
-    at.on.push_back(law.friction > 0.0 ? Piece::stick : law.contact.D > 0.0 ? Piece::closed : Piece::open);
-  }
-  return at;
-}
-
-// The jumps on the present pieces without confinement, which are returned, and how those of places go with it.
-Eigen::VectorXd solve_confined(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
-                               TangentFactor& factor, Confined& at) {
-  std::vector<LawAnswer> answers;
-  Eigen::VectorXd f = Eigen::VectorXd::Zero(condensed.size());
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    const LawAnswer &r = answers.emplace_back(at.lines[k].on(at.on[k])), pressed = at.law(k, 1.0).on(at.on[k]);
-    if (at.lines[k].contact.D > 0.0)
-      add_force(places[k], places[k].along(pressed.n_0 - r.n_0 - Confined::share(k), pressed.t_0 - r.t_0), f);
-  }
-  if (!factor_tangent(condensed, places, answers, state, factor)) report_mechanism(state, places);
-  const Eigen::VectorXd j = solve_on_pieces(state, condensed, places, answers, factor), per_c = factor.solve(f);
-  for (std::size_t k = 0; k < places.size(); ++k)
-    at.w[k] = jump_of(places[k], j) - places[k].bonded, at.per_c[k] = jump_of(places[k], per_c);
-  return j;
-}
-
-// The border that comes first as c changes by steps of `step` (Pa); the last one that was crossed aside.
-Border next_border(const std::vector<ContactPlace>& places, const Confined& at, double c, double step,
-                   const Border& last) {
-  Border next;
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    const auto here = at.inside(places, k, c), there = at.inside(places, k, c + step);
-    for (std::size_t b = 0; b < here.size(); ++b) {
-      const double lost = here[b] - there[b];
-      if (!(lost > 0.0) || (k == last.place && b == last.which)) continue;
-      const double away = std::max(0.0, here[b]) / lost * std::abs(step);
-      if (away < next.away) next = {k, b, away};
-    }
-  }
-  return next;
-}
-
-// The piece on the other side of a border; held: what shear would be if the place stuck (Pa).
-LawAnswer::Piece beyond(LawAnswer::Piece piece, std::size_t border, const LawLines& law, double held) {
-  using Piece = LawAnswer::Piece;
-  if (border > 0) return piece != Piece::stick ? Piece::stick : border == 1 ? Piece::slip_plus : Piece::slip_minus;
-  if (piece != Piece::open) return Piece::open;
-  return law.friction == 0.0 ? Piece::closed : held > 0.0 ? Piece::slip_plus : Piece::slip_minus;
-}
-
-// Coulomb's law by a confinement c of all places that falls to nothing. A large one holds everything, and from there on
-// the jumps are linear in c from one change of a place's piece to the next. c may rise on the way, but the path cannot
-// turn back to where all is held, of which there is one, and jumps stay finite: it ends at c = 0 (Lemke's method; that
-// there is an equilibrium whatever the friction: Klarbring & Pang, SIAM J. Optim. 8, 1998), or something moves freely.
-// `held`: the body, or with slivers of rock held a little all the way.
-Equilibrium release(const State& state, const Condensed& condensed, const Condensed& held,
-                    const std::vector<ContactPlace>& places, TangentFactor& factor) {
+// Friction by bounds that are held while the jumps are found, from `start` on, and renewed from the normal reactions.
+Equilibrium solve_with_fixed_bounds(const State& state, const Condensed& condensed, std::vector<ContactPlace> places,
+                                    const Eigen::VectorXd& start, TangentFactor& factor) {
+  constexpr int most_rounds = 400;
+  constexpr double renewed = 1e-10;  // change of a bound against the largest
   Equilibrium at;
-  Confined path = all_held(state, places);
-  factor = TangentFactor{};
-  double c = 0.0, step = -1e6;  // Pa; any, for slopes
-  Border last;
-  for (std::size_t changes = 0; changes < 20 * places.size(); ++changes) {
-    at.iterations = static_cast<int>(changes);
-    at.j = solve_confined(state, held, places, factor, path);
-    const auto inside = [&](double at_c) { return path.inside(places, last.place, at_c)[last.which]; };
-    if (changes > 0) {
-      if (inside(c + step) < inside(c)) step = -step;  // into the piece that the last change leads to
-    } else {
-      for (std::size_t k = 0; k < places.size(); ++k) {
-        const auto none = path.inside(places, k, 0.0), some = path.inside(places, k, 1e6);
-        for (std::size_t b = 0; b < none.size(); ++b)
-          if (some[b] > none[b]) c = std::max(c, 1e6 * none[b] / (none[b] - some[b]));
-      }
+  at.j = start;
+  evaluate(state, condensed, places, at);
+  factor.pieces.clear();
+  double change = 0.0;
+  for (int round = 0; round < most_rounds; ++round) {
+    double largest = 0.0;
+    change = 0.0;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      ContactPlace& place = places[k];
+      if (!place.law.slides()) continue;
+      const double bound = place.law.friction() * std::max(0.0, at.answers[k].n);
+      change = std::max(change, std::abs(bound - std::max(0.0, place.bound)));
+      largest = std::max(largest, bound);
+      place.bound = bound;
     }
-    last = next_border(places, path, c, step, last);
-    if (step < 0.0 && last.away >= c) {
-      evaluate(state, condensed, places, at);
-      at.j += factor.solve(at.unbalanced);  // without what `held` holds too much
-      factor = TangentFactor{};
-      for (int correction = 0; correction < 5; ++correction) {  // of places that have come to stand beyond a border
-        evaluate(state, condensed, places, at);
-        if (!factor_tangent(condensed, places, at.answers, state, factor)) report_mechanism(state, places);
-        if (in_balance(condensed, at)) return at;
-        at.j += factor.solve(at.unbalanced);
-      }
-      report_mechanism(state, places);
-    }
-    if (last.away == HUGE_VAL) report_mechanism(state, places);
-    c += std::copysign(last.away, step);
-    LawAnswer::Piece& piece = path.on[last.place];
-    const LawLines& law = path.lines[last.place];
-    const Vec2 w = path.w[last.place] + c * path.per_c[last.place];
-    piece = beyond(piece, last.which, law, law.shear.at(w.dot(places[last.place].t())));
+    if (round > 0 && change <= renewed * largest) break;
+    if (iterate(state, condensed, places, factor, true, at)) continue;
+    at.j.setZero();  // from the last round it went round: the problem is convex, so any start will do
+    factor = TangentFactor{};
+    if (!iterate(state, condensed, places, factor, true, at)) break;
   }
-  throw NumericalFailure("no equilibrium of the surfaces was found within " + std::to_string(20 * places.size()) +
-                         " changes of places that stick, slide or open. Use less friction or larger cells");
+  for (ContactPlace& place : places) place.bound = -1.0;
+  const double found = at.residual;
+  evaluate(state, condensed, places, at);
+  factor.pieces.clear();  // bounds that follow the normal reaction have another tangent
+  if (at.residual < 1e-8) {
+    if (factor_tangent(condensed, places, at.answers, state, factor)) return at;
+    report_mechanism(state, places);
+  }
+  throw NumericalFailure("no equilibrium of the surfaces was found; the force out of balance is " +
+                         std::to_string(std::max(found, at.residual)) +
+                         " of the load. Use less friction or a smaller load step");
 }
 
 }  // namespace
@@ -436,7 +361,7 @@ std::vector<ContactPlace> contact_places(const Scene& scene, const Rocks& rocks,
     for (std::size_t q = 0; q < surface.points.size(); ++q) {
       const SurfacePoint& s = surface.points[q];
       if (!s.split) continue;
-      places.push_back({k, q, -1, law, stiffness, s.A, s.n, s.in_situ, s.bonded, start_of(s),
+      places.push_back({k, q, -1, law, stiffness, s.A, s.n, s.in_situ, s.bonded, -1.0, start_of(s),
                         jump_rows(condensed, state.point_stencils[k][q])});
     }
   }
@@ -457,14 +382,8 @@ Equilibrium solve_equilibrium(const State& state, const Condensed& condensed, co
   const Eigen::VectorXd first =
       start.size() == condensed.size() ? start : Eigen::VectorXd(Eigen::VectorXd::Zero(condensed.size()));
   at.j = first;
-  if (iterate(state, condensed, places, factor, at)) return at;
-  try {
-    return release(state, condensed, condensed, places, factor);
-  } catch (const NumericalFailure&) {
-    Condensed held = condensed;
-    held.S.diagonal() *= 1.0 + stiffening;
-    return release(state, condensed, held, places, factor);
-  }
+  if (iterate(state, condensed, places, factor, false, at)) return at;
+  return solve_with_fixed_bounds(state, condensed, places, first, factor);
 }
 
 Eigen::MatrixXd opening_per_pressure(const State& state, const Condensed& condensed,

@@ -35,12 +35,11 @@ std::vector<ContactPlace> contact_places(const Scene& scene, const Rocks& rocks,
 
 /// Solves S j = sum_s A_s D_s^T (P n - t_in_situ + r(D j)) + condensed.load.jumps for the pressures that the state's
 /// points hold, by Newton's method on the pieces of the laws (semismooth, by block pivoting; see contact_pieces.hpp).
-/// Where that does not end by itself, and where friction is high it need not, places are pressed together by a
-/// confinement that holds them all, and it is let go: a path of straight pieces, which ends at an equilibrium whatever
-/// the friction. What is returned depends on loads and memory only, not on `start` (the first guess, or empty), where
-/// there is one equilibrium; with much friction there may be several. `factor` is reused where the pieces are the same,
-/// and left for what follows. Throws NumericalFailure where parts of the block move freely, or where no equilibrium is
-/// found.
+/// Where that does not end by itself, friction's bounds are held fixed, so that the problem is the minimum of a convex
+/// energy (Newton with a line search), and renewed until they agree with the normal reactions. What is returned depends
+/// on loads and memory only, not on `start` (the first guess, or empty). `factor` is reused where the pieces are the
+/// same, and left for what follows. Throws NumericalFailure where parts of the block move freely, or where no
+/// equilibrium is found.
 Equilibrium solve_equilibrium(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
                               const Eigen::VectorXd& start, TangentFactor& factor);
 

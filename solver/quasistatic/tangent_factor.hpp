@@ -25,6 +25,7 @@ struct ContactPlace {
   Vec2 n = Vec2::Zero();
   Vec2 in_situ = Vec2::Zero();  // Pa
   Vec2 bonded = Vec2::Zero();   // jump when it split (m)
+  double bound = -1.0;          // friction's bound where it is held fixed (Pa)
   LawStart start;               // of the last equilibrium
   std::array<SparseRow, 2> D;   // rows of the jump's x and y
 

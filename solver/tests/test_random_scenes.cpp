@@ -180,13 +180,12 @@ std::string run_a_second(const Scene& scene) {
          " s";
 }
 
-// Runs the scenes of some seeds, with so many times their interfaces' friction; prints what is wrong with which.
-void run_seeds(unsigned first, unsigned last, double friction = 1.0) {
+// Runs the scenes of some seeds; prints what is wrong with which.
+void run_seeds(unsigned first, unsigned last) {
   std::map<std::string, int> tally;
   std::string wrong;
   for (unsigned seed = first; seed < last; ++seed) {
-    Scene scene = random_scene(seed);
-    for (InterfaceLaw& law : scene.laws) law.coefficient *= friction, law.residual_friction *= friction;
+    const Scene scene = random_scene(seed);
     for (const bool whole_run : {false, true}) {
       std::string outcome;
       try {
@@ -279,17 +278,11 @@ TEST_CASE("random scenes with inertia on graded grids keep their balances") {
 
 // Requires that every random scene ends in equilibria that are in balance (from the particles' stress) and satisfy
 // every law and inequality to 1e-8 of the load, or in a reported mechanism, in a bounded number of steps.
-// Mutations that fail: friction's bound 10 % less; its memory left out; the force of tips' springs left out; no check
-// of the smallest eigenvalue (0); corrections that do not bring digits back but stay (805, in the thousand). On the way
-// here 10 % of the scenes ended in "no equilibrium".
+// Mutations that fail: friction's given bound left out on open faces, or its bound 10 % less; its memory left out; no
+// line search; the force of tips' springs left out; no check of the smallest eigenvalue (0); corrections that do not
+// bring digits back but stay (805, in the thousand). On the way here 10 % of the scenes ended in "no equilibrium".
 TEST_CASE("random scenes end in a right state or a mechanism") {
   run_seeds(0, 155);
-}
-
-// The same with three times the friction, up to 3.6: Newton's method often goes round. A mutation that fails: no path
-// from full hold to none.
-TEST_CASE("random scenes with much friction end in a right state or a mechanism") {
-  run_seeds(0, 60, 3.0);
 }
 
 // The same for 1000; hidden since it takes a minute: strata_tests "[thousand]".
