@@ -205,7 +205,7 @@ double points_of(const Scene& scene) {
 double memory_need(const Scene& scene) {
   const double points = points_of(scene);
   const bool inertia = scene.numerics.mechanics != Numerics::Mechanics::quasistatic;
-  const double moving = 19e6 + (inertia ? 1250.0 * points : 0.0);
+  const double moving = 21e6 + (inertia ? 1250.0 * points : 0.0);
   if (inertia && !weighs_growth(scene)) return moving;
   const double solved = mirror_symmetric(scene) && !inertia ? 0.5 : 1.0;  // of the block
   const double n = 2.0 * (solved * cells_along(scene, 0) + 1.0) * (cells_along(scene, 1) + 1.0);
