@@ -159,7 +159,7 @@ TEST_CASE("Memory needed grows with the particles, more so with a factor, and le
   CHECK(memory_need(scene) == Approx(process + equilibria(80.0, 6.0 * along)));
   CHECK_FALSE(too_large(scene, memory_need(scene)).has_value());
   CHECK_THAT(too_large(scene, 0.5 * memory_need(scene)).value(),
-             Catch::Contains("need about 0.198 GB, and 0.0991 GB are available"));
+             Catch::Contains("need about 0.2 GB, and 0.1 GB are available"));
   scene.fracture->direction = Fracture::Direction::max_hoop;
   CHECK(memory_need(scene) == Approx(process + equilibria(80.0, 6.0 * along, 2000.0)));
   scene.laws[scene.strata.interfaces[0].law].kind = InterfaceLaw::Kind::soft;
