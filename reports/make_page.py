@@ -10,7 +10,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
-from reports.catalogue import catalogue  # noqa: E402  (after the path to the project is known)
+from reports.animation import animations  # noqa: E402  (after the path to the project is known)
+from reports.catalogue import catalogue  # noqa: E402
 from reports.figures import OUT, make  # noqa: E402
 from reports.page import topic_shown, topics, write_index  # noqa: E402
 from reports.runs import add_missing, load_runs  # noqa: E402
@@ -49,11 +50,12 @@ def main(arguments: list[str] | None = None) -> int:
         (out / "index.html").touch()  # the others link to it
         with ProcessPoolExecutor(max_workers=2) as pool:  # the other pages are drawn at the same time
             waiting = {name: pool.submit(maker) for name, maker in makers.items()}
+            moving = pool.submit(animations, runs, out / "animations")
             figures = [make(figure, out) for figure in catalogue(runs, options.runs, options.experiments)]
             sections = [topic_shown(topic, out) for topic in topics(ladder, options.precision, options.records)]
-            beside = {name: one.result() for name, one in waiting.items()}
+            beside, films = {name: one.result() for name, one in waiting.items()}, moving.result()
         claims = read_claims(options.runs / "claims.json")
-        page = write_index(out, runs, claims, figures, points, sections, **beside)
+        page = write_index(out, runs, claims, figures, points, sections, films, **beside)
         pages = [*beside.values(), *figures, *sections, *(one.made for one in sections if getattr(one, "made", None))]
         told = f"{page}: {sum(not one.lack for one in figures)} of {len(figures)} figures, {len(runs)} runs"
     for one in pages:

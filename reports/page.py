@@ -1,5 +1,6 @@
 """Turns runs, verdicts, figures and kept records into the front page: tables as plain data, then the template."""
 
+import json
 import traceback
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -46,12 +47,15 @@ def topic_shown(topic: Topic | Shown, out: Path) -> Shown:
 
 
 def write_index(
-    out: Path, runs: list[Run], claims: list[ClaimResult], figures: list[Shown], points: Sequence[Point], sections: Sequence[Shown], **beside: Shown
-) -> Path:
-    """Write index.html and runs.html; beside: what is told of the pages `verification` and `stability`."""
+    out: Path, runs: list[Run], claims: list[ClaimResult], figures: list[Shown], points: Sequence[Point], sections: Sequence[Shown],
+    films: Sequence[Path] = (), **beside: Shown,
+) -> Path:  # fmt: skip
+    """Write index.html and runs.html; films: the animations, below `out`; beside: what is told of the pages `verification` and `stability`."""
     compared = comparisons(runs)
     write_runs(out, runs, compared)
-    return write_page(out, "index.html", {**context(runs, claims, figures, points), "inertia": inertia_words(compared), "topics": sections, **beside})
+    return write_page(out, "index.html", {**context(runs, claims, figures, points), "inertia": inertia_words(compared), "topics": sections,
+                                         "films": {film.stem: Shown(path=film.relative_to(out), **json.loads(film.with_suffix(".json").read_text("utf-8"))) for film in films},
+                                         **beside})
 
 
 def context(runs: list[Run], claims: list[ClaimResult], figures: list[Shown], points: Sequence[Point]) -> dict[str, Any]:

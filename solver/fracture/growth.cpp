@@ -299,8 +299,8 @@ std::string what_stops(const Scene& scene, const State& state, const Tip& tip) {
   const double fine_cells = scene.numerics.ring_cells + 1.0;  // its rings, and what functions there reach
   if (!state.grid.fine_around(at.x(), at.y(), fine_cells * h))
     return fmt::format(
-        "within {} cells of coarser ones; move numerics.fine_left_m, fine_right_m, fine_bottom_m or fine_top_m, or "
-        "leave out far_cell_m",
+        "within {} cells of coarser ones; make the block larger where they lie beyond it (domain.beyond_m), else move "
+        "numerics.fine_left_m, fine_right_m, fine_bottom_m or fine_top_m, or leave out far_cell_m",
         fine_cells);
   return "";
 }

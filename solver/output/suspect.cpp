@@ -43,8 +43,8 @@ struct Watch {
     note(monitor, value, little && value != 0.0 ? std::nullopt : threshold, why);
   }
 
-  void inputs(), energy(), motion(), flow(), fluid(), growth(), surfaces(), deformation(), loading(), contact(),
-      rocks();
+  void inputs(), energy(), motion(), flow(), fluid(), held_tips(), growth(), surfaces(), deformation(), loading(),
+      contact(), rocks();
 };
 
 void Watch::inputs() {
@@ -139,7 +139,24 @@ void Watch::fluid() {
     note("fluid_imbalance", (opened - m.delivered_m2) / opened, std::nullopt, "");
 }
 
+// Of a tip that an edge or coarse cells hold: K_I over what the rock asks for. Whatever happens elsewhere then is not
+// what the rock would do. A run that such a tip ends has it near 1.
+void Watch::held_tips() {
+  const Rocks rocks = make_elasticities(scene);
+  double most = 0.0;  // of K_Ic
+  std::string where;
+  for (const Tip& tip : state.tips) {
+    const Elasticity& rock = rocks[rock_at(scene, tip_position(state, tip))];
+    const double share = tip.K_I / std::max(std::sqrt(rock.J_c * rock.E_prime), 1.0);
+    if (tip.stopped_by.empty() || !(share > most)) continue;
+    most = share, where = tip.stopped_by;
+  }
+  if (!where.empty())
+    note("held_tip", most, 1.1, "a tip that has more than its rock's toughness may not grow, since it is " + where);
+}
+
 void Watch::growth() {
+  held_tips();
   note("growth_unweighed", static_cast<double>(m.growth_unweighed), 0.0,
        "energy should have decided about growth, but surfaces had cut off parts that nothing but inertia holds: K "
        "decided");

@@ -228,6 +228,7 @@ State sound_state() {
   state.monitors.largest_strain_J = 100.0, state.monitors.largest_momentum = 1e4;
   state.monitors.largest_contact_Pa = 1e6;
   state.monitors.growths = 10;
+  for (Tip& tip : state.tips) tip.stopped_by.clear();
   return state;
 }
 
@@ -265,6 +266,25 @@ TEST_CASE("rock so nearly incompressible that the shape's functions lock marks t
   scene.rocks.insert(scene.rocks.begin(), scene.rocks.front());  // whichever rock it is
   scene.rocks.front().poisson_ratio = 0.2;
   CHECK(marks(scene, sound_state()) == Names{"incompressibility"});
+}
+
+// Requires a tip that an edge holds to mark the run from 1.1 K_Ic on, whichever tip it is, and one that is free not to.
+TEST_CASE("a tip that is held with more than its toughness marks the run") {
+  Scene scene = scene_of(rest, Fluid::Law::uniform);
+  scene.strata.interfaces.clear();
+  const double K_Ic = scene.rocks[scene.strata.layers[0].rock].toughness_Pa_sqrt_m = 2e6;
+  for (Rock& rock : scene.rocks) rock.toughness_Pa_sqrt_m = K_Ic;
+  State state = sound_state();
+  for (const std::size_t k : {std::size_t{0}, state.tips.size() - 1}) {
+    for (Tip& tip : state.tips) tip.stopped_by.clear(), tip.K_I = 20.0 * K_Ic;
+    CHECK(marks(scene, state).empty());
+    state.tips[k].stopped_by = "within 3 cells of an edge of the block";
+    CHECK(marks(scene, state) == Names{"held_tip"});
+    state.tips[k].K_I = 1.09 * K_Ic;
+    CHECK(marks(scene, state).empty());
+    state.tips[k].K_I = 1.11 * K_Ic;
+    CHECK(marks(scene, state) == Names{"held_tip"});
+  }
 }
 
 TEST_CASE("bonded rocks of stiffnesses too far apart mark the run") {
