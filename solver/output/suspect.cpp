@@ -139,9 +139,10 @@ void Watch::fluid() {
     note("fluid_imbalance", (opened - m.delivered_m2) / opened, std::nullopt, "");
 }
 
-// Of a tip that an edge or coarse cells hold: K_I over what the rock asks for. Whatever happens elsewhere then is not
-// what the rock would do. A run that such a tip ends has it near 1.
+// Of a tip that an edge or coarse cells hold while another may grow: K_I over what the rock asks for. What the other
+// then does is not what it would do in rock.
 void Watch::held_tips() {
+  if (std::ranges::none_of(state.tips, &Tip::growing)) return;
   const Rocks rocks = make_elasticities(scene);
   double most = 0.0;  // of K_Ic
   std::string where;
@@ -152,7 +153,8 @@ void Watch::held_tips() {
     most = share, where = tip.stopped_by;
   }
   if (!where.empty())
-    note("held_tip", most, 1.1, "a tip that has more than its rock's toughness may not grow, since it is " + where);
+    note("held_tip", most, 1.1,
+         "a tip that has more than its rock's toughness may not grow, while another may: it is " + where);
 }
 
 void Watch::growth() {

@@ -53,6 +53,8 @@ std::string tip_line(const Scene& scene, const State& state) {
     std::string note = told.reason;
     if (note.empty() && tip.near != Obstacle::none)
       note = fmt::format("near {}: K and J are not to be trusted", name_of(tip.near));
+    if (!tip.stopped_by.empty())
+      note += fmt::format("{}may not grow: it is {}", note.empty() ? "" : "; ", tip.stopped_by);
     parts.push_back(fmt::format("x = {:.2f} m, y = {:.2f} m, K_I {} and K_II {} MPa sqrt(m), J {} N/m{}", x.x(), x.y(),
                                 number_or_none(1e-6 * told.K_I_Pa_sqrt_m, 3),
                                 number_or_none(1e-6 * told.K_II_Pa_sqrt_m, 3), number_or_none(told.J_N_m, 1),

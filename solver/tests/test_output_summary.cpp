@@ -275,15 +275,19 @@ TEST_CASE("a tip that is held with more than its toughness marks the run") {
   const double K_Ic = scene.rocks[scene.strata.layers[0].rock].toughness_Pa_sqrt_m = 2e6;
   for (Rock& rock : scene.rocks) rock.toughness_Pa_sqrt_m = K_Ic;
   State state = sound_state();
-  for (const std::size_t k : {std::size_t{0}, state.tips.size() - 1}) {
-    for (Tip& tip : state.tips) tip.stopped_by.clear(), tip.K_I = 20.0 * K_Ic;
+  state.tips.resize(2, state.tips.front());
+  for (const std::size_t k : {std::size_t{0}, std::size_t{1}}) {
+    for (Tip& tip : state.tips) tip.stopped_by.clear(), tip.growing = true, tip.K_I = 20.0 * K_Ic;
     CHECK(marks(scene, state).empty());
     state.tips[k].stopped_by = "within 3 cells of an edge of the block";
+    state.tips[k].growing = false;
     CHECK(marks(scene, state) == Names{"held_tip"});
     state.tips[k].K_I = 1.09 * K_Ic;
     CHECK(marks(scene, state).empty());
     state.tips[k].K_I = 1.11 * K_Ic;
     CHECK(marks(scene, state) == Names{"held_tip"});
+    for (Tip& tip : state.tips) tip.growing = false;  // nothing happens elsewhere
+    CHECK(marks(scene, state).empty());
   }
 }
 
