@@ -48,6 +48,7 @@ TEST_CASE("a run ends with how, growth, tip, worst monitor and where") {
   Tip& tip = state.tips[0];
   tip.K_I = 1.45e6, tip.K_II = -1e-11, tip.J = 205.25;
   tip.near = Obstacle::none, tip.crossed = tip.closed = false;
+  tip.stopped_by.clear();
   state.monitors.largest_courant = 0.9;
   const auto lines = lines_of(made_scene(), state, record, folder.path);
   REQUIRE(lines.size() == 5);
@@ -55,6 +56,10 @@ TEST_CASE("a run ends with how, growth, tip, worst monitor and where") {
   CHECK(lines[1] ==
         "growth: start 2.1 MPa at y = 1.00 m; arrest 2.25 MPa at y = 2.00 m; restart 3.5 MPa at y = 2.00 m");
   CHECK(lines[2] == "tip: x = 4.00 m, y = 2.00 m, K_I 1.450 and K_II 0.000 MPa sqrt(m), J 205.2 N/m; inlet 2.468 MPa");
+  tip.stopped_by = "within 3 cells of an edge of the block";
+  CHECK_THAT(
+      lines_of(made_scene(), state, record, folder.path).at(2),
+      Catch::EndsWith("J 205.2 N/m (may not grow: it is within 3 cells of an edge of the block); inlet 2.468 MPa"));
   CHECK(lines[3] == "monitors: none suspect");
   CHECK(lines[4] == "results in " + folder.path.string() + ": summary.json, result.h5");
 }
