@@ -322,9 +322,8 @@ int run_anew(const Scene& scene, const RunOptions& options, const RunFolder& fol
 
 // What a scene that leaves keys out is easily taken to be otherwise, and what it will need.
 std::string announce(const Scene& scene) {
-  return fmt::format("{}{}; {:.2g} points, {:.2g} GB by estimate\n",
-                     fmt::format("mechanics = {}, {}", word_of(scene.numerics.mechanics),
-                                 scene.fracture ? "fluid.law = " + word_of(scene.fluid.law) : "no fracture"),
+  return fmt::format("mechanics = {}, {}{}; {:.2g} points, {:.2g} GB by estimate\n", word_of(scene.numerics.mechanics),
+                     scene.fracture ? "fluid.law = " + word_of(scene.fluid.law) : "no fracture",
                      scene.domain.bottom == Edge::symmetry ? ", y = 0 is a mirror (domain.bottom)" : "",
                      points_of(scene), 1e-9 * memory_need(scene));
 }

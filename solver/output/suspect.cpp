@@ -152,6 +152,7 @@ void Watch::held_tips() {
     if (tip.stopped_by.empty() || !(share > most)) continue;
     most = share, where = tip.stopped_by;
   }
+  // Between events K may be above by their tolerance and by a step's rise; a tenth of K is a fifth of the energy.
   if (!where.empty())
     note("held_tip", most, 1.1,
          "a tip that has more than its rock's toughness may not grow, while another may: it is " + where);
