@@ -22,7 +22,7 @@ def topic(folder: Path) -> Topic | None:
     rows = [[f"{experiment_name(one.experiment)}, {plain(one.variant)}",
              *(listed([line.label for line in lines]) or NONE for lines in (one.needs(), one.spared(True))), f"{number(one.cpu_s, 3)}\u00a0s"] for one in kept]
     return Topic("needs", "What a scene needs", [f"{data.title}."], "ci/ablate", listed(sorted({one.version for one in kept})),
-                 Figure("ablation", data, draw_ablation, "ablation", "ci/ablate", narrow=False),
+                 Figure("ablation", data, draw_ablation, "ablation", "ci/ablate"),
                  [Table(f"What each scene needs for {share(WANTED)}", ["Scene", "needs", "does not need", "CPU time"], rows)])
 
 

@@ -34,10 +34,10 @@ def differing(rows: Sequence[Shown], cells: str) -> list[str] | None:
     return [id_ for id_, found in pairs.items() if found[0] != found[1]] if pairs else None
 
 
-def counts(rows: Sequence[Shown]) -> list[tuple[str, list[tuple[str, str, int]]]]:
-    """For each mechanics and verdict: the verdict's name, its colour's kind and how many claims have it."""
-    given = [(one.mechanics, one.verdict) for row in rows for one in row.verdicts]
-    return [(mechanics, [(name, kind, given.count((mechanics, name))) for name, kind in KINDS.items()]) for mechanics in dict.fromkeys(name for name, _ in given)]
+def by_verdict(rows: Sequence[Shown], mechanics: str) -> dict[str, list[Shown]]:
+    """The claims of each verdict in one mechanics."""
+    given = {row.id: one.verdict for row in rows for one in row.verdicts if one.mechanics == mechanics}
+    return {name: own for name in KINDS if (own := [row for row in rows if given.get(row.id) == name])}
 
 
 def _claim_row(results: Sequence[ClaimResult]) -> Shown:

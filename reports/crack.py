@@ -119,7 +119,7 @@ def _faces(fracture: Arrays, magnified: float) -> tuple[tuple[np.ndarray, np.nda
 
 
 def pressure_figure(run: Run, index: int) -> Shown:
-    """Fig 2 from one run at one output time: stress in MPa on squares in m, and along the fracture opening in mm and permeability in m2."""
+    """Fig 2 from one run at one output time: stress in MPa on squares in m, and along the fracture opening in mm and permeability in mm2."""
     layout, fracture, points = layout_of(run), fields_at(run, "fracture", index), fields_at(run, "particles", index)
     x_m, y_m, pressure_Pa, opening_mm = fracture["x_m"], fracture["y_m"], fracture["pressure_Pa"], 1e3 * fracture["opening_m"]
     inlet = float(fracture.get("inlet_Pa", np.nanmax(pressure_Pa)))
@@ -135,7 +135,7 @@ def pressure_figure(run: Run, index: int) -> Shown:
         title=title, edges_x_m=edges_x, edges_y_m=edges_y, s_xx_MPa=field, centre_MPa=-layout.horizontal_Pa / 1e6,
         range_MPa=max(float(np.percentile(change, 99.0)), abs(inlet - layout.horizontal_Pa) / 1e6), view_m=(left, left + size, 0.0, size),
         crack_x_m=x_m, crack_y_m=y_m, arc_m=arc, pressure=pressure_Pa / inlet, opening_mm=opening_mm,
-        permeability_m2=fracture["permeability_m2"], inlet_MPa=inlet / 1e6, cell_m=layout.cell_m, time_s=float(output_times(run)[index]),
+        permeability_mm2=1e6 * fracture["permeability_m2"], inlet_MPa=inlet / 1e6, cell_m=layout.cell_m, time_s=float(output_times(run)[index]),
         source=f"Experiment {run.number}, {plain(run.variant)}, {mechanics_name(run.mechanics)}",
     )
 

@@ -83,7 +83,7 @@ def map_figure(folder: Path) -> Shown:
     panels = [panel_of(name, folder) for name in MAPS if (folder / f"{name}.csv").is_file()]
     border = crosses_above(read_table(MAPS["friction"], folder), 0.4)
     asked = renshaw_pollard(0.4, STRENGTH_MPa, CLOSING_MPa)
-    title = f"At friction 0.4 the fracture crosses from {border:.2g} MPa on, where Renshaw & Pollard ask for {asked:.2g} MPa"
+    title = f"At friction 0.4 the fracture crosses where the stress normal to the interface is {border:.2g}\u00a0MPa or more; Renshaw & Pollard ask for {asked:.2g}\u00a0MPa"
     return Shown(title="Verdicts" if math.isnan(border) else title, panels=panels, runs=sum(len(panel.runs) for panel in panels))
 
 

@@ -6,10 +6,10 @@ import numpy as np
 
 from reports.comparison import path_distance, shift_Pa
 from reports.layout import layout_of
-from reports.outcome import finding, held, outcome_of, outcomes_of
+from reports.outcome import finding, outcome_of, outcomes_of
 from reports.runs import NotAvailable, Run, fields_at, lead_of, mechanics_in, output_times
 from reports.shown import Shown
-from reports.words import listed, mechanics_name, metres, metres_signed, number, plain
+from reports.words import listed, mechanics_name, metres, metres_signed, number, plain, sentence
 
 OPENING_INSTANTS = 7  # profiles a panel of Fig 7: as many as stay distinguishable in one colour scale
 PANEL_ASPECT = 1.15  # height over width of a panel of Fig 8
@@ -67,17 +67,13 @@ def height_figure(runs: list[Run], every: Sequence[Run] = ()) -> Shown:
         raise NotAvailable("no run of this experiment has a history")
     lead, both = lead_of(drawn), len(mechanics_in(drawn)) > 1
     curves = [_height_curve(group, runs, lead, both) for group in grouped(drawn, same_climb)]
-    told = [run for run in drawn if run.mechanics == lead]
-    stays = [f"{plain(run.variant)} {held(run, runs)}" for run in told if (arrest := outcome_of(run, runs).longest) is not None and arrest.tells]
-    return Shown(
-        title=lead_words(drawn) + finding([outcome_of(run, runs) for run in told]), lead=mechanics_name(lead), name=f"Experiment {drawn[0].number}", layout=layout_of(drawn[0]),
-        curves=curves, stays=stays, pressure_MPa=pressure_span(every or runs),
-    )
+    title = told_of_lead(drawn, finding([outcome_of(run, runs) for run in drawn if run.mechanics == lead]))
+    return Shown(title=title, name=f"Experiment {drawn[0].number}", layout=layout_of(drawn[0]), curves=curves, pressure_MPa=pressure_span(every or runs))
 
 
-def lead_words(drawn: Sequence[Run]) -> str:
-    """The beginning of a title that tells of one mechanics among two."""
-    return "" if len(mechanics_in(drawn)) < 2 else f"{mechanics_name(lead_of(drawn)).capitalize()}: "
+def told_of_lead(drawn: Sequence[Run], words: str) -> str:
+    """A title, which says of which mechanics among two it tells."""
+    return sentence(words if len(mechanics_in(drawn)) < 2 else f"{mechanics_name(lead_of(drawn))}, {words}")
 
 
 def _first_growth(height_m: np.ndarray, cell_m: float) -> int:
@@ -111,7 +107,7 @@ def profile_figure(runs: list[Run], variants: tuple[str, ...] = ("perfect", "wea
     panels = [_profile_panel(group, times[group[0].mechanics, group[0].variant], wanted, len(present) > 1) for group in groups]
     profiles = [profile for panel in panels for profile in panel.profiles]
     return Shown(
-        title=lead_words(list(chosen.values())) + finding(outcomes_of([chosen[key] for key in order if key[0] == present[-1]])), panels=panels,
+        title=told_of_lead(list(chosen.values()), finding(outcomes_of([chosen[key] for key in order if key[0] == present[-1]]))), panels=panels,
         opening_mm=max((float(profile.opening_mm.max()) for profile in profiles), default=1.0),
         height_m=max((float(profile.height_m.max()) for profile in profiles), default=1.0),
     )
@@ -142,7 +138,7 @@ def path_figure(groups: list[list[Run]]) -> Shown:
     if not panels:
         raise NotAvailable("no run of these experiments has a history")
     drawn = drawn_of([run for runs in groups for run in runs])
-    return Shown(title=lead_words(drawn) + "; ".join(panel.heading for panel in panels), panels=panels)
+    return Shown(title=told_of_lead(drawn, "; ".join(panel.heading for panel in panels)), panels=panels)
 
 
 def _path_panel(runs: list[Run]) -> Shown:
@@ -172,8 +168,8 @@ def _path(group: Sequence[Run], side: float, beside: bool, both: bool) -> Shown:
     fields = fields_at(run, "fracture", output_times(run).size - 1)
     x_m, y_m = fields["x_m"], fields["y_m"]
     label = f"{names_of(group, both)}: {metres_signed(side * float(x_m[-1] - x_m[0]))}, {number(largest_turn(x_m, y_m), 2)}°"
-    name = listed(list(dict.fromkeys(plain(one.variant) for one in group)))
-    return Shown(variant=run.variant, beside=beside, name=name, label=label, x_m=x_m, y_m=y_m)
+    names = list(dict.fromkeys(plain(one.variant) for one in group))
+    return Shown(variant=run.variant, beside=beside, names=names, label=label, x_m=x_m, y_m=y_m)
 
 
 def largest_turn(x_m: np.ndarray, y_m: np.ndarray) -> float:
@@ -211,10 +207,10 @@ def _aside(layout: Shown, window: tuple[float, float, float, float]) -> str:
 
 def _drift(paths: Sequence[Shown], side: float) -> str:
     """Which way each path ends, and how far, like paths told together."""
-    toward = {path.name: side * float(path.x_m[-1] - path.x_m[0]) for path in paths if not path.beside}
-    parts = []
-    for sign, where in ((1.0, "towards the soft rock"), (-1.0, "towards the stiff rock")):
-        each = [f"{number(abs(shift), 2)}\u00a0m ({name})" for name, shift in toward.items() if sign * shift > 0]
-        parts += [f"{where} by {listed(each)}"] if each else []
-    still = [name for name, shift in toward.items() if shift == 0]
-    return "the fracture goes " + ", ".join(parts + ([f"straight ({listed(still)})"] if still else []))
+    told: dict[str, dict[str, list[str]]] = {"straight": {}, "towards the soft rock": {}, "towards the stiff rock": {}}
+    for path in paths:
+        if not path.beside:
+            shift = side * float(path.x_m[-1] - path.x_m[0])
+            where = [*told][(shift > 0) - (shift < 0)]
+            told[where].setdefault(f" by {number(abs(shift), 2)}\u00a0m" if shift else "", []).extend(path.names)
+    return "the fracture goes " + ", ".join(where + listed([f"{size} ({listed(names)})" for size, names in found.items()]) for where, found in told.items() if found)

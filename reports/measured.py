@@ -67,7 +67,7 @@ def finding(finest: dict[str, rubin.Result]) -> str:
     own = {name: share(finest["plain"].errors[name].late) for name in SCALES}
     zero = finest["gauges_from_zero"].errors[rubin.WELL].late
     return (f"Rubin's fracture in PMMA, mean error from {rubin.LATE_S:g} s on: length {own[rubin.LENGTH]}, opening {own[rubin.OPENING]}, "
-            f"pressure {own[rubin.WELL]}, {share(zero)} if every gauge has the zero of the one that shows it")
+            f"pressure {own[rubin.WELL]} ({share(zero)} if every gauge is off by what one of them shows without fluid)")
 
 
 def table_of(record: rubin.Record) -> Table:

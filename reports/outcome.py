@@ -148,7 +148,7 @@ def _phrase(outcome: Outcome) -> tuple[str, str]:
     if arrest is None or not arrest.tells:
         pause = "" if arrest is None else f" (pausing at {metres(arrest.height_m)})"
         return f"grew to {metres(outcome.final_height_m)}", f"by {end}{pause}"
-    until = f"to the end at {end}" if arrest.until_Pa is None else f"until {mpa(arrest.until_Pa)}"
+    until = f"from {arrest.from_Pa / 1e6:.2f} to {end + ', the end' if arrest.until_Pa is None else mpa(arrest.until_Pa)}"
     others = list(dict.fromkeys(metres(other.height_m) for other in outcome.arrests if other is not arrest and other.interface))
     return f"stopped at {metres(arrest.height_m)}{_where(arrest)}", until + (f" (and at {listed(others)})" if others else "")
 
@@ -162,7 +162,7 @@ def _where(arrest: Arrest) -> str:
 
 
 def finding(outcomes: Iterable[Outcome]) -> str:
-    """One sentence on what was found, like outcomes told together."""
+    """What was found, like outcomes told together."""
     groups: dict[str, dict[str, list[str]]] = {}
     for outcome in outcomes:
         shared, own = _phrase(outcome)
@@ -171,8 +171,7 @@ def finding(outcomes: Iterable[Outcome]) -> str:
     for shared, alike in groups.items():
         (own, names), *others = alike.items()
         parts.append(", ".join([f"{listed(names)} {shared} {own}", *(f"{listed(more)} {words}" for words, more in others)]))
-    sentence = "; ".join(parts)
-    return sentence[:1].upper() + sentence[1:] if sentence else "No run to tell of"
+    return "; ".join(parts) or "no run to tell of"
 
 
 def held(run: Run, runs: Sequence[Run]) -> str:
@@ -180,7 +179,7 @@ def held(run: Run, runs: Sequence[Run]) -> str:
     arrest = outcome_of(run, runs).longest
     if arrest is None:
         return ""
-    return f"{metres(arrest.height_m)} from {mpa(arrest.from_Pa)} to {'the end' if arrest.until_Pa is None else mpa(arrest.until_Pa)}"
+    return f"{metres(arrest.height_m)}, {mpa(arrest.from_Pa)} to the end" if arrest.until_Pa is None else f"{metres(arrest.height_m)}, {arrest.from_Pa / 1e6:.2f} to {mpa(arrest.until_Pa)}"
 
 
 def interface_states(run: Run) -> list[str]:

@@ -6,19 +6,21 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from reports import ablation, crossing_map, measured, precision
 from reports.choices import choice_rows
-from reports.claims import SYMBOLS, claim_rows, columns_of, counts, differing, sensitivity
+from reports.claims import SYMBOLS, by_verdict, claim_rows, columns_of, differing, sensitivity
 from reports.comparison import comparisons, inertia_words
 from reports.figures import Table, Topic, make, words_of, write_page
 from reports.ladder import load_ladder
 from reports.ladder import topic as accuracy
 from reports.run_rows import title_of, write_runs
-from reports.runs import Run
+from reports.runs import Run, mechanics_in
 from reports.shown import Shown
-from reports.words import listed, mechanics_name, plain
+from reports.words import listed, mechanics_name, plain, wall_time
 from verification.harness.choices import Point
-from verification.harness.claim_data import ClaimResult
+from verification.harness.claim_data import NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, ClaimResult
 from verification.harness.scenes import MECHANICS
 
 
@@ -53,12 +55,12 @@ def write_index(
     """Write index.html and runs.html; films: the animations, below `out`; beside: what is told of the pages `verification` and `stability`."""
     compared = comparisons(runs)
     write_runs(out, runs, compared)
-    return write_page(out, "index.html", {**context(runs, claims, figures, points), "inertia": inertia_words(compared), "topics": sections,
+    return write_page(out, "index.html", {**context(runs, claims, figures, points, sections), "inertia": inertia_words(compared), "topics": sections,
                                          "films": {film.stem: Shown(path=film.relative_to(out), **json.loads(film.with_suffix(".json").read_text("utf-8"))) for film in films},
                                          **beside})
 
 
-def context(runs: list[Run], claims: list[ClaimResult], figures: list[Shown], points: Sequence[Point]) -> dict[str, Any]:
+def context(runs: list[Run], claims: list[ClaimResult], figures: list[Shown], points: Sequence[Point], sections: Sequence[Shown]) -> dict[str, Any]:
     """What the template shows of experiments and verdicts."""
     rows = claim_rows(claims)
     columns = columns_of(rows)
@@ -68,7 +70,7 @@ def context(runs: list[Run], claims: list[ClaimResult], figures: list[Shown], po
     return {
         "groups": [Shown(number=number, title=title_of(own), stem=own[0].experiment, claims=[row for row in rows if row.id.startswith(str(number))],
                          figures=of_figure.get(number, [])) for number, own in experiments.items()],
-        "columns": columns, "symbols": SYMBOLS, "headline": headline(runs, rows, columns), "by_cell": cell_words(rows),
+        "columns": columns, "symbols": SYMBOLS, "headline": headline(runs, rows, columns), "minute": minute(runs, rows, columns, sections), "by_cell": cell_words(rows),
         "method": of_figure[0] if experiments else figures, "how": words_of("how"),
         "sensitivity": sensitivity([claim for claim in claims if claim.mechanics in MECHANICS], points),
         "choices": Table("", ["Open", "Default", "Choice", "What it moves at most"], choice_rows(points, runs)) if points else None,
@@ -87,8 +89,23 @@ def headline(runs: list[Run], rows: Sequence[Shown], columns: Sequence[Shown]) -
     complete = f"{sum(run.status == 'completed' for run in runs)} of {len(runs)} runs are complete."
     if not columns:
         return f"No verdict on any claim has been written yet. {complete}"
-    told = [f"{count} {_predicate(name, count)}" for name, _, count in dict(counts(rows))[columns[0].key] if count]
+    told = [f"{len(own)} {_predicate(name, len(own))}" for name, own in by_verdict(rows, columns[0].key).items()]
     return f"Of {len(rows)} claims of the study {listed(told)} ({columns[0].words}). {complete}"
+
+
+def minute(runs: list[Run], rows: Sequence[Shown], columns: Sequence[Shown], sections: Sequence[Shown]) -> list[tuple[str, str]]:
+    """What a reader takes along in a minute: which claims hold and which do not, how accurate the numbers are, how fast the runs."""
+    told = []
+    if columns:
+        holds, *rest = (by_verdict(rows, columns[0].key).get(name, []) for name in (REPRODUCED, ONLY_UNDER_A_VARIANT, NOT_REPRODUCED))
+        turned, never = (listed([row.id for row in own]) or "none" for own in rest)
+        told = [("What holds", " ".join(f"{row.text.rstrip('.')} ({row.id})." for row in holds) or "No claim."),
+                ("What does not", f"{never}; only under another reading of what the study leaves open: {turned}.")]
+    errors = [f"{what}\u00a0{found.split(', ')[-1].split(' (')[0]}" for one in sections if one.name == "accuracy" and one.shown for what, _, found in one.shown.rows]
+    told += [("How accurate", f"Errors in the finest cells tried: {'; '.join(errors)}.")] if errors else []
+    times = {name: [float(run.summary["wall_s"]) for run in runs if run.mechanics == name and run.summary.get("wall_s")] for name in mechanics_in(runs)}
+    halves = [f"{wall_time(float(np.median(own)))} {mechanics_name(name)}, at most {wall_time(max(own))}" for name, own in times.items() if own]
+    return told + ([("How fast", f"Half of the runs of the experiments take less than {'; '.join(halves)}, each on one thread.")] if halves else [])
 
 
 def _predicate(verdict: str, count: int) -> str:

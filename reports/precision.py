@@ -163,15 +163,15 @@ def recommendations(panels: Sequence[Panel]) -> list[str]:
         choice = choice_for(own, TOLERANCES[1])
         if choice is not None:
             dots, within = choice
-            reason = "the cheapest within 1 %, or the reference's uncertainty," if within else "none is within 1 % in all; this comes nearest,"
-            told.append(f"Experiments {listed(list(map(str, own[0].problem.experiments)))}: {choice_words(dots[0])} a run; {reason} with errors of"
+            reason = "is the cheapest within 1 %, or the reference's uncertainty" if within else "comes nearest to 1 % in all"
+            told.append(f"Experiments {listed(list(map(str, own[0].problem.experiments)))}: {dots[0].name} {reason}, in {wall_time(dots[0].time_s)} a run: errors of"
                         f" {_errors(dots, own)}. {_shipped(own)}")
     return told
 
 
 def _errors(dots: Sequence[Dot], panels: Sequence[Panel]) -> str:
     """The errors of a run in all panels."""
-    return listed([f"{share(dot.judged)} ({panel.wanted.title.split(',')[0]})" for dot, panel in zip(dots, panels)])
+    return listed([f"{share(dot.judged)} ({panel.wanted.title})" for dot, panel in zip(dots, panels)])
 
 
 def _shipped(panels: Sequence[Panel]) -> str:
@@ -181,7 +181,7 @@ def _shipped(panels: Sequence[Panel]) -> str:
     dots = run_at(panels, method, level)
     if dots is None:
         return f"The scenes' own setting ({label}, {level}) has not been measured, or has no value."
-    return f"The scenes' own setting ({label}, {level}) takes {wall_time(dots[0].time_s)}, with errors of {_errors(dots, panels)}; it has inertia."
+    return f"The scenes' own setting, with inertia ({label}, {level}), takes {wall_time(dots[0].time_s)}: errors of {_errors(dots, panels)}."
 
 
 def topic(folder: Path = store.DATA) -> Topic | None:

@@ -75,8 +75,8 @@ def metres_signed(length_m: float) -> str:
 
 
 def millimetres(length_m: float) -> str:
-    """A small length in mm; what is under a hundredth is told as such."""
-    return f"{number(1e3 * length_m, 2)}\u00a0mm" if length_m >= 1e-5 else "under 0.01\u00a0mm"
+    """A small length in mm; a hundredth is the least that is told."""
+    return f"{number(1e3 * length_m, 2)}\u00a0mm" if length_m >= 1e-5 else "<\u00a00.01\u00a0mm"
 
 
 def wall_time(time_s: float) -> str:

@@ -85,7 +85,7 @@ def draw_pressure(data: Shown, width_mm: float) -> Figure:
     rows = right.subplots(3, 1, sharex=True)
     lines = (
         (data.pressure, FLUID, "pressure over\nthat of the inlet"), (data.opening_mm, COLOURS["soft"], "opening (mm)"),
-        (data.permeability_m2, COLOURS["weak"], "permeability\nw²/12 (m²)"),
+        (data.permeability_mm2, COLOURS["weak"], "permeability\nw²/12 (mm²)"),
     )
     for axes, (values, colour, label) in zip(rows, lines):
         axes.grid(True)

@@ -2,13 +2,12 @@
 
 from collections.abc import Sequence
 
-from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from reports.charts.style import (
-    COLOURS, DOTTED, FLAG, FLUID, INK, KIND_NAMES, MARKERS, ONE_COLUMN, PALE, SOFT, STIFF, TWO_COLUMNS, entry, interface_lines, line_of, new_figure, panel_rows,
+    COLOURS, DOTTED, FLAG, FLUID, INK, KIND_NAMES, MARKERS, ONE_COLUMN, PALE, SHADES, SOFT, STIFF, TWO_COLUMNS, entry, interface_lines, line_of, new_figure, panel_rows,
     put_legend, wrapped,
 )
 from reports.shown import Shown
@@ -64,13 +63,12 @@ def draw_profiles(data: Shown, width_mm: float) -> Figure:
     columns = min(len(data.panels), 3 if width_mm > ONE_COLUMN else 2)
     rows = [data.panels[k : k + columns] for k in range(0, len(data.panels), columns)]
     figure = new_figure(width_mm, 8.0 + 78.0 * len(rows))
-    colours = colormaps["viridis_r"]
     for axes, panel, first in panel_rows(figure, rows, sharex=True, sharey=True):
         axes.grid(True)
         interface_lines(axes, panel.interfaces_m)
         for profile in panel.profiles:
-            axes.plot(profile.opening_mm, profile.height_m, color=colours(0.12 + 0.85 * profile.shade), linewidth=1.4, label=f"{profile.inlet_MPa:.2f}")
-        axes.set_title(wrapped(panel.heading, 34 if width_mm > ONE_COLUMN else 24))
+            axes.plot(profile.opening_mm, profile.height_m, color=SHADES[round(profile.shade * (len(SHADES) - 1))], linewidth=1.4, label=f"{profile.inlet_MPa:.2f}")
+        axes.set_title(wrapped(panel.heading, 34 if width_mm > ONE_COLUMN else 20))
         axes.set(xlabel="opening (mm)", xlim=(0, 1.05 * data.opening_mm), ylim=(0, 1.04 * data.height_m), ylabel=HEIGHT if first else "")
         axes.legend(title="inlet (MPa)", loc="upper right", title_fontsize=7.0, fontsize=6.0)
     return figure

@@ -60,7 +60,7 @@ def _size_axes(axes: Axes, panel: Shown, low: float, high: float) -> None:
     axes.set(title=wrapped(panel.heading, 34), xlabel={"m": "cell size (m)", "s": "step (s)"}.get(panel.unit, "size (m)"))
     axes.grid(True, which="major")
     axes.yaxis.set_major_locator(LogLocator(base=10.0, numticks=20))
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100.0 * value:g} %" if value >= 1e-7 else f"{value:.0e}"))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100.0 * value:g} %" if value > 9e-7 else f"$10^{{{round(math.log10(value))}}}$"))
     axes.yaxis.set_minor_formatter(NullFormatter())
     axes.tick_params(labelleft=axes.get_subplotspec().is_first_col())
 

@@ -19,7 +19,7 @@ def draw_measured(data: Shown, width_mm: float) -> Figure:
         axes.plot(panel.times, panel.points, linestyle="none", marker="o", markersize=3.6, color=INK, zorder=5)
         if panel.lowered:
             axes.plot(panel.times, panel.lowered, linestyle="none", marker="o", markersize=3.6, color=INK, markerfacecolor="white", zorder=4)
-        axes.set(title=panel.heading, xlabel="time (s)", ylabel=panel.unit, xlim=(0.0, 1.04 * panel.times[-1]), ylim=(0.0, 1.12 * max(panel.points)))
+        axes.set(xlabel="time (s)", ylabel=f"{panel.heading.lower()} ({panel.unit})", xlim=(0.0, 1.04 * panel.times[-1]), ylim=(0.0, 1.12 * max(panel.points)))
     handles = [entry("measured", color=INK, marker="o", linestyle="none"),
                entry(f"measured less {data.zero_MPa:.3f} MPa", color=INK, marker="o", markerfacecolor="white", linestyle="none")]
     handles += [entry(name, color=colour, linestyle=dashes, linewidth=width) for (name, *_), (colour, dashes, width) in zip(data.panels[0].curves, _LOOKS)]

@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from reports.charts.style import DASHED, FLAG, INK, ONE_COLUMN, PALE, entry, panel_grid, put_legend
+from reports.charts.style import DASHED, FLAG, INK, ONE_COLUMN, PALE, entry, panel_grid, put_legend, wrapped
 from reports.shown import Shown
 
 _COLOURS = {"quasistatic": "#0067a5", "updated": "#d04a00", "total": "#a3397f", "elements": "#00845f"}
@@ -29,7 +29,7 @@ def draw_front(data: Shown, width_mm: float) -> Figure:
     figure, every, columns = panel_grid(len(data.panels), 58.0, width_mm)
     for k, (axes, panel) in enumerate(zip(every, data.panels, strict=True)):
         _draw_panel(axes, panel)
-        axes.set_title(panel.heading)
+        axes.set_title(wrapped(panel.heading, 26))
         if k % columns == 0:
             axes.set_ylabel("relative error")
         if k + columns >= len(data.panels):
@@ -52,8 +52,7 @@ def _draw_panel(axes: Axes, panel: Shown) -> None:
         axes.axhline(error, color=INK if error == 0.01 else PALE, linewidth=1.0, linestyle=DASHED, zorder=1)
     if panel.uncertainty > axes.get_ylim()[0]:
         axes.axhspan(axes.get_ylim()[0], panel.uncertainty, color="#c9d6e6", alpha=0.55, linewidth=0, zorder=0.5)
-        axes.annotate("uncertainty of the reference", (0.985, panel.uncertainty), xycoords=("axes fraction", "data"), xytext=(0, -9),
-                      textcoords="offset points", ha="right", fontsize=5.6, color="#3b5878")
+        axes.annotate("uncertainty of the reference", (0.985, 0.03), xycoords="axes fraction", ha="right", fontsize=5.6, color="#3b5878")
     times, errors = panel.front
     if times:
         axes.plot((*times, axes.get_xlim()[1]), (*errors, errors[-1]), drawstyle="steps-post", color=_FRONT, linewidth=4.5, alpha=0.75,

@@ -36,7 +36,7 @@ def draw_part(data: Shown, width_mm: float) -> Figure:
 def _draw_walk(axes: Axes, panel: Shown) -> None:
     """Dots with a value at it, others in a strip at the top."""
     axes.set_title(wrapped(panel.heading, 40), fontsize=6.5)
-    axes.set_xlabel(panel.x_name)
+    axes.set_xlabel(wrapped(panel.x_name, 34), fontsize=6.5)
     axes.set_ylabel(wrapped(panel.y_name, 34), fontsize=6.5)
     axes.set(xscale="log" if panel.x_log else "linear", yscale="log" if panel.y_log else "linear")
     axes.grid(True, which="major")

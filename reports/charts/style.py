@@ -11,10 +11,12 @@ import matplotlib
 matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of a backend without a display)
+from matplotlib import colormaps  # noqa: E402
 from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.backends.backend_agg import FigureCanvasAgg  # noqa: E402
 from matplotlib.backends.backend_pdf import FigureCanvasPdf  # noqa: E402
 from matplotlib.backends.backend_svg import FigureCanvasSVG  # noqa: E402
+from matplotlib.colors import to_hex, to_rgb  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
 
@@ -22,13 +24,16 @@ INK, PALE, FLUID, FLAG = "#1c1c1c", "#8a8a8a", "#1f5fa8", "#b3003c"
 STIFF, SOFT = "#d9d4ca", "#f4ecd2"  # rock
 PNG_DPI = 160
 MM = 1.0 / 25.4
-TWO_COLUMNS, ONE_COLUMN = 190.0, 90.0  # widths in journals, mm
+TWO_COLUMNS, ONE_COLUMN = 190.0, 85.0  # widths in journals, mm
 
 # What a dark page shows instead: ink, grid, ground, rock, and lines that would be too dark there.
 _DARK = {
     INK: "#e6e6e6", "#222222": "#dcdcdc", "#e4e4e4": "#3a3e44", "#dddddd": "#3a3e44", "#ffffff": "#16181c", STIFF: "#4a4740", SOFT: "#3c3826", FLUID: "#6aa9f0",
-    FLAG: "#ff6f9c", "#0067a5": "#4fa8e0", "#d04a00": "#f08040", "#00845f": "#35b98f", "#a3397f": "#d77ab8", "#8a6a00": "#c9a53a",
+    FLAG: "#ff6f9c", "#0067a5": "#4fa8e0", "#d04a00": "#f08040", "#00845f": "#35b98f", "#a3397f": "#d77ab8", "#8a6a00": "#c9a53a", "#7a5230": "#b98a63",
+    "#6b6b6b": "#a0a0a0", "#fbe4e2": "#45211e", "#c9d6e6": "#3a4f6e", "#3b5878": "#b9cbe6", "#f3eef2": "#2b2730", "#1d7a3e": "#3fae68", "#d00000": "#ff6b6b",
 }
+SHADES = tuple(to_hex(colormaps["viridis_r"](0.15 + 0.09 * k)) for k in range(8))  # from first to last, seen on white and, lighter, on dark
+_DARK |= {shade: to_hex([0.6 * part + 0.4 for part in to_rgb(shade)]) for shade in SHADES}
 
 # Wong's palette, safe for colour-blind readers, darkened a little for thin lines on white.
 COLOURS: dict[str, str] = {
