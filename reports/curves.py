@@ -73,7 +73,7 @@ def height_figure(runs: list[Run], every: Sequence[Run] = ()) -> Shown:
 
 def told_of_lead(drawn: Sequence[Run], words: str) -> str:
     """A title, which says of which mechanics among two it tells."""
-    return sentence(words if len(mechanics_in(drawn)) < 2 else f"{mechanics_name(lead_of(drawn))}, {words}")
+    return sentence(words if len(mechanics_in(drawn)) < 2 else f"{mechanics_name(lead_of(drawn))}: {words}")
 
 
 def _first_growth(height_m: np.ndarray, cell_m: float) -> int:

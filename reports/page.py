@@ -16,7 +16,7 @@ from reports.figures import Table, Topic, make, words_of, write_page
 from reports.ladder import load_ladder
 from reports.ladder import topic as accuracy
 from reports.run_rows import title_of, write_runs
-from reports.runs import Run, mechanics_in
+from reports.runs import Run
 from reports.shown import Shown
 from reports.words import listed, mechanics_name, plain, wall_time
 from verification.harness.choices import Point
@@ -103,9 +103,9 @@ def minute(runs: list[Run], rows: Sequence[Shown], columns: Sequence[Shown], sec
                 ("What does not", f"{never}; only under another reading of what the study leaves open: {turned}.")]
     errors = [f"{what}\u00a0{found.split(', ')[-1].split(' (')[0]}" for one in sections if one.name == "accuracy" and one.shown for what, _, found in one.shown.rows]
     told += [("How accurate", f"Errors in the finest cells tried: {'; '.join(errors)}.")] if errors else []
-    times = {name: [float(run.summary["wall_s"]) for run in runs if run.mechanics == name and run.summary.get("wall_s")] for name in mechanics_in(runs)}
-    halves = [f"{wall_time(float(np.median(own)))} {mechanics_name(name)}, at most {wall_time(max(own))}" for name, own in times.items() if own]
-    return told + ([("How fast", f"Half of the runs of the experiments take less than {'; '.join(halves)}, each on one thread.")] if halves else [])
+    times = {name: own for name in MECHANICS[::-1] if (own := [float(run.summary["wall_s"]) for run in runs if run.mechanics == name and run.summary.get("wall_s")])}
+    medians = listed([f"{wall_time(float(np.median(own)))} {mechanics_name(name)}" for name, own in times.items()])
+    return told + ([("How fast", f"A run of the experiments takes {medians} (medians), the longest {wall_time(max(map(max, times.values())))}, on one thread.")] if times else [])
 
 
 def _predicate(verdict: str, count: int) -> str:

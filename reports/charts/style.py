@@ -33,7 +33,7 @@ _DARK = {
     "#6b6b6b": "#a0a0a0", "#fbe4e2": "#45211e", "#c9d6e6": "#3a4f6e", "#3b5878": "#b9cbe6", "#f3eef2": "#2b2730", "#1d7a3e": "#3fae68", "#d00000": "#ff6b6b",
 }
 SHADES = tuple(to_hex(colormaps["viridis_r"](0.15 + 0.09 * k)) for k in range(8))  # from first to last, seen on white and, lighter, on dark
-_DARK |= {shade: to_hex([0.6 * part + 0.4 for part in to_rgb(shade)]) for shade in SHADES}
+_DARK |= {shade: to_hex([0.75 * part + 0.25 for part in to_rgb(shade)]) for shade in SHADES}
 
 # Wong's palette, safe for colour-blind readers, darkened a little for thin lines on white.
 COLOURS: dict[str, str] = {

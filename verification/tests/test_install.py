@@ -3,6 +3,7 @@
 import json
 import re
 import shlex
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -117,6 +118,16 @@ def test_completion_works_in_a_shell(shell: Path) -> None:
         ("strata res", "strata res"), ("o\t", "olve "), ("mi\t", "mine.toml "), ("--set numerics.mech\t", "anics="), ("q\t", "uasistatic "), ("--var\t", "iant "), ("s\t", "tronger "),
         ("| grep -c 'sqrt_m = 2000000'\n", "1\r\n"), ("exit\n", "exit")], INPUTRC="/dev/null")  # fmt: skip
     assert "strata resolve mine.toml --set numerics.mechanics=quasistatic --variant stronger" in shown
+
+
+@pytest.mark.skipif(shutil.which("zsh") is None, reason="zsh is not installed (ci/setup --test)")
+def test_completion_works_in_zsh(tree: Path, shell: Path) -> None:
+    """The same in zsh, and a folder, behind which its contents may follow; what was completed resolves to both settings."""
+    rc = f"PATH={shlex.quote(str(tree / 'bin'))}:$PATH; fpath=({shlex.quote(str(tree / 'share/zsh/vendor-completions'))} $fpath); autoload -Uz compinit; compinit -u -D; PS1='$ '"
+    (shell / "rc.zsh").write_text(rc)
+    on_terminal(["zsh", "-f", "-i"], shell, [
+        (". ./rc.zsh\n", "$ "), ("strata res", "res"), ("o\t", "olve"), ("mi\t", "mine.toml"), ("--set numerics.mech\t", "anics="), ("q\t", "uasistatic"), ("--var\t", "iant"),
+        ("s\t", "tronger"), ("| grep -cE 'sqrt_m = 2000000|= \"quasistatic\"'\n", "2\r\n"), ("strata resume d\t", "one/"), ("\x03", "$ "), ("exit\n", "exit")], TERM="dumb")  # fmt: skip
 
 
 def test_another_project_finds_the_library(tree: Path, tmp_path: Path) -> None:
