@@ -127,7 +127,7 @@ def test_completion_works_in_zsh(tree: Path, shell: Path) -> None:
     (shell / "rc.zsh").write_text(rc)
     on_terminal(["zsh", "-f", "-i"], shell, [
         (". ./rc.zsh\n", "$ "), ("strata res", "res"), ("o\t", "olve"), ("mi\t", "mine.toml"), ("--set numerics.mech\t", "anics="), ("q\t", "uasistatic"), ("--var\t", "iant"),
-        ("s\t", "tronger"), ("| grep -cE 'sqrt_m = 2000000|= \"quasistatic\"'\n", "2\r\n"), ("strata resume d\t", "one/"), ("\x03", "$ "), ("exit\n", "exit")], TERM="dumb")  # fmt: skip
+        ("s\t", "tronger"), ("| grep -cE 'sqrt_m = 2000000|= \"quasistatic\"'\n", "2\r\n"), ("strata resume d\t", "one/"), ("\x15exit\n", "exit")], TERM="dumb")  # fmt: skip
 
 
 def test_another_project_finds_the_library(tree: Path, tmp_path: Path) -> None:
