@@ -8,7 +8,7 @@ from reports.comparison import path_distance, shift_Pa
 from reports.layout import layout_of
 from reports.outcome import event_inlet
 from reports.runs import Run, mechanics_in
-from reports.words import NONE, mechanics_name, metres, mpa, number, plain, signed_mpa
+from reports.words import NONE, mechanics_name, metres, mpa, number, plain
 from verification.harness.choices import Choice, Point
 
 SAME_PA = 500.0  # half of the last digit that tables show
@@ -46,7 +46,7 @@ def _effect_words(twins: Twins) -> str:
     parts: list[tuple[str, str]] = []
     if starts:
         shift, name = max(starts, key=lambda item: abs(item[0]))
-        parts.append(("the same start", "") if abs(shift) < SAME_PA else (f"start {signed_mpa(shift)}", name))
+        parts.append(("the same start", "") if abs(shift) < SAME_PA else (f"start {mpa(shift, 3, '+')}", name))
     if climbs and max(climbs)[0] >= SAME_PA:
         parts.append((f"climb up to {mpa(max(climbs)[0], 3)} apart", max(climbs)[1]))
     if ends:

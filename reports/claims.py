@@ -130,9 +130,8 @@ def _choice_cell(claim: ClaimResult, choice: str) -> Shown:
     reading = next((one for one in claim.readings if one.choice == choice), None)
     if reading is None:
         return Shown(kind="none", words="not applicable")
-    failing = [f"{case.case.variant.replace('_', ' ')}, {case.case.observable.rsplit('_', 1)[0].replace('_', ' ')}"
-               for case in reading.cases if case.holds is False]
-    variants = ", ".join(dict.fromkeys(case.case.variant.replace("_", " ") for case in reading.cases))
+    failing = [f"{plain(case.case.variant)}, {plain(case.case.observable.rsplit('_', 1)[0])}" for case in reading.cases if case.holds is False]
+    variants = ", ".join(dict.fromkeys(plain(case.case.variant) for case in reading.cases))
     partly = "" if reading.complete else f"holds for {variants}, not run for others"
     return _cell(reading, partly, f": {'; '.join(failing)}")
 

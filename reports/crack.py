@@ -75,9 +75,7 @@ def _copies_panel(run: Run, index: int, centre: str, magnified: float) -> Shown:
 def divided(run: Run, index: int) -> dict[float, np.ndarray]:
     """For each interface across the fracture, its height in m and the x in m of its points where it has split."""
     across = interfaces_at(run, index) if layout_of(run).along == "y" else []
-    found = {float(points.get("at_m", points["y_m"][0])): points["x_m"][points["split"] > 0] if "split" in points else points["x_m"]
-             for points in across}
-    return dict(sorted(found.items()))
+    return dict(sorted((float(points["at_m"]), points["x_m"][points["split"] > 0]) for points in across))
 
 
 def _lines(span: tuple[float, float], h: float) -> tuple[float, ...]:
@@ -122,8 +120,7 @@ def pressure_figure(run: Run, index: int) -> Shown:
     """Fig 2 from one run at one output time: stress in MPa on squares in m, and along the fracture opening in mm and permeability in mm2."""
     layout, fracture, points = layout_of(run), fields_at(run, "fracture", index), fields_at(run, "particles", index)
     x_m, y_m, pressure_Pa, opening_mm = fracture["x_m"], fracture["y_m"], fracture["pressure_Pa"], 1e3 * fracture["opening_m"]
-    inlet = float(fracture.get("inlet_Pa", np.nanmax(pressure_Pa)))
-    arc = fracture.get("arc_m", np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x_m), np.diff(y_m)))]))
+    inlet, arc = float(fracture["inlet_Pa"]), fracture["arc_m"]
     title = (f"At {mpa(inlet)} the fracture is {metres(float(np.max(arc)))} long and up to {number(float(opening_mm.max()), 2)}\u00a0mm open; at its tip stand"
              f" {share(float(pressure_Pa[-1]) / inlet)} of the inlet's pressure")
     size = min(3.0 * float(np.max(y_m)), layout.height_m, layout.width_m)  # of a square view about the fracture, within the block

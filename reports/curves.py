@@ -9,7 +9,7 @@ from reports.layout import layout_of
 from reports.outcome import finding, outcome_of, outcomes_of
 from reports.runs import NotAvailable, Run, fields_at, lead_of, mechanics_in, output_times
 from reports.shown import Shown
-from reports.words import listed, mechanics_name, metres, metres_signed, number, plain, sentence
+from reports.words import listed, mechanics_name, metres, minus, number, plain, sentence
 
 OPENING_INSTANTS = 7  # profiles a panel of Fig 7: as many as stay distinguishable in one colour scale
 PANEL_ASPECT = 1.15  # height over width of a panel of Fig 8
@@ -120,9 +120,8 @@ def _profile_panel(group: Sequence[Run], times_s: np.ndarray, wanted_s: np.ndarr
     profiles = []
     for index in sorted({int(np.argmin(np.abs(times_s - time))) for time in reached} | {times_s.size - 1}):
         fields, time_s = fields_at(run, "fracture", index), float(times_s[index])
-        inlet = fields.get("inlet_Pa", np.interp(time_s, run.history["time_s"], run.history["inlet_Pa"]))
         shade = np.clip((time_s - wanted_s[0]) / (float(wanted_s[-1] - wanted_s[0]) or 1.0), 0.0, 1.0)
-        profiles.append(Shown(height_m=fields["y_m"], opening_mm=1e3 * fields["opening_m"], time_s=time_s, inlet_MPa=float(inlet) / 1e6,
+        profiles.append(Shown(height_m=fields["y_m"], opening_mm=1e3 * fields["opening_m"], time_s=time_s, inlet_MPa=float(fields["inlet_Pa"]) / 1e6,
                               shade=float(shade)))
     end = profiles[-1]
     heading = (
@@ -167,7 +166,7 @@ def _path(group: Sequence[Run], side: float, beside: bool, both: bool) -> Shown:
     run = group[0]
     fields = fields_at(run, "fracture", output_times(run).size - 1)
     x_m, y_m = fields["x_m"], fields["y_m"]
-    label = f"{names_of(group, both)}: {metres_signed(side * float(x_m[-1] - x_m[0]))}, {number(largest_turn(x_m, y_m), 2)}°"
+    label = f"{names_of(group, both)}: {minus(format(side * float(x_m[-1] - x_m[0]), '+.2f'))}\u00a0m, {number(largest_turn(x_m, y_m), 2)}°"
     names = list(dict.fromkeys(plain(one.variant) for one in group))
     return Shown(variant=run.variant, beside=beside, names=names, label=label, x_m=x_m, y_m=y_m)
 

@@ -3,7 +3,6 @@
 usage: python3 -m reports.front_picture [--runs runs] [--out experiments]     (after ci/reproduce)
 """
 
-import argparse
 import sys
 from pathlib import Path
 
@@ -13,6 +12,7 @@ from reports.layout import layout_of
 from reports.runs import load_run
 from reports.shown import Shown
 from verification.harness.claim_data import ClaimResult, read_claims
+from verification.harness.command import command
 from verification.harness.paths import EXPERIMENTS, RUNS
 
 # Experiment, its title, whether its claims are about the path, and the interface types of the study.
@@ -40,10 +40,7 @@ def panel_of(runs: Path, claims: list[ClaimResult], experiment: str, title: str,
 
 def main(arguments: list[str] | None = None) -> int:
     """Draw the picture."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--runs", type=Path, default=RUNS)
-    parser.add_argument("--out", type=Path, default=EXPERIMENTS, help="folder of heights.svg")
-    options = parser.parse_args(arguments)
+    options = command("reports.front_picture", __doc__, "runs", "out", runs=RUNS, out=EXPERIMENTS).parse_args(arguments)
     claims = read_claims(options.runs / "claims.json")
     save(draw_front_picture([panel_of(options.runs, claims, *shown) for shown in SHOWN]), options.out / "heights.svg")
     print(options.out / "heights.svg")

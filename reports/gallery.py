@@ -3,7 +3,6 @@
 usage: PYTHONPATH=. /usr/bin/python3 -m reports.gallery [--out experiments/gallery]     (a quarter of a minute)
 """
 
-import argparse
 import sys
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -16,6 +15,7 @@ from reports.charts.style import save
 from reports.shown import Shown
 import verification.gallery as gallery
 from verification.harness.column import column
+from verification.harness.command import command
 from verification.harness.front_table import with_table
 from verification.harness.given import given, net_Pa, rock
 from verification.harness.load import Array, Run, frames
@@ -114,9 +114,7 @@ def row(scene: gallery.Scene, run: Run, cpu_s: float) -> str:
 
 def main(arguments: list[str] | None = None) -> int:
     """Make the runs, draw the pictures and write the table."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=gallery.FOLDER, help="folder of the pictures")
-    options = parser.parse_args(arguments)
+    options = command("reports.gallery", __doc__, "out", out=gallery.FOLDER).parse_args(arguments)
     rows = ["| | scene | expected | got, off by | seconds |", "|---|---|---|---|---|"]
     for scene in gallery.SCENES:
         made, cpu_s = made_runs(scene, RUNS / "gallery")

@@ -32,7 +32,6 @@ def _layout(scene: dict[str, Any], cell_m: float) -> Shown:
         heights_m=tuple(place.at_m for place in interfaces) if along == "y" else (), cell_m=cell_m,
         fracture_x_m=[float(point[0]) for point in path], fracture_y_m=[float(point[1]) for point in path],
         vertical_Pa=float(in_situ.get("vertical_Pa", 0.0)), horizontal_Pa=float(in_situ.get("horizontal_Pa", 0.0)),
-        edges={name: str(domain.get(name, "")) for name in ("bottom", "sides", "top")},
     )
 
 

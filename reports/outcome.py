@@ -195,10 +195,9 @@ def interface_states(run: Run) -> list[str]:
 
 def _state(last: Arrays, moved: list[Arrays]) -> str:
     """One interface from its fields at the end and how far its faces have moved at all output times."""
-    acting = float(np.mean(last["split"] > 0)) if "split" in last else 1.0
+    acting = float(np.mean(last["split"] > 0))
     if acting == 0.0:
         return "intact"
-    slip = max((float(np.abs(fields["slip_m"]).max()) for fields in moved if "slip_m" in fields), default=0.0)
-    gap = max((float(fields["opening_m"].max()) for fields in moved if "opening_m" in fields), default=0.0)
+    slip, gap = (max(float(np.abs(fields[name]).max()) for fields in moved) for name in ("slip_m", "opening_m"))
     whole = "all" if acting == 1.0 else metres(acting * float(np.hypot(np.ptp(last["x_m"]), np.ptp(last["y_m"]))))
     return f"{whole}, slip {millimetres(slip)}, opening {millimetres(gap)}"

@@ -58,11 +58,6 @@ def notes(sheets: Sequence[store.Sheet]) -> tuple[str, ...]:
     return (*found, *([f"not measured: {', '.join(missing)}"] if missing else []))
 
 
-def choice_words(dot: Dot) -> str:
-    """A dot as advice: what to use, and what it takes."""
-    return f"{dot.name}: {wall_time(dot.time_s)}"
-
-
 # --- figures
 
 
@@ -131,18 +126,17 @@ def finding(panels: Sequence[Panel]) -> str:
 # --- tables
 
 
-def table_of(panels: Sequence[Panel]) -> list[Shown]:
+def table_of(panels: Sequence[Panel]) -> list[list[str]]:
     """The table that users need: for each panel and group that has anything (the first has a row anyway) the cheapest way to each tolerance."""
 
-    def cell(own: Sequence[Dot], error: float) -> Shown:
+    def cell(own: Sequence[Dot], error: float) -> str:
         """The cheapest way to a tolerance, or that there is none."""
-        if dot := cheapest(own, error):
-            return Shown(words=choice_words(dot), error=share(dot.judged), ok=True)
-        best = nearest(own)
-        lack = f"none reaches it; best {share(best.judged)}: {choice_words(best)}" if best else "nothing was measured"
-        return Shown(words=lack, error="", ok=False)
+        dot = cheapest(own, error)
+        told = dot or nearest(own)
+        words = f"{told.name}: {wall_time(told.time_s)}" if told else ""
+        return f"{words} ({share(dot.judged)})" if dot else f"none reaches it; best {share(told.judged)}: {words}" if told else "nothing was measured"
 
-    return [Shown(title=panel.wanted.title, group=group, first=group == GROUPS[0], cells=[cell(own, error) for error in TOLERANCES])
+    return [[panel.wanted.title, group, *(cell(own, error) for error in TOLERANCES)]
             for panel in panels for group in GROUPS if (own := panel.of(group)) or group == GROUPS[0]]
 
 
@@ -189,8 +183,7 @@ def topic(folder: Path = store.DATA) -> Topic | None:
     found = measurements(folder)
     if found is None:
         return None
-    rows = [[row.title, row.group, *(f"{cell.words} ({cell.error})" if cell.ok else cell.words for cell in row.cells)] for row in table_of(found.panels)]
-    tables = [Table("Cheapest way to each accuracy", ["Quantity", "Method", *(f"within {share(error)}" for error in TOLERANCES)], rows),
+    tables = [Table("Cheapest way to each accuracy", ["Quantity", "Method", *(f"within {share(error)}" for error in TOLERANCES)], table_of(found.panels)),
               Table("Refused, failed, too long, without a value", ["Quantity", "Method", "Sizes", "How it ended", "Why"], lack_rows(found.panels)),
               Table("How it was measured", ["", ""], found.recipe, " ".join(sentence(note) for note in found.notes))]
     data = front_figure(found.panels)

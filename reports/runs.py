@@ -19,8 +19,6 @@ from verification.harness.scenes import MECHANICS, STUDY_VARIANTS, mechanics_of,
 
 Arrays = dict[str, np.ndarray]
 
-MAIN_VARIANTS: tuple[str, ...] = STUDY_VARIANTS
-
 
 class NotAvailable(Exception):
     """What a figure needs is not in the runs; the message says what."""
@@ -62,7 +60,7 @@ class Run:
     @property
     def is_main(self) -> bool:
         """Whether the variant is one of the study's own interface types."""
-        return self.variant in MAIN_VARIANTS
+        return self.variant in STUDY_VARIANTS
 
     @property
     def drawable(self) -> bool:
@@ -152,7 +150,7 @@ def load_runs(root: Path) -> list[Run]:
 
 def order(run: Run) -> tuple[int, str, int, str, int]:
     """Sort key: experiment, then the study's variants in their usual order, then the others by name, each by mechanics."""
-    rank = MAIN_VARIANTS.index(run.variant) if run.is_main else len(MAIN_VARIANTS)
+    rank = STUDY_VARIANTS.index(run.variant) if run.is_main else len(STUDY_VARIANTS)
     last = MECHANICS.index(run.mechanics) if run.mechanics in MECHANICS else len(MECHANICS)
     return (run.number, run.experiment, rank, run.variant, last)
 
@@ -186,11 +184,9 @@ def add_missing(runs: list[Run], experiments: Path, root: Path) -> list[Run]:
 def output_times(run: Run) -> np.ndarray:
     """Times at which the run wrote its fields, s."""
     with _open(run) as store:
-        if "times" in store:
-            return np.asarray(store["times"], dtype=float)
-        if "fracture" not in store:
+        if "times" not in store:
             raise NotAvailable(f"{run.experiment}/{run.variant}: result.h5 has no output times")
-        return np.array([float(group.attrs["time_s"]) for _, group in sorted(store["fracture"].items())])
+        return np.asarray(store["times"], dtype=float)
 
 
 def fields_at(run: Run, parent: str, index: int) -> Arrays:

@@ -3,7 +3,6 @@
 usage: python3 -m reports.well [--out experiments/well]     (makes its three runs, half a minute)
 """
 
-import argparse
 import sys
 from itertools import accumulate
 from pathlib import Path
@@ -14,6 +13,7 @@ from reports.charts.style import save
 from reports.charts.well import draw_well
 from reports.shown import Shown
 from verification.harness.column import EDGE_M, column, pressure_beyond
+from verification.harness.command import command
 from verification.harness.load import Run, frames
 from verification.harness.paths import EXPERIMENTS, RUNS
 from verification.harness.plan import make_all
@@ -61,9 +61,7 @@ def heights_of(runs: list[Run]) -> Shown:
 
 def main(arguments: list[str] | None = None) -> int:
     """Make the runs and draw the picture."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=SCENE.parent, help="folder of heights.svg and heights.png")
-    options = parser.parse_args(arguments)
+    options = command("reports.well", __doc__, "out", out=SCENE.parent).parse_args(arguments)
     made = make_all([Job(SCENE, variant, RUNS / "quasistatic" / "well" / (variant or "default")) for variant in VARIANTS], 2)
     runs = [run for outcome, run in made if outcome.ok and run is not None]
     if len(runs) < len(made):

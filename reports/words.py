@@ -64,16 +64,6 @@ def mpa(pressure_Pa: float, decimals: int = 2, sign: str = "") -> str:
     return minus(f"{pressure_Pa / 1e6:{sign}.{decimals}f}\u00a0MPa") if sign else f"{pressure_Pa / 1e6:.{decimals}f}\u00a0MPa"
 
 
-def signed_mpa(difference_Pa: float) -> str:
-    """A difference of pressure in Pa written in MPa with its sign."""
-    return mpa(difference_Pa, 3, "+")
-
-
-def metres_signed(length_m: float) -> str:
-    """A length in m to two decimals with its sign."""
-    return minus(f"{length_m:+.2f}\u00a0m")
-
-
 def millimetres(length_m: float) -> str:
     """A small length in mm; a hundredth is the least that is told."""
     return f"{number(1e3 * length_m, 2)}\u00a0mm" if length_m >= 1e-5 else "<\u00a00.01\u00a0mm"

@@ -130,6 +130,8 @@ def _write_fields(folder: Path, inlet: np.ndarray, height: np.ndarray, plan: Pla
             if plan.interfaces[0] != "perfect":
                 along = np.arange(0.5, 80.0)
                 interface = store.create_group(f"interfaces/{index:05d}/0")
+                interface.attrs["at_m"] = 10.0
+                interface["slip_m"], interface["opening_m"] = np.zeros((2, along.size))
                 interface["x_m"], interface["y_m"] = along, np.full_like(along, 10.0)
                 interface["split"] = (np.abs(along - 40.0) < 6.0).astype(int)
             cloud = store.create_group(f"particles/{index:05d}")

@@ -10,8 +10,11 @@ from pathlib import Path
 import pytest
 
 from reports.claims import claim_rows, columns_of
+from reports.figures import Table
 from reports.make_page import main
-from reports.page import cell_words
+from reports.page import cell_words, minute
+from reports.runs import Run
+from reports.shown import Shown
 from reports.tests.browser import Browser, faults
 from reports.tests.synthetic import STEMS, Plan, claims, write_all, write_run
 from verification.harness.claim_data import REPRODUCED
@@ -110,7 +113,7 @@ def test_faults_are_found(tmp_path: Path, browser: Browser, planted: str, words:
 def test_every_figure_is_written_and_shown(made: Path, page: str) -> None:
     """Each stands on the page with its data, its command and its PDF; no address on the page leads out of its folder."""
     for name in (*STUDY_FIGURES, *KEPT_FIGURES):
-        for ending in (".svg", ".pdf", *(("_one_column.svg", "_one_column.pdf") if name != "ablation" else ())):
+        for ending in (".svg", ".pdf", "_one_column.svg", "_one_column.pdf"):
             assert (made / "figures" / f"{name}{ending}").stat().st_size > 1000 and f'"figures/{name}{ending}"' in page
         assert json.loads((made / "figures" / f"{name}.json").read_text(encoding="utf-8"))["title"]
         assert f'src="figures/{name}.svg"' in page and "Made by <code>ci/" in page[page.index(f'<figure id="{name}"') :].split("</figure>")[0]
@@ -131,6 +134,18 @@ def test_verdicts_come_first_with_their_numbers(page: str) -> None:
         assert words in table, words
     row = table[table.index('class="id">2c') :]
     assert re.findall(r'class="mark (\w+)"', row)[:2] == ["yes", "partly"], "without and with inertia side by side"
+
+
+def test_a_minute_s_summary_follows_the_verdicts_and_the_runs() -> None:
+    """Of the first column what holds in the study's words and what does not by id; a median and the longest run. No claims, no runs: nothing is said."""
+    rows = claim_rows(claims())
+    runs = [Run("exp1", "a", Path(), "quasistatic", summary={"wall_s": wall}) for wall in (1.0, 2.0, 9.0)]
+    assert minute(runs, rows, columns_of(rows), [Shown(name="accuracy", shown=Table("", [], [["K", "a crack", "2\u00a0% (1 m), 0.1\u00a0% (0.5 m)"]]))]) == [
+        ("What holds", "Weak and soft stop the fracture (1b). The start is later (2c)."),
+        ("What does not", "5a; only under another reading of what the study leaves open: none."),
+        ("How accurate", "Errors in the finest cells tried: K\u00a00.1\u00a0%."),
+        ("How fast", "A run of the experiments takes 2\u00a0s without inertia (medians), the longest 9\u00a0s, on one thread.")]
+    assert minute([], [], [], []) == []
 
 
 def test_the_size_of_cells_is_told_beside_verdicts() -> None:
@@ -177,7 +192,7 @@ def test_findings_are_computed_from_the_runs(tmp_path: Path) -> None:
         write_run(runs, 1, Plan("weak", ("weak",), stop_at_m=10.0, restart_Pa=restart))
         make(runs, tmp_path / "out")
         titles += re.findall(r"Figure 3. ([^<]+)</b>", text_of(tmp_path / "out"))
-    pressures = [float(re.search(r"until ([\d.]+)\sMPa", title).group(1)) for title in titles]
+    pressures = [float(re.search(r"to ([\d.]+)\sMPa", title).group(1)) for title in titles]
     assert pressures[0] == pytest.approx(3.0, abs=0.1) and pressures[1] == pytest.approx(3.4, abs=0.1)
 
 
