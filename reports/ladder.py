@@ -153,7 +153,7 @@ def family_shown(ladder: Shown, family: dict[str, Any]) -> Shown:
                    quantities=[_quantity(levels, reasons) for levels in grouped(own, lambda row: row.quantity).values()])
              for case, own in grouped(rows, lambda row: row.case).items()]
     return Shown(
-        name=name, title=plain(name)[:1].upper() + plain(name)[1:], says=sentence(family["says"]), data=convergence_figure(rows),
+        name=name, title=name.upper() if name == "kgd" else plain(name).capitalize(), says=sentence(family["says"]), data=convergence_figure(rows),
         finding=convergence_words(curves) if curves else "Everything holds to round-off" if rows else "Nothing was run",
         blocks=[case for case in cases if not case.exact], exact=[case for case in cases if case.exact], reasons=reasons, comparisons=len(rows),
         wrong=sum(not row.passed for row in rows),
