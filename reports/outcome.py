@@ -179,7 +179,8 @@ def held(run: Run, runs: Sequence[Run]) -> str:
     arrest = outcome_of(run, runs).longest
     if arrest is None:
         return ""
-    return f"{metres(arrest.height_m)}, {mpa(arrest.from_Pa)} to the end" if arrest.until_Pa is None else f"{metres(arrest.height_m)}, {arrest.from_Pa / 1e6:.2f} to {mpa(arrest.until_Pa)}"
+    during = f"{mpa(arrest.from_Pa)} to the end" if arrest.until_Pa is None else f"{arrest.from_Pa / 1e6:.2f} to {mpa(arrest.until_Pa)}"
+    return f"{metres(arrest.height_m)}, {during}"
 
 
 def interface_states(run: Run) -> list[str]:
