@@ -15,6 +15,7 @@
 #include "output/run_folder.hpp"
 #include "output/summary.hpp"
 #include "run.hpp"
+#include "scene/derived.hpp"
 #include "scene/keys.hpp"
 #include "scene/messages.hpp"
 #include "scene/new_scene.hpp"
@@ -44,6 +45,7 @@ int run(Arguments arguments) {
   const std::filesystem::path file = arguments.file;
   const strata::ReadResult read = strata::read_scene_that_fits(file, arguments.variant, arguments.set);
   if (!read.scene) return report(read.errors);
+  if (!arguments.options.quiet) report(read.notes);
   const std::string folder = arguments.variant.empty() ? "default" : arguments.variant;
   if (arguments.options.out.empty()) arguments.options.out = std::filesystem::path("runs") / file.stem() / folder;
   return strata::run_scene(*read.scene, arguments.options);
@@ -62,23 +64,30 @@ int resolve(const Arguments& arguments) {
   return report(read.errors);
 }
 
+int check(const Arguments& arguments) {
+  int status = done;
+  for (const std::string& file : arguments.files) {
+    const strata::ReadResult read = strata::check(file);
+    if (report(read.errors) != done) {
+      status = bad_input;
+      continue;
+    }
+    report(read.notes);
+    fmt::print("{}: {}\n", file, strata::announce(*read.scene));
+  }
+  return status;
+}
+
 int list_sweep(const Arguments& arguments) {
-  strata::SweepList list = strata::list_sweep(arguments.file);
-  if (list.errors.empty() && list.runs.empty()) list.errors.push_back(arguments.file + ": the scene has no [sweep].");
-  if (list.errors.empty()) fmt::print("runs = [\n  {},\n]\n", fmt::join(list.runs, ",\n  "));
-  return report(list.errors);
+  strata::Found runs = strata::of_file(arguments.file, strata::list_sweep);
+  if (runs.errors.empty() && runs.lines.empty()) runs.errors.push_back(arguments.file + ": the scene has no [sweep].");
+  if (runs.errors.empty()) fmt::print("runs = [\n  {},\n]\n", fmt::join(runs.lines, ",\n  "));
+  return report(runs.errors);
 }
 
-int log(const Arguments& arguments) {
-  const strata::LogResult result = strata::scene_of_log(arguments.file);
-  fmt::print("{}", result.toml);
-  return report(result.errors);
-}
-
-int list_variants(const Arguments& arguments) {
-  const strata::VariantList list = strata::list_variants(arguments.file);
-  for (const std::string& name : list.names) fmt::print("{}\n", name);
-  return report(list.errors);
+int print(const strata::Found& found) {
+  for (const std::string& line : found.lines) fmt::print("{}\n", line);
+  return report(found.errors);
 }
 
 int parse_and_do(int argc, char** argv) {
@@ -128,11 +137,11 @@ int parse_and_do(int argc, char** argv) {
     return status == 0 ? done : report({wrong.str().substr(0, wrong.str().find_last_not_of('\n') + 1)});
   }
   if (run_command->parsed()) return run(arguments);
-  if (check_command->parsed()) return report(strata::check(arguments.files));
+  if (check_command->parsed()) return check(arguments);
   if (resolve_command->parsed()) return resolve(arguments);
-  if (variants_command->parsed()) return list_variants(arguments);
+  if (variants_command->parsed()) return print(strata::of_file(arguments.file, strata::list_variants));
   if (sweep_command->parsed()) return list_sweep(arguments);
-  if (log_command->parsed()) return log(arguments);
+  if (log_command->parsed()) return print(strata::of_file(arguments.file, strata::scene_of_log));
   if (resume_command->parsed()) return resume(arguments);
   if (new_command->parsed()) return report(strata::write_new_scene(arguments.file));
   if (keys_command->parsed()) fmt::print("{}", strata::keys_as_markdown());

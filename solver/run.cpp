@@ -320,14 +320,6 @@ int run_anew(const Scene& scene, const RunOptions& options, const RunFolder& fol
   return run_to_end({scene, folder, options, start, Recorder(folder, {}, scene), Checkpoint()});
 }
 
-// What a scene that leaves keys out is easily taken to be otherwise, and what it will need.
-std::string announce(const Scene& scene) {
-  return fmt::format("mechanics = {}, {}{}; {:.2g} points, {:.2g} GB by estimate\n", word_of(scene.numerics.mechanics),
-                     scene.fracture ? "fluid.law = " + word_of(scene.fluid.law) : "no fracture",
-                     scene.domain.bottom == Edge::symmetry ? ", y = 0 is a mirror (domain.bottom)" : "",
-                     points_of(scene), 1e-9 * memory_need(scene));
-}
-
 }  // namespace
 
 int run_scene(const Scene& scene, const RunOptions& options) {
@@ -336,7 +328,7 @@ int run_scene(const Scene& scene, const RunOptions& options) {
   const RunFolder folder{options.out};
   make_folder(folder.path);
   const Descriptor lock = lock_folder(folder.path);
-  if (!options.quiet) tell("{}", announce(scene));
+  if (!options.quiet) tell("{}\n", announce(scene));
   return run_anew(scene, options, folder, options.replace, start);
 }
 

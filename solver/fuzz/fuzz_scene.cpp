@@ -53,7 +53,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const std::vector<std::string> settings = settings_of(text);
   try_reading(text, "", settings);
-  std::vector<std::string> names = strata::list_variants_text(text, "fuzz.toml").names;
+  std::vector<std::string> names = strata::list_variants(text, "fuzz.toml").lines;
   if (names.size() > most_variants) names.resize(most_variants);
   for (const std::string& name : names) try_reading(text, name, settings);
   return 0;

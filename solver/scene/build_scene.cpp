@@ -1,7 +1,6 @@
 // From what was given for each key to a scene.
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "scene/reading.hpp"
 
@@ -105,7 +104,10 @@ void check_required(Reading& reading) {
     }
   }
   if (reading.scene.rocks.empty()) reading.refuse("rock", "there is no rock. Give a table [rock.NAME].");
-  if (fracture && none("fluid.inlet.start_Pa", "fluid.inlet.rate_Pa_s", "fluid.inlet.rate_m2_s", "fluid.inlet.table")) {
+  const bool misspelt = std::ranges::any_of(
+      reading.faults, [](const Fault& fault) { return fault.text.starts_with("unknown key fluid.inlet."); });
+  if (fracture && !misspelt &&
+      none("fluid.inlet.start_Pa", "fluid.inlet.rate_Pa_s", "fluid.inlet.rate_m2_s", "fluid.inlet.table")) {
     reading.refuse("fluid.inlet",
                    "fluid.inlet is missing; a fracture needs it. Give inlet = {{start_Pa = 2e6, rate_Pa_s = 0.35e6}} "
                    "in [fluid].");
@@ -212,22 +214,23 @@ void place_path(Scene& scene) {
   }
 }
 
-// A rock or interface that only a variant or --set names, and that nothing uses, is a slip of the fingers.
-void check_new_names(Reading& reading) {
-  const Scene& scene = reading.scene;
-  std::set<std::string> used;
-  if (!scene.rocks.empty())
-    for (const Layer& layer : scene.strata.layers) used.insert("rock." + scene.rocks[layer.rock].name);
-  for (const InterfacePlace& place : scene.strata.interfaces) used.insert("interface." + scene.laws[place.law].name);
+// A rock or interface that nothing uses: a slip of the fingers where only a variant or --set names it, else worth a
+// note, unless a run has left the variants out.
+void check_used(Reading& reading) {
   for (const char* names : {"rock.NAME", "interface.NAME"}) {
     std::vector<std::string> in_scene;
     for (const auto& [path, given] : reading.entries) {
       if (given.where.rank == 0 && pattern_of(path) == names) in_scene.push_back(path.substr(path.find('.') + 1));
     }
     for (const auto& [path, given] : reading.entries) {
-      if (given.where.rank == 0 || pattern_of(path) != names || used.contains(path)) continue;
-      reading.refuse(path, "there is no [{}] in the scene, and no layer uses it.{}", path,
-                     did_you_mean(path.substr(path.find('.') + 1), in_scene));
+      if (pattern_of(path) != names || reading.used.contains(path)) continue;
+      if (given.where.rank > 0) {
+        reading.refuse(path, "there is no [{}] in the scene, and no layer uses it.{}", path,
+                       did_you_mean(path.substr(path.find('.') + 1), in_scene));
+      } else if (!reading.given("resolved_from")) {
+        reading.notes.push_back({given.where, fmt::format("note: nothing uses [{}], neither {} nor a variant.", path,
+                                                          names[0] == 'r' ? "strata.layers" : "strata.interfaces")});
+      }
     }
   }
 }
@@ -240,7 +243,7 @@ void build_scene(Reading& reading) {
   check_required(reading);
   build_strata(reading);
   place_path(reading.scene);
-  check_new_names(reading);
+  check_used(reading);
 }
 
 }  // namespace strata

@@ -11,6 +11,7 @@
 
 #include "scene/graded_cells.hpp"
 #include "scene/in_situ.hpp"
+#include "scene/keys.hpp"
 
 namespace strata {
 namespace {
@@ -211,6 +212,13 @@ double memory_need(const Scene& scene) {
   const double n = 2.0 * (solved * cells_along(scene, 0) + 1.0) * (cells_along(scene, 1) + 1.0);
   const double jumps = 6.0 * solved * parted_cells(scene);
   return moving + (may_turn(scene) ? 2000.0 : 1000.0) * points + 820.0 * n * std::log2(n) + 28.0 * jumps * jumps;
+}
+
+std::string announce(const Scene& scene) {
+  return fmt::format("mechanics = {}, {}{}; {:.2g} points, {:.2g} GB by estimate", word_of(scene.numerics.mechanics),
+                     scene.fracture ? "fluid.law = " + word_of(scene.fluid.law) : "no fracture",
+                     scene.domain.bottom == Edge::symmetry ? ", y = 0 is a mirror (domain.bottom)" : "",
+                     points_of(scene), 1e-9 * memory_need(scene));
 }
 
 std::optional<std::string> too_large(const Scene& scene, double available) {

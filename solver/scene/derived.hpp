@@ -58,6 +58,10 @@ double points_of(const Scene& scene);
 /// at 1 m cells: 0.9 to 4.3 times, 1.5 in the median; most in explicit runs of Experiment 5, which weigh no growth.
 double memory_need(const Scene& scene);
 
+/// A line on what a scene asks for, with what one that leaves keys out is easily taken to be otherwise, and what it
+/// needs.
+std::string announce(const Scene& scene);
+
 /// Why the scene does not fit in `available` bytes, or nothing.
 std::optional<std::string> too_large(const Scene& scene, double available);
 

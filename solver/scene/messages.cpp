@@ -55,14 +55,15 @@ double edit_distance(std::string_view a, std::string_view b) {
   return at(a.size(), b.size());
 }
 
-std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates, double most) {
   constexpr std::size_t longest = 200;  // a slip in a longer word is not worth a table of its size squared
   std::string nearest;
   double nearest_distance = 0.0;
   for (const std::string& candidate : candidates) {
     if (std::max(word.size(), candidate.size()) > longest) continue;
     // A third of the letters wrong is still a slip of the fingers; more is another word.
-    const double allowed = std::max(1.0, static_cast<double>(std::max(word.size(), candidate.size())) / 3.0);
+    const double third = static_cast<double>(std::max(word.size(), candidate.size())) / 3.0;
+    const double allowed = std::min(most, std::max(1.0, third));
     double distance = edit_distance(word, candidate);
     if (is_stem(word, candidate) || is_stem(candidate, word)) distance = std::min(distance, 0.9);
     if (distance > allowed || (!nearest.empty() && distance >= nearest_distance)) continue;

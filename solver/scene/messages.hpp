@@ -17,8 +17,9 @@ namespace strata {
 /// (optimal string alignment); case counts half as much as a letter would, so that "Weak" is near "weak".
 double edit_distance(std::string_view a, std::string_view b);
 
-/// " Did you mean X?" with the candidate nearest to `word`, or "" where none is near.
-std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
+/// " Did you mean X?" with the candidate nearest to `word`, or "" where none is near. most: changes of a letter that a
+/// slip may have, where a third of the word would be more.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates, double most = 100.0);
 
 /// `text`, or where it has more than `longest` bytes its beginning and its end: "abc...xyz (100000 characters)".
 std::string shortened(std::string_view text, std::size_t longest);

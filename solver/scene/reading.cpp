@@ -23,6 +23,13 @@ bool is_key_table(const std::string& path) {
   return !names_in_table(path).empty();
 }
 
+// A layer has a rock, a border of layers an interface.
+void note_use(Reading& reading, std::string_view pattern, const toml::node& value) {
+  const bool has_rock = pattern == "strata.layers[].rock";
+  if (value.is_string() && (has_rock || pattern == "strata.interfaces[]" || pattern == "strata.interfaces[].name"))
+    reading.used.insert((has_rock ? "rock." : "interface.") + value.as_string()->get());
+}
+
 // Elements of a list have each a place; those that are tables give keys of their own.
 void take_elements(Reading& reading, const std::string& path, const toml::array& list, const Where& source) {
   std::erase_if(reading.entries, [&](const auto& entry) { return entry.first.starts_with(path + '['); });
@@ -30,6 +37,7 @@ void take_elements(Reading& reading, const std::string& path, const toml::array&
     const std::string element = fmt::format("{}[{}]", path, k);
     const Where where = where_of(source, list[k].source());
     reading.entries[element] = {nullptr, &list[k], where};
+    note_use(reading, path + "[]", list[k]);
     if (const toml::table* table = list[k].as_table(); table != nullptr && is_key_table(element))
       take_table(reading, *table, element, where);
   }
@@ -100,9 +108,11 @@ void take_value(Reading& reading, const std::string& path, const toml::node& val
   }
   const Key* key = find_key(path);
   const bool is_table = is_key_table(path) || is_key_table(path + "[]");
-  const bool is_there = reading.given(path.substr(0, path.rfind(']') + 1));  // the element of a list that it names
-  if (key == nullptr && path.starts_with("claim[")) return;                  // the harness's
-  if (!is_there || (key == nullptr && !is_table)) return reading.fault(where, "{}", unknown_key_message(path));
+  const std::string element = path.substr(0, path.rfind(']') + 1);  // of a list, if any
+  if (key == nullptr && path.starts_with("claim[")) return;         // the harness's
+  if (!reading.given(element))
+    return reading.fault(where, "unknown key {}. There is no {}; elements are counted from 0.", path, element);
+  if (key == nullptr && !is_table) return reading.fault(where, "{}", unknown_key_message(path));
   if (key == nullptr && value.is_string() && find_key(path + ".name") != nullptr)  // an interface by its name alone
     return take_value(reading, path + ".name", value, where);
   if (key == nullptr) return take_inner_table(reading, path, value, where);
@@ -116,6 +126,7 @@ void take_value(Reading& reading, const std::string& path, const toml::node& val
   Scene any = scene_of_one();
   const bool sound = key->member.read({path, *key, value, where, reading.faults}, any, 0);
   reading.entries[path] = {key, &value, where, sound};
+  note_use(reading, key->path, value);
   if (value.is_array()) take_elements(reading, path, *value.as_array(), where);
 }
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,7 +43,8 @@ struct Reading {
   // By full path: keys ("domain.width_m", "strata.layers[1].rock"), tables ("domain") and elements of lists
   // ("strata.layers[1]"); "" is the start of the file.
   std::map<std::string, Given, std::less<>> entries;
-  std::vector<Fault> faults;
+  std::vector<Fault> faults, notes;
+  std::set<std::string> used;  // "rock.NAME" and "interface.NAME" that a layer or border has in the scene or a variant
 
   bool given(std::string_view path) const { return entries.contains(path); }
   // Whether what was given for the path, if anything, is of use; of a list all that is in it.

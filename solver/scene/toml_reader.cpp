@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <deque>
 #include <fstream>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -122,6 +123,7 @@ void take_variants(Reading& reading, const std::vector<Variant>& variants, const
     Reading other = scene;
     take_table(name == chosen ? reading : other, *table, "", where);
     reading.faults.insert(reading.faults.end(), other.faults.begin(), other.faults.end());
+    reading.used.merge(other.used);
   }
   if (chosen.empty() || std::ranges::find(names, chosen) != names.end()) return;
   reading.fault({file_name}, "there is no variant {}. It has {}.{}", chosen,
@@ -138,7 +140,9 @@ struct Setting {
 void take_setting(Reading& reading, const Setting& given, toml::table& table) {
   const auto& [setting, where] = given;
   const std::size_t equals = setting.find('=');
-  const std::string path(trimmed(std::string_view(setting).substr(0, equals)));
+  static const std::regex element(R"(^(strata\.\w+)\.(\d+)\b)");  // as other programs count them
+  const std::string path =
+      std::regex_replace(std::string(trimmed(std::string_view(setting).substr(0, equals))), element, "$1[$2]");
   if (equals == std::string::npos || path.empty()) return reading.fault(where, "this is not key.path=value.");
   const std::string value(trimmed(std::string_view(setting).substr(equals + 1)));
   try {
@@ -194,7 +198,7 @@ ReadResult read_parsed(const Parsed& parsed, const std::string& file_name, const
   if (!reading.faults.empty()) return {std::nullopt, as_lines(reading.faults)};
   start_at_symmetry_line(scene);
   scene.resolved_toml = resolved_toml(scene, claims_text(parsed.table));
-  return {std::move(scene), {}};
+  return {std::move(scene), {}, as_lines(std::move(reading.notes))};
 }
 
 }  // namespace
@@ -207,10 +211,10 @@ ReadResult read_scene_text(std::string_view text, const std::string& file_name, 
   return read_parsed(parse_toml(text, {file_name}), file_name, variant, settings, &runs);
 }
 
-SweepList list_sweep_text(std::string_view text, const std::string& file_name) {
+Found list_sweep(std::string_view text, const std::string& file_name) {
   const Parsed parsed = parse_toml(text, {file_name});
   std::vector<SweepRun> runs;
-  SweepList list{{}, read_parsed(parsed, file_name, "", {}, &runs).errors};
+  Found list{{}, read_parsed(parsed, file_name, "", {}, &runs).errors};
   if (!list.errors.empty()) return list;
   constexpr std::size_t most_lines = 20;
   std::set<std::string> said;
@@ -227,12 +231,12 @@ SweepList list_sweep_text(std::string_view text, const std::string& file_name) {
     }
     toml::table line{{"name", run.name}, {"set", set}, {"variant", run.variant}};
     line.is_inline(true);
-    list.runs.push_back(as_one_line(line));
+    list.lines.push_back(as_one_line(line));
   }
   return list;
 }
 
-std::string text_of_file(const std::filesystem::path& file, std::vector<std::string>& errors) {
+Found of_file(const std::filesystem::path& file, Found (*of_text)(std::string_view, const std::string&)) {
   std::error_code code;
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;
@@ -240,37 +244,21 @@ std::string text_of_file(const std::filesystem::path& file, std::vector<std::str
                       : std::filesystem::is_directory(file, code) ? "this is a folder. Give the path of a file."
                       : !in                                       ? "the file cannot be read. Check its permissions."
                                                                   : nullptr;
-  if (error != nullptr) {
-    errors.push_back(shortened(file.string(), 1000) + ": " + error);
-    return {};
-  }
+  if (error != nullptr) return {{}, {shortened(file.string(), 1000) + ": " + error}};
   text << in.rdbuf();
-  return text.str();
+  return of_text(text.str(), file.string());
 }
 
 ReadResult read_scene(const std::filesystem::path& file, const std::string& variant,
                       const std::vector<std::string>& set) {
-  ReadResult result;
-  const std::string text = text_of_file(file, result.errors);
-  return result.errors.empty() ? read_scene_text(text, file.string(), variant, set) : result;
+  const auto [lines, errors] = of_file(file, [](auto text, auto&) { return Found{{std::string(text)}, {}}; });
+  return errors.empty() ? read_scene_text(lines[0], file.string(), variant, set) : ReadResult{std::nullopt, errors};
 }
 
-VariantList list_variants_text(std::string_view text, const std::string& file_name) {
+Found list_variants(std::string_view text, const std::string& file_name) {
   Parsed parsed = parse_toml(text, {file_name});
   if (!parsed.faults.empty()) return {{}, as_lines(parsed.faults)};
   return {names_of(variants_of(parsed.table, file_name, parsed.faults)), {}};
-}
-
-VariantList list_variants(const std::filesystem::path& file) {
-  VariantList list;
-  const std::string text = text_of_file(file, list.errors);
-  return list.errors.empty() ? list_variants_text(text, file.string()) : list;
-}
-
-SweepList list_sweep(const std::filesystem::path& file) {
-  SweepList list;
-  const std::string text = text_of_file(file, list.errors);
-  return list.errors.empty() ? list_sweep_text(text, file.string()) : list;
 }
 
 ReadResult read_scene_that_fits(const std::filesystem::path& file, const std::string& variant,
@@ -283,22 +271,18 @@ ReadResult read_scene_that_fits(const std::filesystem::path& file, const std::st
   return result;
 }
 
-std::vector<std::string> check(const std::vector<std::string>& files) {
-  std::vector<std::string> lines;
-  for (const std::string& file : files) {
-    const std::vector<std::string> of_scene = read_scene_that_fits(file, "", {}).errors;
-    lines.insert(lines.end(), of_scene.begin(), of_scene.end());
-    for (const std::string& variant : list_variants(file).names) {
-      for (const std::string& line : read_scene_that_fits(file, variant, {}).errors) {
-        const bool known = std::ranges::find(of_scene, line) != of_scene.end();
-        if (!known) lines.push_back(line + " [variant " + variant + "]");
-      }
+ReadResult check(const std::filesystem::path& file) {
+  ReadResult result = read_scene_that_fits(file, "", {});
+  const std::vector<std::string> of_scene = result.errors;
+  for (const std::string& variant : of_file(file, list_variants).lines) {
+    for (const std::string& line : read_scene_that_fits(file, variant, {}).errors) {
+      const bool known = std::ranges::find(of_scene, line) != of_scene.end();
+      if (!known) result.errors.push_back(line + " [variant " + variant + "]");
     }
-    if (!of_scene.empty()) continue;
-    const std::vector<std::string> of_runs = list_sweep(file).errors;
-    lines.insert(lines.end(), of_runs.begin(), of_runs.end());
   }
-  return lines;
+  for (const std::string& line : of_scene.empty() ? of_file(file, list_sweep).errors : std::vector<std::string>())
+    result.errors.push_back(line);
+  return result;
 }
 
 }  // namespace strata

@@ -69,6 +69,7 @@ std::string list_text(Scene& scene, const auto& values) {
 }  // namespace
 
 bool read(const Value& v, double& member) {
+  if (v.key.kind == Key::Kind::integer && v.node.is_floating_point()) return refuse(v, "no integer.");
   return read_number(v, v.key.bounds, member);
 }
 
@@ -85,9 +86,10 @@ bool read_word(const Value& v, std::string_view words, int& member) {
   const auto allowed = split(v.key.allowed, ", "), all_words = split(words, ", ");
   const auto* text = v.node.as_string();
   if (text == nullptr || std::ranges::find(allowed, text->get()) == allowed.end()) {
-    return refuse(v,
-                  fmt::format("not {}. Use one of \"{}\".{}", text == nullptr ? "a word" : "allowed",
-                              fmt::join(allowed, "\", \""), text == nullptr ? "" : did_you_mean(text->get(), allowed)));
+    // "implicit" is near "explicit": where all words are shown, only what cannot be another word is taken for one.
+    const std::string meant = text == nullptr ? "" : did_you_mean(text->get(), allowed, 1.0);
+    return refuse(v, fmt::format("not {}. Use one of \"{}\".{}", text == nullptr ? "a word" : "allowed",
+                                 fmt::join(allowed, "\", \""), meant));
   }
   member = static_cast<int>(std::ranges::find(all_words, text->get()) - all_words.begin());
   return true;

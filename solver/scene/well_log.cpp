@@ -11,7 +11,6 @@
 #include <set>
 
 #include "scene/reading.hpp"
-#include "scene/toml_reader.hpp"
 
 namespace strata {
 namespace {
@@ -280,8 +279,7 @@ cell_m = {cell}    # divides all layers
 far_cell_m = {far}
 
 [stop]
-{stop}
-)",
+{stop})",
       fmt::arg("bottom", metres(bottom_m)), fmt::arg("width", metres(2.0 * x)), fmt::arg("height", metres(height)),
       fmt::arg("beyond", metres(20.0 * height)), fmt::arg("vertical", 25e3 * (bottom_m - height / 2.0)),
       fmt::arg("strata", strata_text(scene, bottom_m)), fmt::arg("x", metres(x)), fmt::arg("low", metres(from)),
@@ -291,21 +289,15 @@ far_cell_m = {far}
 
 }  // namespace
 
-LogResult scene_of_log_text(std::string_view text, const std::string& file_name) {
+Found scene_of_log(std::string_view text, const std::string& file_name) {
   Log log;
   split_rows(log, text, file_name);
   const std::size_t end = log.reading.faults.empty() ? log.rows.size() : 0;
   if (end > 0) check_header(log);
   for (std::size_t row = 1; row < end; ++row) read_row(log, row);
   if (log.reading.faults.empty()) choose_cell(log);
-  return log.reading.faults.empty() ? LogResult{scene_text(log.reading.scene), {}}
-                                    : LogResult{"", as_lines(log.reading.faults)};
-}
-
-LogResult scene_of_log(const std::filesystem::path& file) {
-  LogResult result;
-  const std::string text = text_of_file(file, result.errors);
-  return result.errors.empty() ? scene_of_log_text(text, file.string()) : result;
+  return log.reading.faults.empty() ? Found{{scene_text(log.reading.scene)}, {}}
+                                    : Found{{}, as_lines(log.reading.faults)};
 }
 
 std::string log_help() {

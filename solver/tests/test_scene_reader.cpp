@@ -233,6 +233,15 @@ TEST_CASE("Fast kernels are the default, plain ones a choice") {
   CHECK(good(layered, "", {"numerics.kernels=plain"}).numerics.kernels == Numerics::Kernels::plain);
 }
 
+TEST_CASE("A misspelt key of the inlet, and a word that is near one of another meaning, are told once") {
+  CHECK(errors(with(fed_at_a_rate(), "rate_m2_s", "rate_m3_s")) ==
+        "scene.toml:22:10: unknown key fluid.inlet.rate_m3_s. Did you mean rate_m2_s?\n");
+  CHECK(errors(layered, "", {"numerics.mechanics=implicit"}) ==
+        "--set numerics.mechanics=implicit: numerics.mechanics = \"implicit\" is not allowed. Use one of "
+        "\"explicit\", \"quasistatic\".\n");
+  CHECK_THAT(errors(layered, "", {"numerics.mechanics=quasi-static"}), Catch::Contains("Did you mean quasistatic?"));
+}
+
 TEST_CASE("The inlet's pressure or its rate is given, and the upper of the two counts") {
   const Scene fed = good(fed_at_a_rate());
   CHECK(fed.fluid.rate_m2_s == 1e-4);

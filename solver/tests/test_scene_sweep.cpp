@@ -52,16 +52,16 @@ strata.layers = [{rock = "stiff"}]
 numerics = {mechanics = "quasistatic", cell_m = 1}
 stop.time_s = 0
 )";
-  CHECK(list_sweep_text(base, "a.toml").runs.empty());
-  CHECK(list_sweep_text(base, "a.toml").errors.empty());
+  CHECK(list_sweep(base, "a.toml").lines.empty());
+  CHECK(list_sweep(base, "a.toml").errors.empty());
   const std::string swept = base + "[sweep]\nrock.stiff.youngs_modulus_Pa = [1e9, 2e9]\nnumerics.cell_m = [1, 2]\n";
-  const SweepList list = list_sweep_text(swept, "a.toml");
+  const Found list = list_sweep(swept, "a.toml");
   REQUIRE(list.errors.empty());
-  REQUIRE(list.runs.size() == 4);
-  CHECK(list.runs[1].find("\"2000000000_1\"") == std::string::npos);  // the last axis changes fastest
-  CHECK(list.runs[1].find("\"1000000000_2\"") != std::string::npos);
+  REQUIRE(list.lines.size() == 4);
+  CHECK(list.lines[1].find("\"2000000000_1\"") == std::string::npos);  // the last axis changes fastest
+  CHECK(list.lines[1].find("\"1000000000_2\"") != std::string::npos);
   CHECK(read_scene_text(swept, "a.toml", "", {}).scene == read_scene_text(base, "a.toml", "", {}).scene);
-  const SweepList refused = list_sweep_text(swept + "domain.width_m = [8, 9]\n", "a.toml");
+  const Found refused = list_sweep(swept + "domain.width_m = [8, 9]\n", "a.toml");
   REQUIRE(refused.errors.size() == 1);
   CHECK(refused.errors[0].starts_with("a.toml:9:23: numerics.cell_m = 2 does not divide"));
 }

@@ -97,8 +97,11 @@ TEST_CASE("A variant and --set may replace a key of an element of a list that is
   CHECK(good(text, "thick").strata.interfaces[0].at_m == 30.0);
   const std::string both = "strata.layers=[{rock = \"soft\", thickness_m = 5}, {rock = \"soft\"}]";
   CHECK(good(text, "thick", {both}).strata.interfaces[0].at_m == 5.0);
-  CHECK_THAT(errors(layered, "", {"strata.layers[2].thickness_m=20"}),
-             Catch::StartsWith("--set strata.layers[2].thickness_m=20: unknown key strata.layers[2].thickness_m."));
+  CHECK(good(layered, "", {"strata.layers.0.thickness_m=20", "strata.interfaces.0=perfect"}) ==
+        good(layered, "", {"strata.layers[0].thickness_m=20", "strata.interfaces[0]=perfect"}));
+  CHECK(errors(layered, "", {"strata.layers[2].thickness_m=20"}) ==
+        "--set strata.layers[2].thickness_m=20: unknown key strata.layers[2].thickness_m. There is no "
+        "strata.layers[2]; elements are counted from 0.\n");
   CHECK_THAT(
       errors(layered, "", {"strata.interfaces[0]=3"}),
       Catch::EndsWith("strata.interfaces[0] = 3 is not a table. Write {...} with keys of name, from_m, to_m.\n"));
@@ -145,13 +148,33 @@ TEST_CASE("A rock that only --set names is a slip, unless a layer uses it") {
   CHECK(scene.rocks[scene.strata.layers[0].rock].name == "new");
 }
 
+TEST_CASE("A rock or interface that nothing uses is noted, unless a variant, a sweep or --set does") {
+  const std::string more = layered + "[rock.chalk]\nyoungs_modulus_Pa = 1e9\n[interface.clay]\nlaw = \"weak\"\n";
+  const auto notes = [](const std::string& text, const std::vector<std::string>& set = {}) {
+    const ReadResult result = read(text, "", set);
+    CHECK(result.errors.empty());
+    return result.notes;
+  };
+  CHECK(notes(layered).empty());
+  CHECK(notes(more) == std::vector<std::string>{
+                           "scene.toml:27:7: note: nothing uses [rock.chalk], neither strata.layers nor a variant.",
+                           "scene.toml:29:12: note: nothing uses [interface.clay], neither strata.interfaces nor a "
+                           "variant."});
+  const std::string clay = "strata.interfaces = [\"clay\"]\n", chalk = "\"strata.layers[1].rock\" = \"chalk\"\n";
+  CHECK(notes(more + "[variants.v]\n" + clay + chalk).empty());
+  CHECK(notes(more + "[variants.v]\n" + clay + "[variants.w]\n" + chalk).empty());
+  CHECK(notes(more + "[sweep]\nstrata.interfaces = [[{name = \"clay\"}], [\"joint\"]]\n").size() == 1);
+  CHECK(notes(more, {"strata.interfaces[0]=clay", "strata.layers[1].rock=chalk"}).empty());
+  CHECK(notes(good(more).resolved_toml).empty());  // what variants use a run does not know
+}
+
 TEST_CASE("check reports every file and every variant, and says which variant is to blame") {
   const test::TemporaryFolder folder;
   const std::filesystem::path file = folder.path / "scene.toml";
   std::ofstream(file) << layered << "[variants.coarse]\nnumerics.cell_m = 16\n";
-  const std::vector<std::string> lines = check({"no/such.toml", file.string()});
-  REQUIRE(lines.size() == 2);
-  CHECK_THAT(lines[0], Catch::StartsWith("no/such.toml: there is no such file"));
-  CHECK_THAT(lines[1],
+  CHECK_THAT(check("no/such.toml").errors.at(0), Catch::StartsWith("no/such.toml: there is no such file"));
+  const std::vector<std::string> lines = check(file).errors;
+  REQUIRE(lines.size() == 1);
+  CHECK_THAT(lines[0],
              Catch::Contains("neither on a grid line nor at mid-cell") && Catch::EndsWith(" [variant coarse]"));
 }

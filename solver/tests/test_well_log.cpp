@@ -25,18 +25,18 @@ const std::string three = header +
                           "112,,,,,,\r\n";
 
 Scene scene_of(const std::string& csv) {
-  const LogResult log = scene_of_log_text(csv, "well.csv");
-  CAPTURE(csv, log.toml);
+  const Found log = scene_of_log(csv, "well.csv");
+  CAPTURE(csv, log.lines);
   REQUIRE(log.errors.empty());
-  ReadResult read = read_scene_text(log.toml, "well.toml", "", {});
+  ReadResult read = read_scene_text(log.lines[0], "well.toml", "", {});
   CAPTURE(read.errors);
   REQUIRE(read.scene);
   return *read.scene;
 }
 
 std::vector<std::string> errors_of(const std::string& csv) {
-  const LogResult log = scene_of_log_text(csv, "well.csv");
-  CHECK(log.toml.empty());
+  const Found log = scene_of_log(csv, "well.csv");
+  CHECK(log.lines.empty());
   return log.errors;
 }
 
@@ -158,7 +158,7 @@ TEST_CASE("A log's values have the bounds of the scene's keys") {
         values += fmt::format(",{}", key == tried ? value : 0.3);  // within all bounds
       }
       CAPTURE(tried->path, value);
-      const auto errors = scene_of_log_text(names + '\n' + values + "\n4\n", "well.csv").errors;
+      const auto errors = scene_of_log(names + '\n' + values + "\n4\n", "well.csv").errors;
       CHECK(errors.empty() == tried->bounds.contain(value));
     }
   }
