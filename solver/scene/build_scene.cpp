@@ -57,24 +57,22 @@ void choose_inlet(Reading& reading) {
   const auto rank_of = [&](const char* path) { return reading.given(path) ? reading.where(path).rank : -1; };
   const int rate = rank_of("fluid.inlet.rate_m2_s"), start = rank_of("fluid.inlet.start_Pa");
   const int pressure = std::max(start, rank_of("fluid.inlet.rate_Pa_s")), table = rank_of("fluid.inlet.table");
+  const int top = std::max({rate, pressure, table});
+  std::vector<std::string> ways;
+  if (table == top) ways.emplace_back("table");
+  if (rate == top) ways.emplace_back("rate_m2_s");
+  if (pressure == top) ways.emplace_back(start == top ? "start_Pa" : "rate_Pa_s");
+  if (top >= 0 && ways.size() > 1) {
+    reading.refuse(
+        "fluid.inlet." + ways[0],
+        "fluid.inlet has both {} and {}. Give the pressure, inlet = {{start_Pa, rate_Pa_s}}, the rate, inlet "
+        "= {{rate_m2_s}}, at which a fracture starts at its closing stress, or inlet = {{table, of}}.",
+        ways[0], ways[1]);
+  }
   Fluid& fluid = reading.scene.fluid;
-  if (rate >= 0 && rate == pressure && rate > table) {
-    reading.refuse("fluid.inlet.rate_m2_s",
-                   "fluid.inlet has both rate_m2_s and {}. Prescribe the rate, inlet = {{rate_m2_s}}, or the pressure, "
-                   "inlet = {{start_Pa, rate_Pa_s}}: a fracture fed at a rate starts at its closing stress.",
-                   start == pressure ? "start_Pa" : "rate_Pa_s");
-  }
-  if (table >= 0 && table == std::max(rate, pressure)) {
-    reading.refuse("fluid.inlet.table",
-                   "fluid.inlet has both table and {}. The table says all of the inlet, inlet = {{table, of}}: leave "
-                   "the other out.",
-                   rate == table    ? "rate_m2_s"
-                   : start == table ? "start_Pa"
-                                    : "rate_Pa_s");
-  }
-  if (rate > pressure || table > pressure) fluid.start_Pa = fluid.rate_Pa_s = 0.0;
-  if (pressure > rate || table > rate) fluid.rate_m2_s.reset();
-  if (std::max(rate, pressure) > table) fluid.table.clear();
+  if (pressure < top) fluid.start_Pa = fluid.rate_Pa_s = 0.0;
+  if (rate < top) fluid.rate_m2_s.reset();
+  if (table < top) fluid.table.clear();
   if (fluid.table.empty()) return;
   if (fluid.table_of == Fluid::TableOf::rate_m2_s) {
     fluid.rate_m2_s = fluid.table.front()[1];

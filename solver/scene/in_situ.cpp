@@ -12,19 +12,11 @@ namespace {
 
 using KeyFault = std::pair<std::string, std::string>;
 
-struct Coordinates {
+std::vector<double> values_of(const Field& field, const std::vector<Point>& places) {
+  if (field.formula.empty()) return std::vector<double>(places.size(), field.number);
   std::vector<double> X, Y;
-};
-
-Coordinates coordinates_of(const std::vector<Point>& places) {
-  Coordinates at;
-  for (const Point& x : places) at.X.push_back(x[0]), at.Y.push_back(x[1]);
-  return at;
-}
-
-std::vector<double> values_of(const Field& field, const Coordinates& at) {
-  if (field.formula.empty()) return std::vector<double>(at.X.size(), field.number);
-  return evaluate_formula(field.formula, {{"X", at.X}, {"Y", at.Y}});
+  for (const Point& x : places) X.push_back(x[0]), Y.push_back(x[1]);
+  return evaluate_formula(field.formula, {{"X", X}, {"Y", Y}});
 }
 
 // Whether the field says itself how it changes with Y.
@@ -87,45 +79,43 @@ std::optional<KeyFault> imbalance(const Scene& scene, std::size_t k, std::size_t
   const double weight = axis == 1 && scene.in_situ.weight
                             ? scene.rocks[scene.strata.layers[k].rock].density_kg_m3 * standard_gravity
                             : 0.0;
+  const auto value = axis == 0 ? &InSituStress::horizontal : &InSituStress::vertical;
   double worst = 0.0, slope = 0.0;
   Point at{};
   for (std::size_t n = 0; n < places.size(); ++n) {
-    const auto value = [&](std::size_t q) { return axis == 0 ? stress[q].horizontal : stress[q].vertical; };
-    if (!std::isfinite(value(n)))
+    const double here = stress[n].*value;
+    if (!std::isfinite(here))
       return KeyFault{of.key,
                       fmt::format("{} is {} at X = {:.6g} m, Y = {:.6g} m. Give a formula that is finite in the block.",
-                                  typed(of), value(n), places[n][0], places[n][1])};
+                                  typed(of), here, places[n][0], places[n][1])};
     if (n == 0 || places[n][axis] <= places[n - 1][axis]) continue;
-    const double distance = places[n][axis] - places[n - 1][axis], change = (value(n) - value(n - 1)) / distance;
-    const double off = std::abs(change + weight) - 1e-3 * weight - 1e-9 * std::abs(value(n)) / distance;
+    const double distance = places[n][axis] - places[n - 1][axis], change = (here - stress[n - 1].*value) / distance;
+    const double off = std::abs(change + weight) - 1e-3 * weight - 1e-9 * std::abs(here) / distance;
     if (off > worst) worst = off, slope = change, at = places[n];
   }
   if (worst == 0.0) return std::nullopt;
-  const std::string place = fmt::format("{} changes by {:.6g} Pa/m along {} at X = {:.6g} m, Y = {:.6g} m", typed(of),
-                                        slope, axis == 0 ? "X" : "Y", at[0], at[1]);
-  if (axis == 0) return KeyFault{of.key, place + ", which nothing balances. Let it depend on Y alone."};
-  if (!scene.in_situ.weight)
-    return KeyFault{of.key,
-                    place +
-                        ", which nothing balances. For the rock's weight give the stress at the block's top and "
-                        "in_situ.weight = true."};
-  return KeyFault{
-      of.key, fmt::format("{}, and the rock's weight asks for {:.6g}. Give the stress at the block's top as a number.",
-                          place, -weight)};
+  const std::string advice =
+      axis == 0 ? "which nothing balances. Let it depend on Y alone."
+      : weight == 0.0
+          ? "which nothing balances. For the rock's weight give the stress at the block's top and in_situ.weight = "
+            "true."
+          : fmt::format("and the rock's weight asks for {:.6g}. Give the stress at the block's top as a number.",
+                        -weight);
+  return KeyFault{of.key, fmt::format("{} changes by {:.6g} Pa/m along {} at X = {:.6g} m, Y = {:.6g} m, {}", typed(of),
+                                      slope, axis == 0 ? "X" : "Y", at[0], at[1], advice)};
 }
 
 }  // namespace
 
 std::vector<InSituStress> in_situ_stress(const Scene& scene, const std::vector<Point>& places) {
-  const Coordinates at = coordinates_of(places);
   const bool upwards = scene.strata.along == Strata::Along::y;
-  std::vector<double> horizontal = values_of(scene.in_situ.horizontal_Pa, at),
-                      vertical = values_of(scene.in_situ.vertical_Pa, at);
+  std::vector<double> horizontal = values_of(scene.in_situ.horizontal_Pa, places),
+                      vertical = values_of(scene.in_situ.vertical_Pa, places);
   std::vector<char> weighs(places.size(), scene.in_situ.weight && !has_Y(scene.in_situ.vertical_Pa) ? 1 : 0);
   for (std::size_t k = 0; k < scene.strata.layers.size(); ++k) {
     const auto& own = own_stress(scene, scene.strata.layers[k]);
     if (!own) continue;
-    const std::vector<double> values = values_of(*own, at);
+    const std::vector<double> values = values_of(*own, places);
     const char own_weighs = scene.in_situ.weight && !has_Y(*own) ? 1 : 0;
     for (std::size_t q = 0; q < places.size(); ++q) {
       if (layer_at(scene, places[q]) != k) continue;
@@ -176,30 +166,27 @@ std::vector<KeyFault> in_situ_faults(const Scene& scene) {
                                      "or use initialise = \"uniform\".");
     }
   }
-  std::optional<KeyFault> general[2];
+  const std::string own_key = upwards ? "horizontal" : "vertical", other_key = upwards ? "vertical" : "horizontal";
+  bool said[2] = {false, false};  // of the stress of all layers
   for (std::size_t k = 0; k < scene.strata.layers.size(); ++k) {
     const Layer& layer = scene.strata.layers[k];
     const std::string path = fmt::format("strata.layers[{}].", k);
-    if (upwards ? layer.vertical_Pa.has_value() : layer.horizontal_Pa.has_value()) {
-      const std::string of = upwards ? "vertical" : "horizontal", own = upwards ? "horizontal" : "vertical";
-      out.emplace_back(path + of + "_Pa",
-                       fmt::format("{}{}_Pa: neighbours press on each other with one {} stress. Give "
-                                   "{}_Pa here and in_situ.{}_Pa for all.",
-                                   path, of, of, own, of));
-    }
+    if (upwards ? layer.vertical_Pa.has_value() : layer.horizontal_Pa.has_value())
+      out.emplace_back(
+          path + other_key + "_Pa",
+          fmt::format("{0}{1}_Pa: neighbours press on each other with one {1} stress. Give {2}_Pa here and "
+                      "in_situ.{1}_Pa for all.",
+                      path, other_key, own_key));
     for (const std::size_t axis : {0, 1}) {
       const bool is_own = (axis == 0) == upwards && own_stress(scene, layer);
-      if (is_own) {
-        const auto fault =
-            imbalance(scene, k, axis, {path + (upwards ? "horizontal_Pa" : "vertical_Pa"), *own_stress(scene, layer)});
-        if (fault) out.push_back(*fault);
-      } else if (!general[axis]) {
-        general[axis] = imbalance(scene, k, axis, axis == 0 ? horizontal : vertical);
-      }
+      if (!is_own && said[axis]) continue;
+      const Looked of = is_own      ? Looked{path + own_key + "_Pa", *own_stress(scene, layer)}
+                        : axis == 0 ? horizontal
+                                    : vertical;
+      const auto fault = imbalance(scene, k, axis, of);
+      if (fault) out.push_back(*fault);
+      said[axis] = said[axis] || (fault && !is_own);
     }
-  }
-  for (const auto& fault : general) {
-    if (fault) out.push_back(*fault);
   }
   return out;
 }

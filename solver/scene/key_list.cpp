@@ -232,17 +232,13 @@ constexpr Key keys[] = {
            "straight way up to stop.tip_y_m, and within 4 of them around interfaces and borders of rocks elsewhere; "
            "then coarser by at most 1.2 a cell. Left out: uniform."),
     number("numerics.fine_left_m", at<&Scene::numerics, &Numerics::fine_left_m>, "m", finite,
-           "With far_cell_m, for a path that turns: lowest x at which the fine cells around it end. Left out: 10 cells "
-           "from the initial fracture and its straight way."),
+           "With far_cell_m, for a path that turns: lowest x of the fine cells around it. Left out: by far_cell_m."),
     number("numerics.fine_right_m", at<&Scene::numerics, &Numerics::fine_right_m>, "m", finite,
-           "With far_cell_m, for a path that turns: largest x at which the fine cells around it end. Left out: 10 "
-           "cells from the initial fracture and its straight way."),
+           "With far_cell_m, for a path that turns: largest x of the fine cells around it. Left out: by far_cell_m."),
     number("numerics.fine_bottom_m", at<&Scene::numerics, &Numerics::fine_bottom_m>, "m", finite,
-           "With far_cell_m, for a path that turns: lowest y at which the fine cells around it end. Left out: 10 cells "
-           "from the initial fracture and its straight way."),
+           "With far_cell_m, for a path that turns: lowest y of the fine cells around it. Left out: by far_cell_m."),
     number("numerics.fine_top_m", at<&Scene::numerics, &Numerics::fine_top_m>, "m", finite,
-           "With far_cell_m, for a path that turns: largest y at which the fine cells around it end. Left out: 10 "
-           "cells from the initial fracture and its straight way."),
+           "With far_cell_m, for a path that turns: largest y of the fine cells around it. Left out: by far_cell_m."),
     integer("numerics.particles_per_cell", at<&Scene::numerics, &Numerics::particles_per_cell>,
             "Particles in each cell, a square of them.", "4, 9, 16"),
     word("numerics.shape", at<&Scene::numerics, &Numerics::shape>,

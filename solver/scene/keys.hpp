@@ -35,14 +35,8 @@ bool read(const Value& value, std::vector<InterfacePlace>& member);
 /// The same of one of the key's words; member: its number in `words`.
 bool read_word(const Value& value, std::string_view words, int& member);
 
-/// A member as TOML, doubles to the last digit; "" where an optional one is absent.
-std::string text_of(Scene& scene, double member);
-std::string text_of(Scene& scene, int member);
+/// Text as TOML; layers, and interfaces, in a list.
 std::string text_of(Scene& scene, const std::string& member);
-std::string text_of(Scene& scene, bool member);
-std::string text_of(Scene& scene, const Field& member);
-std::string text_of(Scene& scene, const Formulas& member);
-std::string text_of(Scene& scene, const Path& member);
 std::string text_of(Scene& scene, const std::vector<Layer>& member);
 std::string text_of(Scene& scene, const std::vector<InterfacePlace>& member);
 
@@ -55,10 +49,6 @@ template <class Type>
 bool read(const Value& value, std::optional<Type>& member) {
   return read(value, member.emplace()) || (member.reset(), false);
 }
-template <class Type>
-std::string text_of(Scene& scene, const std::optional<Type>& member) {
-  return member ? text_of(scene, *member) : std::string();
-}
 template <class Enum>
 requires std::is_enum_v<Enum>
 bool read(const Value& value, Enum& member) {
@@ -67,9 +57,24 @@ bool read(const Value& value, Enum& member) {
   member = static_cast<Enum>(number);
   return true;
 }
-template <class Enum>
-requires std::is_enum_v<Enum> std::string text_of(Scene&, Enum member) {
-  return '"' + word_of(member) + '"';
+/// A member as TOML, doubles to the last digit; "" where an optional one is absent.
+template <class Type>
+std::string text_of(Scene& scene, const Type& member) {
+  if constexpr (std::is_enum_v<Type>) {
+    return '"' + word_of(member) + '"';
+  } else if constexpr (std::is_same_v<Type, double>) {
+    return number_text(member);
+  } else if constexpr (std::is_arithmetic_v<Type>) {
+    return fmt::format("{}", member);
+  } else if constexpr (std::is_same_v<Type, Field>) {
+    return member.formula.empty() ? number_text(member.number) : text_of(scene, member.formula);
+  } else if constexpr (requires { member.has_value(); }) {
+    return member ? text_of(scene, *member) : std::string();
+  } else {
+    std::vector<std::string> texts;
+    for (const auto& element : member) texts.push_back(text_of(scene, element));
+    return fmt::format("[{}]", fmt::join(texts, ", "));
+  }
 }
 
 // object.first.second...; of a list the element at `index`, of an optional what it holds.

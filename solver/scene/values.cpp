@@ -60,12 +60,6 @@ bool read_formula(const Value& v, std::string& member) {
   return !wrong || refuse(v, "not a formula: " + *wrong);
 }
 
-std::string list_text(Scene& scene, const auto& values) {
-  std::vector<std::string> texts;
-  for (const auto& value : values) texts.push_back(text_of(scene, value));
-  return fmt::format("[{}]", fmt::join(texts, ", "));
-}
-
 }  // namespace
 
 bool read(const Value& v, double& member) {
@@ -146,36 +140,10 @@ bool read(const Value& v, std::vector<InterfacePlace>& member) {
   });
 }
 
-std::string text_of(Scene&, double member) {
-  return number_text(member);
-}
-
-std::string text_of(Scene&, int member) {
-  return std::to_string(member);
-}
-
 std::string text_of(Scene&, const std::string& member) {
   std::ostringstream out;
   out << toml::toml_formatter{toml::value<std::string>(member), toml::format_flags::allow_unicode_strings};
   return out.str();
-}
-
-std::string text_of(Scene&, bool member) {
-  return member ? "true" : "false";
-}
-
-std::string text_of(Scene& scene, const Field& member) {
-  return member.formula.empty() ? number_text(member.number) : text_of(scene, member.formula);
-}
-
-std::string text_of(Scene& scene, const Formulas& member) {
-  return list_text(scene, member);
-}
-
-std::string text_of(Scene& scene, const Path& member) {
-  std::vector<std::string> points;
-  for (const auto& point : member) points.push_back(list_text(scene, point));
-  return fmt::format("[{}]", fmt::join(points, ", "));
 }
 
 std::string text_of(Scene& scene, const std::vector<InterfacePlace>& member) {
