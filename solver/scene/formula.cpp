@@ -22,23 +22,17 @@ mu::Parser parser_of(const std::string& text) {
   return parser;
 }
 
-// The known name that was meant by one that is not. A single letter is another one's slip only in another case.
-std::string meant(const std::string& name, std::vector<std::string> known) {
-  for (const char* other : {"pi", "sin", "cos", "tan", "exp", "sqrt", "abs", "min", "max"}) known.emplace_back(other);
-  if (name.size() == 1)
-    std::erase_if(known,
-                  [&](const std::string& other) { return other.size() > 1 || edit_distance(name, other) >= 1.0; });
-  return did_you_mean(name, known);
-}
-
 std::string message_of(const mu::Parser::exception_type& error, const std::string& text,
                        const std::vector<std::string>& variables) {
   const int at = std::min(error.GetPos(), static_cast<int>(text.size())) + 1;
   if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN) {
+    std::vector<std::string> known = variables;
+    for (const char* name : {"pi", "sin", "cos", "tan", "exp", "sqrt", "abs", "min", "max"}) known.emplace_back(name);
+    const double most = error.GetToken().size() == 1 ? 0.5 : 2.0;  // a letter is another one's slip only in its case
     return fmt::format(
         "there is no {} at character {}. A formula may use {}, pi, + - * / ^, a comparison ? : and functions such as "
         "sin, exp, sqrt.{}",
-        error.GetToken(), at, fmt::join(variables, ", "), meant(error.GetToken(), variables));
+        error.GetToken(), at, fmt::join(variables, ", "), did_you_mean(error.GetToken(), known, most));
   }
   if (error.GetCode() == mu::ecEXPRESSION_TOO_LONG)
     return fmt::format("its {} characters are too many. Shorten it.", text.size());

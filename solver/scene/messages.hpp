@@ -48,6 +48,12 @@ struct Fault {
   std::string text;
 };
 
+// A text "key.path=value" from the command line, or from a sweep in the scene.
+struct Setting {
+  std::string text;
+  Where where;
+};
+
 /// The faults as lines "file:line:column: what", in the order of the input and each once. A text of more than 1000
 /// bytes is shortened in the middle, control characters are written out.
 std::vector<std::string> as_lines(std::vector<Fault> faults);

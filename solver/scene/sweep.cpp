@@ -19,11 +19,11 @@ constexpr double most_runs = 10000;  // each run's scene is read, in a tenth of 
 struct Swept {
   std::string key;
   Where where;
-  std::vector<SweepValue> list;
+  std::vector<Setting> list;  // of its values alone
   std::function<double(double)> range;
 
-  SweepValue sampled(double share) const {
-    if (range) return {key, number_text(range(share)), where};
+  Setting sampled(double share) const {
+    if (range) return {number_text(range(share)), where};
     const auto size = static_cast<double>(list.size());
     return list[static_cast<std::size_t>(std::min(share * size, size - 1.0))];
   }
@@ -39,8 +39,8 @@ Key entry(Key::Kind kind, std::string_view name, Bounds bounds, std::string_view
 const Key count = entry(Key::Kind::integer, "count", {2.0, most_runs, false, false});
 
 // A value as part of a folder's name: 3e6 as 3000000, "weak" as weak, a list as its number.
-std::string name_of(const SweepValue& value, std::size_t number) {
-  std::string text = value.value.ends_with(".0") ? value.value.substr(0, value.value.size() - 2) : value.value;
+std::string name_of(std::string text, std::size_t number) {
+  if (text.ends_with(".0")) text.resize(text.size() - 2);
   if (text.find_first_of("\"'") == 0) text = text.substr(1, text.size() - 2);
   return is_plain_name(text, ".+") && text[0] != '.' ? text : std::to_string(number + 1);
 }
@@ -115,15 +115,15 @@ class SweepReader {
                      one.key, as_typed(values));
     } else {
       for (const toml::node& value : *list) {
-        one.list.push_back({one.key, as_one_line(value), at(value)});
+        one.list.push_back({as_one_line(value), at(value)});
         try_value(one.key, value, at(value));
       }
     }
     std::set<std::string> names;
-    for (const auto& value : one.list) {
+    for (const auto& [value, where] : one.list) {
       if (!names.insert(name_of(value, names.size())).second)
-        reading_.fault(value.where, "sweep.{} has {} twice. Remove one; those of a range have six digits.", one.key,
-                       shortened(value.value, 60));
+        reading_.fault(where, "sweep.{} has {} twice. Remove one; those of a range have six digits.", one.key,
+                       shortened(value, 60));
     }
   }
 
@@ -176,7 +176,7 @@ class SweepReader {
       const double value = is_log ? from * std::pow(to / from, share) : from + share * (to - from);
       return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr);
     };
-    for (double k = 0.0; k <= last; ++k) one.list.push_back({one.key, number_text(one.range(k / last)), one.where});
+    for (double k = 0.0; k <= last; ++k) one.list.push_back({number_text(one.range(k / last)), one.where});
     for (const double end : {from, to}) try_value(one.key, toml::value<double>(end), at(table));
     if (from == to) reading_.fault(at(table), "sweep.{}: from and to are the same.", one.key);
   }
@@ -206,9 +206,9 @@ class SweepReader {
     }
   }
 
-  static void give(SweepRun& run, const SweepValue& value) {
-    if (value.key != "variant") return run.values.push_back(value);
-    run.variant = value.value.substr(1, value.value.size() - 2);
+  static void give(SweepRun& run, const std::string& key, const Setting& value) {
+    if (key != "variant") return run.set.push_back({key + '=' + value.text, value.where});
+    run.variant = value.text.substr(1, value.text.size() - 2);
   }
 
   std::vector<SweepRun> product(std::size_t count) const {
@@ -218,8 +218,8 @@ class SweepReader {
       std::vector<std::string> names;
       for (const Axis& axis : axes_) {
         each /= axis[0].list.size();
-        for (const Swept& one : axis) give(runs[k], one.list[rest / each]);
-        names.push_back(name_of(axis[0].list[rest / each], rest / each));
+        for (const Swept& one : axis) give(runs[k], one.key, one.list[rest / each]);
+        names.push_back(name_of(axis[0].list[rest / each].text, rest / each));
         rest %= each;
       }
       runs[k].name = fmt::format("{}", fmt::join(names, "_"));
@@ -235,7 +235,7 @@ class SweepReader {
     for (std::size_t k = 0; k < runs.size(); ++k) {
       runs[k].name = fmt::format("{:05}", k + 1);
       for (std::size_t axis = 0; axis < axes_.size(); ++axis)
-        for (const Swept& one : axes_[axis]) give(runs[k], one.sampled(points[k][axis]));
+        for (const Swept& one : axes_[axis]) give(runs[k], one.key, one.sampled(points[k][axis]));
     }
     return runs;
   }

@@ -14,16 +14,10 @@ namespace strata {
 
 struct Reading;
 
-// A value that a run gives a key, as TOML, and where the scene gives it.
-struct SweepValue {
-  std::string key, value;
-  Where where;
-};
-
 struct SweepRun {
   std::string name;     // of its folder: its values, or its number where they are sampled or make no name
   std::string variant;  // "": none
-  std::vector<SweepValue> values;
+  std::vector<Setting> set;
 };
 
 /// The runs of the table `sweep`, in order: of a product the last axis changes fastest. What is wrong with its form,

@@ -130,12 +130,6 @@ void take_variants(Reading& reading, const std::vector<Variant>& variants, const
                 names.empty() ? "no variants" : fmt::format("{}", fmt::join(names, ", ")), did_you_mean(chosen, names));
 }
 
-// A text "key.path=value" from the command line, or from a sweep in the scene.
-struct Setting {
-  std::string text;
-  Where where;
-};
-
 // Takes up a setting; the table that will hold its value must live as long as the reading.
 void take_setting(Reading& reading, const Setting& given, toml::table& table) {
   const auto& [setting, where] = given;
@@ -219,13 +213,9 @@ Found list_sweep(std::string_view text, const std::string& file_name) {
   constexpr std::size_t most_lines = 20;
   std::set<std::string> said;
   for (const SweepRun& run : runs) {
-    std::vector<Setting> settings;
     toml::array set;
-    for (const auto& [key, value, where] : run.values) {
-      settings.push_back({key + '=' + value, where});
-      set.push_back(settings.back().text);
-    }
-    for (const std::string& line : read_parsed(parsed, file_name, run.variant, settings, nullptr).errors) {
+    for (const Setting& setting : run.set) set.push_back(setting.text);
+    for (const std::string& line : read_parsed(parsed, file_name, run.variant, run.set, nullptr).errors) {
       if (said.insert(line).second && said.size() <= most_lines)
         list.errors.push_back(fmt::format("{} [run {}]", line, run.name));
     }

@@ -18,27 +18,18 @@ namespace {
 constexpr double units_per_m = 1e4;  // lengths are whole numbers of 0.1 mm, as half feet are
 constexpr std::string_view needed = "top_m, youngs_modulus_Pa, poisson_ratio, toughness_Pa_sqrt_m, horizontal_Pa";
 
-// Columns that are no keys of a scene. Until layers are stacked, to_m holds the depth of a layer's top.
-constexpr Key own_columns[] = {{.kind = Key::Kind::number,
-                                .path = "top_m",
-                                .member = at<&Scene::strata, &Strata::layers, &Layer::to_m>,
-                                .help = "",
-                                .bounds = {0.0, 1e5, false, false},
-                                .advice = "Depths grow downwards from the ground."},
-                               {Key::Kind::text, "rock", at<&Scene::rocks, &Rock::name>, ""}};
-
-std::vector<std::string> column_names() {
-  std::vector<std::string> names = names_in_table("rock.NAME");
-  names.insert(names.begin(), {"top_m", "rock", "horizontal_Pa", "interface"});
-  return names;
-}
+// Until layers are stacked, to_m holds the depth of a layer's top.
+constexpr Key top_m{.kind = Key::Kind::number,
+                    .path = "top_m",
+                    .member = at<&Scene::strata, &Strata::layers, &Layer::to_m>,
+                    .help = "",
+                    .bounds = {0.0, 1e5, false, false},
+                    .advice = "Depths grow downwards from the ground."};
 
 const Key* column(const std::string& name) {
-  const auto own = std::ranges::find(own_columns, name, &Key::path);
-  return own != std::end(own_columns) ? own
-         : name == "interface"        ? find_key("interface.NAME.law")
-         : name == "horizontal_Pa"    ? find_key("strata.layers[].horizontal_Pa")
-                                      : find_key("rock.NAME." + name);
+  if (name == "top_m") return &top_m;
+  if (name == "interface") return find_key("interface.NAME.law");
+  return find_key((name == "rock" || name == "horizontal_Pa" ? "strata.layers[]." : "rock.NAME.") + name);
 }
 
 struct Cell {
@@ -76,7 +67,8 @@ void split_rows(Log& log, std::string_view text, const std::string& file) {
 }
 
 void check_header(Log& log) {
-  const std::vector<std::string> known = column_names();
+  std::vector<std::string> known = names_in_table("rock.NAME");
+  known.insert(known.begin(), {"top_m", "rock", "horizontal_Pa", "interface"});
   for (const auto& [name, where] : log.rows[0]) {
     if (column(name) == nullptr)
       log.reading.fault(where, "{} is no column of a well log, which has {}, with commas between.{}", name,
@@ -110,7 +102,7 @@ void read_row(Log& log, std::size_t row) {
   const Cell named = log.cell(row, "rock"), top = log.cell(row, "top_m");
   const auto above = std::ranges::find(scene.rocks.rbegin(), scene.rocks.rend(), named.text, &Rock::name);
   const bool is_bottom = row + 1 == log.rows.size(), is_known = !named.text.empty() && above != scene.rocks.rend();
-  if (!is_bottom) scene.rocks.push_back(is_known ? Rock(*above) : Rock());
+  if (!is_bottom) scene.rocks.push_back(is_known ? Rock(*above) : Rock{.name = named.text});
   scene.laws.emplace_back();
   scene.strata.layers.emplace_back().to_m = std::numeric_limits<double>::quiet_NaN();
   const std::vector<std::string> must = split(needed, ", ");
