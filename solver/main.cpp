@@ -104,7 +104,8 @@ int parse_and_do(int argc, char** argv) {
   }
   run_command->add_option("--out", arguments.options.out, "folder of the run; by default runs/SCENE/VARIANT");
   run_command->add_flag("--replace", arguments.options.replace, "in place of a run that the folder holds");
-  CLI::App* check_command = app.add_subcommand("check", "all errors of scenes, variants and sweeps, nothing run");
+  CLI::App* check_command =
+      app.add_subcommand("check", "all errors of scenes, variants and sweeps, or what a run says first; nothing run");
   check_command->add_option("scenes", arguments.files, "scene files")->required();
   CLI::App* variants_command = app.add_subcommand("variants", "names of a scene's variants, one a line");
   variants_command->add_option("scene", arguments.file, "scene file")->required();

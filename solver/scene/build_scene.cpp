@@ -1,6 +1,7 @@
 // From what was given for each key to a scene.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "scene/reading.hpp"
 
@@ -85,20 +86,20 @@ void choose_inlet(Reading& reading) {
 // there is one.
 void check_required(Reading& reading) {
   const auto none = [&](const auto&... paths) { return !(reading.given(paths) || ...); };
-  const auto require = [&](const Key& key, const std::string& table) {
-    const std::string path = fmt::format("{}.{}", table, key.name());
-    if (none(path))
-      reading.refuse(path, "{} is missing. {}", path,
-                     key.in_list() ? key.help : fmt::format("Give it in [{}].", table));
-  };
   const bool fracture = reading.scene.fracture.has_value();
   for (const Key& key : scene_keys()) {
     const std::string table(key.path.substr(0, key.path.rfind('.')));
     if (!key.required || (table == "fracture" && !fracture)) continue;
-    if (table.find("NAME") == table.npos && !key.in_list()) require(key, table);
+    std::set<std::string> tables;  // that need it
+    if (table.find("NAME") == table.npos && !key.in_list()) tables.insert(table);
     for (const auto& [path, given] : reading.entries) {
       const bool is_table = given.value == nullptr || given.value->is_table();  // not "stiff" among layers
-      if (is_table && path != table && pattern_of(path) == table) require(key, path);
+      if (is_table && pattern_of(path) == table) tables.insert(path);
+    }
+    for (const std::string& in : tables) {
+      const std::string path = fmt::format("{}.{}", in, key.name());
+      if (none(path))
+        reading.refuse(path, "{} is missing. {}", path, key.in_list() ? key.help : fmt::format("Give it in [{}].", in));
     }
   }
   if (reading.scene.rocks.empty()) reading.refuse("rock", "there is no rock. Give a table [rock.NAME].");

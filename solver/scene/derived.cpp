@@ -160,10 +160,9 @@ std::vector<std::string> implausible(const Scene& scene) {
     // Peat has 1e6 Pa, diamond 1.1e12; pumice 250 kg/m^3; shale and chalk 1e5 Pa sqrt(m), clay a hundredth of that.
     least(table + "youngs_modulus_Pa", rock.youngs_modulus_Pa, 1e6,
           "1e6, that of peat: is it in GPa or MPa? 10 GPa is 10e9");
-    if (rock.youngs_modulus_Pa > 1.2e12) {
+    if (rock.youngs_modulus_Pa > 1.2e12)
       out.push_back(fmt::format("{}youngs_modulus_Pa = {:g} is more than 1.2e12, that of diamond: 10 GPa is 10e9",
                                 table, rock.youngs_modulus_Pa));
-    }
     least(table + "density_kg_m3", rock.density_kg_m3, 100.0,
           "100, and pumice has 250: is it in g/cm^3? 2.5 g/cm^3 is 2500");
     least(table + "toughness_Pa_sqrt_m", rock.toughness_Pa_sqrt_m, 1e3,

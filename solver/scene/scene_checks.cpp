@@ -352,19 +352,16 @@ void check_fluid(Reading& reading) {
 void check_numbers(Reading& reading) {
   constexpr std::size_t most_surfaces = 31, most_rocks = 255;
   const Scene& scene = reading.scene;
-  const auto with_laws = std::ranges::count_if(scene.strata.interfaces, [&](const InterfacePlace& place) {
-    return scene.laws[place.law].kind != InterfaceLaw::Kind::perfect;
-  });
-  const std::size_t surfaces = static_cast<std::size_t>(with_laws) + (scene.fracture ? 1 : 0);
-  if (surfaces > most_surfaces) {
+  std::size_t surfaces = scene.fracture ? 1 : 0;
+  for (const InterfacePlace& place : scene.strata.interfaces)
+    surfaces += scene.laws[place.law].kind != InterfaceLaw::Kind::perfect ? 1 : 0;
+  if (surfaces > most_surfaces)
     reading.refuse("strata.interfaces",
                    "strata.interfaces: {} surfaces{} are more than {}. Make some interfaces perfect.", surfaces,
                    scene.fracture ? ", the fracture and all interfaces that are not perfect," : "", most_surfaces);
-  }
-  if (scene.rocks.size() > most_rocks) {
+  if (scene.rocks.size() > most_rocks)
     reading.refuse("rock", "there are {} rocks, more than {}. Remove those that no layer uses, or let layers share.",
                    scene.rocks.size(), most_rocks);
-  }
 }
 
 }  // namespace

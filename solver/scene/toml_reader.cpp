@@ -50,10 +50,10 @@ Parsed parse_toml(std::string_view text, const Where& source) {
   constexpr std::size_t most_lines = 50;  // each asks for the text to be parsed anew
   Parsed parsed;
   std::vector<std::string> lines = split(text, "\n");
-  while (parsed.whole) {
+  for (;;) {
     try {
       parsed.table = parse(fmt::format("{}", fmt::join(lines, "\n")));
-      break;
+      return parsed;
     } catch (const toml::parse_error& error) {
       const unsigned number = error.source().begin.line;
       lines.resize(std::max<std::size_t>(lines.size(), number));  // the end of the text is behind its last line
@@ -61,15 +61,16 @@ Parsed parse_toml(std::string_view text, const Where& source) {
       const auto as_toml = mended(line);
       const bool is_new = parsed.mended.insert(number).second;  // else what is wrong with the line begins above
       parsed.whole = is_new && as_toml && parsed.mended.size() < most_lines;
-      if (!is_new) break;
-      parsed.faults.push_back({where_of(source, error.source()),
-                               fmt::format("this is not TOML: {}: {}. Write key = value: text in quotes, lists in [ ], "
-                                           "numbers with a decimal point and no unit, which stands in the key.",
-                                           shortened(trimmed(line), 60), error.description())});
-      line = as_toml.value_or("");
+      if (is_new)
+        parsed.faults.push_back(
+            {where_of(source, error.source()),
+             fmt::format("this is not TOML: {}: {}. Write key = value: text in quotes, lists in [ ], numbers with a "
+                         "decimal point and no unit, which stands in the key.",
+                         shortened(trimmed(line), 60), error.description())});
+      if (!parsed.whole) return parsed;
+      line = *as_toml;
     }
   }
-  return parsed;
 }
 
 struct Variant {

@@ -1,7 +1,6 @@
 // Values of keys: from TOML to the member that a key leads to, and back.
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "scene/formula.hpp"
 #include "scene/reading.hpp"
@@ -141,9 +140,7 @@ bool read(const Value& v, std::vector<InterfacePlace>& member) {
 }
 
 std::string text_of(Scene&, const std::string& member) {
-  std::ostringstream out;
-  out << toml::toml_formatter{toml::value<std::string>(member), toml::format_flags::allow_unicode_strings};
-  return out.str();
+  return as_one_line(toml::value<std::string>(member));
 }
 
 std::string text_of(Scene& scene, const std::vector<InterfacePlace>& member) {
