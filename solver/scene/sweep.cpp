@@ -122,7 +122,7 @@ class SweepReader {
     std::set<std::string> names;
     for (const auto& [value, where] : one.list) {
       if (!names.insert(name_of(value, names.size())).second)
-        reading_.fault(where, "sweep.{} has {} twice. Remove one; those of a range have six digits.", one.key,
+        reading_.fault(where, "sweep.{} has {} twice. Remove one. Those of a range have six digits.", one.key,
                        shortened(value, 60));
     }
   }

@@ -26,10 +26,9 @@ strata.interfaces = ["perfect"]
 }  // namespace
 
 TEST_CASE("Variants are listed in the order of the file") {
-  CHECK(list_variants_text(with_variants, "s.toml").names ==
-        std::vector<std::string>{"weak", "fine", "bonded", "as_it_is"});
+  CHECK(list_variants(with_variants, "s.toml").lines == std::vector<std::string>{"weak", "fine", "bonded", "as_it_is"});
   CHECK(list_variants_text(layered, "s.toml").names.empty());
-  CHECK(list_variants("no/such.toml").errors.size() == 1);
+  CHECK(of_file("no/such.toml", list_variants).errors.size() == 1);
 }
 
 TEST_CASE("A variant replaces values, by dotted keys with and without quotes and by tables") {
