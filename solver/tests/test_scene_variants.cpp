@@ -27,7 +27,7 @@ strata.interfaces = ["perfect"]
 
 TEST_CASE("Variants are listed in the order of the file") {
   CHECK(list_variants(with_variants, "s.toml").lines == std::vector<std::string>{"weak", "fine", "bonded", "as_it_is"});
-  CHECK(list_variants_text(layered, "s.toml").names.empty());
+  CHECK(list_variants(layered, "s.toml").lines.empty());
   CHECK(of_file("no/such.toml", list_variants).errors.size() == 1);
 }
 
