@@ -82,7 +82,7 @@ struct FineNodes {
 
 std::vector<FineNodes> fine_nodes(double h, long cells, const std::vector<Stretch>& fine) {
   constexpr double round_off = 1e-6;  // of a cell
-  std::vector<FineNodes> nodes;
+  std::vector<FineNodes> nodes;       // in order, none touching the next
   for (const Stretch& s : fine) {
     const long first = std::max(0L, std::lround(std::floor(s.from / h + round_off)));
     const long last = std::min(cells, std::lround(std::ceil(s.to / h - round_off)));
@@ -92,7 +92,6 @@ std::vector<FineNodes> fine_nodes(double h, long cells, const std::vector<Stretc
       nodes.push_back({first, last});
     }
   }
-  if (nodes.empty()) nodes.push_back({0, std::min(cells, 1L)});
   return nodes;
 }
 
@@ -103,11 +102,10 @@ bool graded(const Numerics& numerics) {
 // What is between fine stretches, and beyond them, follows from their ends alone.
 bool mirrored_columns(const Scene& scene) {
   if (!graded(scene.numerics)) return true;
-  const double h = scene.numerics.cell_m;
-  const long cells = std::lround(scene.domain.width_m / h);
-  const std::vector<FineNodes> nodes = fine_nodes(h, cells, fine_stretches(scene, 0));
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    if (nodes[k].first + nodes[nodes.size() - 1 - k].last != cells) return false;
+  const std::vector<Stretch> fine = fine_stretches(scene, 0);
+  for (std::size_t k = 0; k < fine.size(); ++k) {
+    const double off = fine[k].from + fine[fine.size() - 1 - k].to - scene.domain.width_m;
+    if (std::abs(off) > 0.5 * scene.numerics.cell_m) return false;  // ends are nodes
   }
   return true;
 }
@@ -162,22 +160,17 @@ std::vector<Stretch> fine_stretches(const Scene& scene, int axis) {
     fine.push_back({at - fine_cells_at_interface * h, at + fine_cells_at_interface * h});
   }
   std::ranges::sort(fine, {}, &Stretch::from);
-  std::vector<Stretch> merged;
-  for (Stretch s : fine) {
-    s = {std::max(0.0, s.from), std::min(extent, s.to)};
-    if (!merged.empty() && s.from <= merged.back().to) {
-      merged.back().to = std::max(merged.back().to, s.to);
-    } else {
-      merged.push_back(s);
-    }
-  }
-  return merged;
+  std::vector<Stretch> between_nodes;
+  for (const auto& [first, last] : fine_nodes(h, std::lround(extent / h), fine))
+    between_nodes.push_back({static_cast<double>(first) * h, static_cast<double>(last) * h});
+  return between_nodes;
 }
 
 std::vector<double> graded_knots(const Grading& axis) {
   const double h = axis.h;
   const long cells = std::lround(axis.extent / h);
-  const std::vector<FineNodes> nodes = fine_nodes(h, cells, axis.fine);
+  std::vector<FineNodes> nodes = fine_nodes(h, cells, axis.fine);
+  if (nodes.empty()) nodes.push_back({0, std::min(cells, 1L)});
   std::vector<double> t;  // from t_0 on, the lower end of the first node's span
   const std::vector<double> down = outward_spans(axis, nodes.front().first, axis.below);
   if (!down.empty()) {

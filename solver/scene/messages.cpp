@@ -75,14 +75,12 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 
 std::string shortened(std::string_view text, std::size_t longest) {
   if (text.size() <= longest) return std::string(text);
-  const auto is_inside = [&](std::size_t at) {
-    return at < text.size() && (text[at] & 0xC0) == 0x80;
-  };  // a UTF-8 letter
+  const auto begins = [](char c) { return (c & 0xC0) != 0x80; };  // a letter of UTF-8
   std::size_t head = longest / 2, tail = text.size() - longest / 3;
-  while (head > 0 && is_inside(head)) --head;
-  while (is_inside(tail)) ++tail;
-  const auto letters = std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; });
-  return fmt::format("{}...{} ({} characters)", text.substr(0, head), text.substr(tail), letters);
+  while (head > 0 && !begins(text[head])) --head;
+  while (tail < text.size() && !begins(text[tail])) ++tail;
+  return fmt::format("{}...{} ({} characters)", text.substr(0, head), text.substr(tail),
+                     std::ranges::count_if(text, begins));
 }
 
 std::string_view trimmed(std::string_view text) {

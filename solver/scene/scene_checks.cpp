@@ -191,23 +191,21 @@ void check_stop_values(Reading& reading) {
 // Whether one of the stops given is sure to be reached: a fracture under a pressure that does not rise may stay; one
 // that is fed at a rate grows, or takes ever more pressure where it may not.
 void check_end(Reading& reading) {
-  if (!reading.scene.fracture) return;
+  const bool by_inlet = reading.given("stop.inlet_Pa"), by_tip = reading.given("stop.tip_y_m");
+  if (!reading.scene.fracture || reading.given("stop.time_s") || (!by_inlet && !by_tip)) return;
   for (const char* path : {"fluid.inlet.rate_Pa_s", "fluid.inlet.rate_m2_s", "fracture.growth"})
     if (!reading.sound(path)) return;
   const bool fed = reading.scene.fluid.rate_m2_s.has_value();
   if (reading.given("fluid.inlet.table")) return;  // asks for stop.time_s itself
   if (!fed && !reading.given("fluid.inlet.start_Pa") && !reading.given("fluid.inlet.rate_Pa_s")) return;
-  const bool by_inlet = reading.given("stop.inlet_Pa"), by_tip = reading.given("stop.tip_y_m");
-  if (reading.given("stop.time_s") || (!by_inlet && !by_tip)) return;
   const double rate_Pa_s = reading.scene.fluid.rate_Pa_s;
   const bool grows = reading.scene.fracture->growth != Fracture::Growth::none;
   const bool rises = fed ? !grows : rate_Pa_s > 0.0;
   if ((by_inlet && rises) || (by_tip && grows && (fed || rises))) return;
-  const std::string still = fmt::format("the inlet pressure does not rise (fluid.inlet.rate_Pa_s = {})", rate_Pa_s);
   reading.refuse(by_inlet ? "stop.inlet_Pa" : "stop.tip_y_m", "the run could never end: {}. Give stop.time_s too.",
                  rises ? "the fracture does not grow (fracture.growth = \"none\")"
                  : fed ? "the pressure of a fracture fed at a rate falls as it grows"
-                       : still);
+                       : fmt::format("the inlet pressure does not rise (fluid.inlet.rate_Pa_s = {})", rate_Pa_s));
 }
 
 // What one of the two mechanics cannot do.
@@ -282,19 +280,19 @@ void check_grading(Reading& reading) {
 void check_fine_ends(Reading& reading) {
   if (!reading.scene.fracture) return;
   const Numerics& n = reading.scene.numerics;
-  const std::optional<double>* ends[] = {&n.fine_left_m, &n.fine_right_m, &n.fine_bottom_m, &n.fine_top_m};
-  const char* keys[] = {"numerics.fine_left_m", "numerics.fine_right_m", "numerics.fine_bottom_m",
-                        "numerics.fine_top_m"};
+  const std::pair<const char*, std::optional<double>> ends[] = {
+      {"left", n.fine_left_m}, {"right", n.fine_right_m}, {"bottom", n.fine_bottom_m}, {"top", n.fine_top_m}};
   for (std::size_t k = 0; k < 4; ++k) {
-    reading.refuse_if(!reading.given("numerics.far_cell_m"), keys[k],
+    const std::string key = fmt::format("numerics.fine_{}_m", ends[k].first);
+    reading.refuse_if(!reading.given("numerics.far_cell_m"), key,
                       "says where a graded grid is fine, but numerics.far_cell_m is missing: all cells are of cell_m. "
                       "Give it, or leave this one out.");
     if (!reading.usable("fracture.path_m")) continue;
     const auto [low, high] =
         std::ranges::minmax(reading.scene.fracture->path_m, {}, [&](const auto& x) { return x[k / 2]; });
     const bool is_least = k % 2 == 0;
-    const double fracture = (is_least ? low : high)[k / 2], end = ends[k]->value_or(fracture);
-    reading.refuse_if(is_least ? end > fracture : end < fracture, keys[k],
+    const double fracture = (is_least ? low : high)[k / 2], end = ends[k].second.value_or(fracture);
+    reading.refuse_if(is_least ? end > fracture : end < fracture, key,
                       "lies within the initial fracture, which reaches to {}. Give at {} that.", fracture,
                       is_least ? "most" : "least");
   }
