@@ -1,41 +1,45 @@
-"""Runs a scene with each of its ingredients left out, one after the other on one thread, and takes effects and CPU time of each.
+"""Runs a scene as it is and with each change alone, and takes what each moves.
 
 A pressure counts by its net part, P less the stress that closes the fracture: a background can be added to both at will. A height counts
-by the base's own, a path by its length. An ingredient whose run has no value where the base has one changes what happens.
+by the base's own, a path by its length. A change whose run has no value where the base has one changes what happens.
 """
 
 import math
+import threading
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from verification.ablation.ingredients import Ingredient, ingredients_of, named
+from verification.ablation.changes import Change
 from verification.ablation.table import Table, Tried
-from verification.harness import paths
 from verification.harness import quantities as harness
 from verification.harness.load import Run
 from verification.harness.observables import path_length
-from verification.harness.plan import make
+from verification.harness.plan import Made, expected_s, made_words, make, name_of
 from verification.harness.quantities import NO_ARREST, Effect, Quantity, followed, turns
-from verification.harness.run import Job, Outcome, timed
-from verification.harness.scenes import content_of
+from verification.harness.refine import job_of
+from verification.harness.run import Job, timed
+from verification.harness.side_by_side import Task, side_by_side
 
-RUNS = paths.RUNS / "ablation"
 LIMIT_S = 900.0  # a run that takes longer says nothing
-EVERYTHING, INTERFACES = "everything", "interfaces"  # how much of a scene is tried
 
-Say = Callable[[str], None]
 Effects = tuple[dict[str, Effect], dict[str, float]]  # in their units, and as shares
+Maker = Callable[[Sequence[Job]], list[tuple[Made, float]]]  # makes jobs: how each ended, and its CPU time, s, where it was alone
 
 
 class NoBase(Exception):
     """The scene's own run has no result; the message says why."""
 
 
-def made(job: Job) -> tuple[Outcome, Run | None, float]:
-    """Run a job anew: how it ended, its data if it has any, and its CPU time, s."""
-    (outcome, found), (_, cpu) = timed(lambda: make(job, force=True, limit_s=LIMIT_S))
-    return outcome, found, cpu
+def anew(jobs: Sequence[Job]) -> list[tuple[Made, float]]:
+    """Make jobs anew, one at a time, with their CPU times."""
+
+    def one(job: Job, stop: threading.Event) -> tuple[Made, float]:
+        found, (_, cpu_s) = timed(lambda: make(job, stop, force=True, limit_s=LIMIT_S))
+        return found, cpu_s
+
+    return side_by_side([Task(name_of(job), partial(one, job), lambda made: made_words(made[0]), expected_s(job)) for job in jobs], 1)
 
 
 def scale_of(quantity: Quantity, base: Run) -> float:
@@ -47,13 +51,13 @@ def scale_of(quantity: Quantity, base: Run) -> float:
     return abs(value - closing)
 
 
-def effects_of(quantities: Sequence[Quantity], with_path: bool, base: Run, run: Run) -> Effects:
+def effects_of(quantities: Sequence[Quantity], with_path: bool, base: Run, run: Run, pauses: bool = False, short: str = "") -> Effects:
     """Effects of a run, as it is read, against the base, and the same as shares where they are known; raises ValueError for one that is no number.
 
-    An arrest of the base that is none in the run is lost: what is at the place is no pause.
+    An arrest of the base that is none in the run is lost, since what is at the place is no pause; `pauses`: the pause there counts.
     """
-    found = {name: Effect(None, NO_ARREST) if NO_ARREST in effect.note else effect
-             for name, effect in harness.effects_of(quantities, with_path, base, run).items()}  # fmt: skip
+    found = {name: Effect(None, NO_ARREST) if NO_ARREST in effect.note and not pauses else effect
+             for name, effect in harness.effects_of(quantities, with_path, base, run, short).items()}  # fmt: skip
     scales = {one.name: (lambda one=one: scale_of(one, base)) for one in quantities} | {"path_m": lambda: path_length(base.path)}
     shares = {name: abs(effect.value) / scales[name]() for name, effect in found.items() if effect.value is not None}
     if not all(map(math.isfinite, shares.values())):
@@ -61,53 +65,49 @@ def effects_of(quantities: Sequence[Quantity], with_path: bool, base: Run, run: 
     return found, shares
 
 
-def table_of(
-    scene: Path, variant: str, extent: str = EVERYTHING, settings: Sequence[str] = (), only: Sequence[str] = (), runs: Path = RUNS,
-    say: Say = lambda _: None,
-) -> Table:  # fmt: skip
-    """The table of a scene's variant (of its interfaces alone, if that is the extent), or of the ingredients named by `only`.
-
-    Raises NoBase where the scene's own run fails, ValueError for a name that is no ingredient.
-    """
-    try:
-        content = content_of(scene, variant, settings)
-    except ValueError as refused:
-        raise NoBase(f"{scene.stem} {variant}: {refused}") from refused
-    chosen = [one for one in named(ingredients_of(content), only) if extent != INTERFACES or one.id.startswith("interface")]
+def left_out(scene: Path, variant: str, settings: Sequence[str], changes: Sequence[Change], root: Path) -> tuple[Job, list[Job]]:
+    """The runs of a scene as it is and of the changes that apply."""
 
     def job(name: str, further: Sequence[str] = ()) -> Job:
-        return Job(scene, variant, runs / scene.stem / (variant or "base") / name, (*settings, *further))
+        return Job(scene, variant, root / scene.stem / (variant or "base") / name, (*settings, *further))
 
-    outcome, base, cpu = made(job("base"))
-    say(f"{scene.stem} {variant}: {outcome.status}, {cpu:.2f} s {outcome.reason}".rstrip())
-    if base is None or not outcome.ok:
-        raise NoBase(f"{scene.stem} {variant}: {outcome.reason}")
-    lines = []
-    for one in chosen:
-        lines.append(_line(one, job(one.id, one.settings), content, base))
-        say(_said(lines[-1], cpu))
-    quantities = followed(content, base)
-    names = [(one.name, one.label, one.unit) for one in quantities] + [("path_m", "path", "m")] * turns(content)
-    values = {one.name: one.measure(base).low for one in quantities}
-    return Table(scene.stem, variant, "some" if only else extent, base.summary.version, cpu, tuple(names), values, tuple(lines))
+    return job("base"), [job(one.id, one.settings) for one in changes if one.settings]
 
 
-def _line(one: Ingredient, job: Job, content: dict[str, Any], base: Run) -> Tried:
-    """One ingredient left out."""
-    if one.why_not:
-        return Tried(one.id, one.label, one.done, one.settings, "", one.why_not, {}, {}, 0.0)
-    outcome, found, cpu = made(job)
-    if found is None:
-        return Tried(one.id, one.label, one.done, one.settings, outcome.word if not outcome.ok else "failed", outcome.reason, {}, {}, cpu)
-    # Where the path may turn only the ways of both are compared, a straight one too.
-    effects = effects_of(followed(content, base), turns(content), base, one.view.of(found, base))
-    return Tried(one.id, one.label, one.done, one.settings, outcome.status, outcome.reason, *effects, cpu)
+def varied(
+    scene: Path, mechanics: str, variant: str, settings: Sequence[str], content: dict[str, Any], changes: Sequence[Change], root: Path
+) -> tuple[Job, list[Job]]:
+    """The runs of a budget: base and half the cells are the refinement study's, others the base's settings with their own in place."""
+    cell = float(content["numerics"]["cell_m"])
+    others = [setting for setting in settings if setting.partition("=")[0] != "numerics.cell_m"]
+    base, half = (job_of(scene, mechanics, variant, size, others) for size in (cell, cell / 2.0))
+
+    def job(one: Change) -> Job:
+        pairs = dict(setting.partition("=")[::2] for setting in (*base.settings, *one.settings))
+        return Job(scene, variant, root / scene.stem / mechanics / variant / one.id, tuple(f"{key}={value}" for key, value in pairs.items()))
+
+    return base, [half if one.id == "mesh_half" else job(one) for one in changes if one.settings]
 
 
-def _said(line: Tried, base_s: float) -> str:
-    """A line of the table in words."""
-    if not line.applies:
-        return f"  {line.label}: {line.reason}"
-    largest = "-" if line.largest is None else f"{100.0 * line.largest:.2f} %"
-    lost = f", without {', '.join(line.lost)}" if line.lost else ""
-    return f"  {line.label}: {line.done}: {largest}{lost}, {line.cpu_s / base_s:.2f} of the time: {line.verdict} {line.reason}".rstrip()
+def table_of(content: dict[str, Any], extent: str, changes: Sequence[Change], base: Job, jobs: Sequence[Job], made_by: Maker = anew) -> Table:
+    """The table of a scene (its keys with a variant's in place) from the runs of it as it is and of the changes that apply. Raises NoBase where the
+    scene's own run fails."""
+    [((outcome, own), cpu_s)] = made_by([base])
+    if own is None or not outcome.ok:
+        raise NoBase(f"{base.scene.stem} {base.variant}: {outcome.word if not outcome.ok else 'failed'}: {outcome.reason}")
+    made = iter(made_by(jobs))
+    quantities, with_path = followed(content, own), turns(content)
+
+    def tried(one: Change) -> Tried:
+        """A change, with its run where it has one."""
+        if not one.settings:
+            return Tried(one.id, one.label, one.done, one.settings, "", one.why_not, {}, {}, 0.0, one.group)
+        (ended, run), seconds = next(made)
+        short = "up to where the run failed" if one.group and not ended.ok else ""
+        # Where the path may turn only the ways of both are compared, a straight one too.
+        found = ({}, {}) if run is None else effects_of(quantities, with_path, own, one.view.of(run, own), bool(one.group), short)
+        return Tried(one.id, one.label, one.done, one.settings, ended.word if run else "failed" if ended.ok else ended.word, ended.reason, *found, seconds, one.group)
+
+    names = [(one.name, one.label, one.unit) for one in quantities] + [("path_m", "path", "m")] * with_path
+    values = {one.name: one.measure(own).low for one in quantities}
+    return Table(base.scene.stem, base.variant, extent, own.summary.version, cpu_s, tuple(names), values, tuple(map(tried, changes)))

@@ -1,6 +1,7 @@
 """What commands share: options, each told once, and rows of words as aligned text."""
 
 import argparse
+import inspect
 import math
 from collections.abc import Collection, Sequence
 from pathlib import Path
@@ -27,7 +28,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
 
 def command(name: str, about: str | None, *options: str, **defaults: Any) -> argparse.ArgumentParser:
     """The parser of a command with some of the shared options, and with defaults of its own (runs=RUNS)."""
-    parser = argparse.ArgumentParser(name, description=about, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(name, description=inspect.cleandoc(about or ""), formatter_class=argparse.RawDescriptionHelpFormatter)
     for option in options:
         parser.add_argument(f"--{option}", **OPTIONS[option])
     parser.set_defaults(**defaults)

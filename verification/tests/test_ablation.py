@@ -1,4 +1,5 @@
-"""What scenes need: each ingredient left out does what its name says, effects are judged as they should be, every table is explained.
+"""What scenes need, and what their numbers owe to what: each change does what its name says and that alone, effects and totals are what the runs say,
+failures are shown, every table is explained.
 
 Mutations that were tried by hand and failed here: pressures not net of the closing stress; the sign of the added closing stress, in the
 history and in events; the fold left out; a lost arrest taken for no effect; the verdict turned round; an interface counted from 0; the
@@ -6,22 +7,37 @@ lowest layer of a mirrored block as thick as it was, its interfaces not mirrored
 for what wants a reason; ingredients without need that want none.
 """
 
+import json
+import math
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from verification.ablation.ingredients import View, ingredients_of, mirrored, named
-from verification.ablation.measure import EVERYTHING, INTERFACES, NoBase, effects_of, table_of
-from verification.ablation.table import CHANGES, NEEDED, NOTHING, SPARED, Table, Tried, read_all, reasons, write
+from verification.ablation.__main__ import BUDGETED, EVERYTHING, ablate, budget
+from verification.ablation.changes import Change, View, factors_of, ingredients_of, mirrored, named, toml
+from verification.ablation.measure import NoBase, effects_of, left_out, table_of, varied
+from verification.ablation.table import CHANGES, NEEDED, NOTHING, SPARED, Table, Tried, read_all, reasons, words, write
 from verification.harness.load import Run, load
 from verification.harness.paths import EXPERIMENTS
+from verification.harness.plan import Made
 from verification.harness.quantities import Effect, quantities_of
-from verification.harness.scenes import content_of, scenes_of
+from verification.harness.refine import REFINE_RUNS
+from verification.harness.run import Job, Outcome
+from verification.harness.scenes import content_of, scenes_of, variants_of
 from verification.tests.fake_run import climb, write_run
 
-EXP1 = EXPERIMENTS / "exp1_single_interface.toml"
+EXP1, EXP5 = (EXPERIMENTS / f"{name}.toml" for name in ("exp1_single_interface", "exp5_parallel_interface"))
 SHORT = ("stop.tip_y_m=11.0", "stop.inlet_Pa=2.7e6")
+
+# The only keys that a factor may touch.
+KEYS = {
+    "mesh": {"numerics.cell_m"}, "mesh and increment": {"numerics.cell_m", "fracture.increment_m"}, "increment": {"fracture.increment_m"},
+    "flow step": {"numerics.flow_change", "numerics.flow_error"}, "time step": {"numerics.courant"}, "J ring": {"numerics.ring_cells"},
+    "particles": {"numerics.particles_per_cell"}, "loading rate": {"fluid.inlet.rate_Pa_s"},
+    "block": {"domain.width_m", "domain.height_m", "fracture.path_m", "strata.layers", "numerics.far_cell_m", "numerics.fine_left_m", "numerics.fine_right_m"},
+}  # fmt: skip
 
 
 def line(share: float | None, cpu_s: float = 0.5, lost: bool = False, status: str = "completed") -> Tried:
@@ -131,27 +147,34 @@ def test_a_share_that_is_no_number_is_refused(tmp_path: Path, monkeypatch: pytes
         effects_of([one for one in quantities_of(base.scene, ()) if one.name == "start_Pa"], False, base, base)
 
 
-def test_unknown_ingredients_are_refused() -> None:
-    """A misspelt name is said, with those there are."""
-    with pytest.raises(ValueError, match="no ingredient flaw; there are .*flow"):
+def test_unknown_changes_are_refused() -> None:
+    """A misspelt name is said, with those there are; one of a factor takes all of its values."""
+    with pytest.raises(ValueError, match="no flaw to change; there are .*flow"):
         named(ingredients_of(content_of(EXP1, "soft", ())), ["flaw"])
+    assert [one.id for one in named(factors_of(content_of(EXP5, "soft"), "quasistatic"), ["mesh", "rate"])] == ["mesh_half", "rate_half", "rate_double"]
 
 
 def test_a_short_run_is_taken_apart(tmp_path: Path) -> None:
     """Both halves of the block give the scene's own result, no flow and no stress other ones, and the rock is one."""
-    table = table_of(EXP1, "perfect", EVERYTHING, SHORT, ("flow", "symmetry", "prestress", "layering"), tmp_path)
+    content = content_of(EXP1, "perfect", SHORT)
+    changes = named(ingredients_of(content), ("flow", "symmetry", "prestress", "layering"))
+    table = table_of(content, EVERYTHING, changes, *left_out(EXP1, "perfect", SHORT, changes, tmp_path))
     lines = {one.id: one for one in table.lines}
-    assert {one.status for one in table.lines if one.applies} == {"completed"}
+    assert {one.status for one in table.lines if one.applies} == {"completed"} and min(one.cpu_s for one in table.lines if one.applies) > 0.0
     assert lines["symmetry"].largest is not None and lines["symmetry"].largest < 1e-3 and not lines["symmetry"].lost
     assert lines["flow"].verdict == NEEDED and lines["prestress"].verdict == NEEDED
     assert not lines["layering"].applies
     assert write(table, tmp_path / "kept") and read_all(tmp_path / "kept") == [table]
 
 
-def test_a_scene_that_fails_has_no_table(tmp_path: Path) -> None:
-    """Without a run of its own there is nothing to compare with."""
-    with pytest.raises(NoBase, match="divide"):
-        table_of(EXP1, "soft", INTERFACES, ("numerics.cell_m=3.0",), (), tmp_path)
+def test_what_cannot_be_run_has_no_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Cells that do not divide the block are bad input; a run of its own that fails leaves nothing to compare with."""
+    with pytest.raises(SystemExit) as ended:
+        ablate(["exp1", "--variants", "soft", "--set", "numerics.cell_m=3.0", "--runs", str(tmp_path), "--out", str(tmp_path)])
+    assert ended.value.code == 2 and "divide" in capsys.readouterr().err
+    base = Job(EXP1, "soft", tmp_path, ())
+    with pytest.raises(NoBase, match="failed: a mechanism"):
+        table_of({}, EVERYTHING, [], base, [], lambda jobs: [(made_up(tmp_path / "run", 3, 2.4e6, 0.2e6, "a mechanism"), 0.0)])
 
 
 def test_kept_tables_are_whole_and_explained() -> None:
@@ -170,3 +193,126 @@ def test_every_reason_is_of_an_ingredient() -> None:
     for experiment, lines in reasons().items():
         assert experiment == "all" or (EXPERIMENTS / f"{experiment}.toml").is_file()
         assert set(lines) <= ids
+
+
+# --- factors
+
+
+@pytest.mark.parametrize("scene", scenes_of(EXPERIMENTS), ids=lambda path: path.stem)
+@pytest.mark.parametrize("mechanics", ["explicit", "quasistatic"])
+def test_every_factor_varies_its_own_keys_and_something_of_them(scene: Path, mechanics: str) -> None:
+    for variant in variants_of(scene)[:4]:
+        base = (f"numerics.mechanics={mechanics}", "numerics.far_cell_m=1")  # a budget's runs are on uniform grids
+        content = content_of(scene, variant, base)
+        factors = factors_of(content, mechanics)
+        assert len({one.id for one in factors}) == len(factors)
+        for one in factors:
+            assert one.settings and not one.why_not
+            assert {setting.partition("=")[0] for setting in one.settings} <= KEYS[one.label]
+            assert content_of(scene, variant, (*base, *one.settings)) != content
+
+
+def factors(scene: Path, variant: str, id_: str, mechanics: str = "quasistatic") -> list[Change]:
+    """The values of one factor of a variant."""
+    return named(factors_of(content_of(scene, variant), mechanics), [id_])
+
+
+def test_a_larger_block_keeps_fracture_and_layers_in_its_middle() -> None:
+    for other, width in zip(factors(EXP5, "soft", "block"), (120.0, 160.0)):
+        content = content_of(EXP5, "soft", other.settings)
+        assert (content["domain"]["width_m"], content["domain"]["height_m"]) == (width, width)
+        assert [x for x, _ in content["fracture"]["path_m"]] == [width / 2.0] * 2
+        assert content["strata"]["layers"] == [{"rock": "soft", "thickness_m": width / 2.0 + 5.0}, {"rock": "stiff"}]
+        assert content["numerics"]["far_cell_m"] == content["numerics"]["cell_m"]  # a path that turns would meet the coarse cells
+    straight = content_of(EXP1, "soft", factors(EXP1, "soft", "block")[1].settings)
+    assert straight["strata"]["layers"] == content_of(EXP1, "soft")["strata"]["layers"]
+    assert straight["numerics"]["far_cell_m"] == 4.0
+
+
+def test_factors_that_do_not_apply_say_why() -> None:
+    assert factors(EXP1, "uniform", "step")[0].why_not == "no flow"
+    assert factors(EXP1, "uniform", "step", "explicit")[0].settings == ("numerics.courant=0.25",)
+    content = content_of(EXP1, "perfect", ("numerics.particles_per_cell=16", "fluid.inlet.rate_Pa_s=0", "stop.time_s=1", "numerics.far_cell_m=1"))
+    why = {one.label: one.why_not for one in factors_of(content, "quasistatic") if not one.settings}
+    assert set(why) == {"particles", "loading rate"} and all(why.values())
+    assert toml([{"rock": "a", "thickness_m": 1.5}, {"rock": "b"}]) == '[{rock = "a", thickness_m = 1.5}, {rock = "b"}]'
+    assert toml([[60.0, 0.0], [60.0, 5.0]]) == "[[60.0, 0.0], [60.0, 5.0]]"
+
+
+def test_the_base_and_half_the_cells_are_the_runs_of_the_refinement_study(tmp_path: Path) -> None:
+    content = content_of(EXP1, "soft")
+    changes = factors_of(content, "quasistatic")
+    base, jobs = varied(EXP1, "quasistatic", "soft", (), content, changes, tmp_path)
+    of, below = {one.id: job for one, job in zip(changes, jobs, strict=True)}, REFINE_RUNS / EXP1.stem / "quasistatic" / "soft"
+    assert base.out == below / "1m" and of["mesh_half"].out == below / "0.5m"
+    rest = [job for name, job in of.items() if name != "mesh_half"]
+    assert len({job.out for job in rest}) == len(rest) and all(tmp_path in job.out.parents for job in rest)
+    keys = [[setting.partition("=")[0] for setting in job.settings] for job in (base, *jobs)]
+    assert all(len(set(own)) == len(own) for own in keys)
+    assert "numerics.cell_m=1.0" in of["increment_half"].settings and "fracture.increment_m=0.5" in of["increment_half"].settings
+
+
+def test_totals_by_hand() -> None:
+    """3 and -4 of the method: root of squares 5, sum 7; with 12 of the model 13 and 19. What failed is named, not counted as 0."""
+
+    def ran(label: str, group: str, *effects: float | None) -> list[Tried]:
+        return [replace(line(None), id=f"{label}_{k}", label=label, done=f"{label}{k}", group=group, effects={} if one is None else {"start_Pa": Effect(one)})
+                for k, one in enumerate(effects)]  # fmt: skip
+
+    lines = [*ran("mesh", "numerical", -3.0), *ran("ring", "numerical", 1.0, -4.0), *ran("block", "model", 12.0, None),
+             *ran("rate", "model", None), *ran("mesh_increment", "beside", 100.0)]  # fmt: skip
+    found = Table("exp1", "soft", "quasistatic", "0", 0.0, (("start_Pa", "start", "Pa"),), {}, tuple(lines))
+    assert found.total("start_Pa", ["numerical"]) == (5.0, 7.0, [])
+    assert found.total("start_Pa", ["numerical", "model"]) == (13.0, 19.0, ["block (block1)", "rate (rate0)"])
+
+
+def made_up(folder: Path, status: int, start_Pa: float, plateau_Pa: float, reason: str = "", **over: float) -> Made:
+    """A made-up run with a plateau at the interface, or one that was refused, and how it ended."""
+    outcome = Outcome("exp1", "soft", "completed" if status == 0 else "failed", status, reason, 1.0, "k")
+    steps = climb(start_Pa=start_Pa, plateaus={10.0: plateau_Pa}, **over)
+    return outcome, None if status == 2 else load(write_run(folder, steps, end_Pa=3.2e6, mechanics="quasistatic"))
+
+
+def test_effects_are_differences_from_the_base_and_failures_are_failures(tmp_path: Path) -> None:
+    content = content_of(EXP1, "soft")
+    changes = [one for one in factors_of(content, "quasistatic") if one.id in ("mesh_half", "rate_half", "rate_double")]
+    base, jobs = varied(EXP1, "quasistatic", "soft", (), content, changes, tmp_path)
+    ran = [made_up(tmp_path / "base", 0, 2.40e6, 0.20e6), made_up(tmp_path / "mesh", 0, 2.37e6, 0.30e6), made_up(tmp_path, 2, 0.0, 0.0, "unknown key"),
+           made_up(tmp_path / "rate", 3, 2.44e6, 0.04e6, "a mechanism", to_m=20.0)]  # fmt: skip
+
+    def maker(asked: Sequence[Job]) -> list[tuple[Made, float]]:
+        return [(ran.pop(0), 0.0) for _ in asked]
+
+    found = table_of(content, "quasistatic", changes, base, jobs, maker)
+    assert [name for name, _, _ in found.quantities] == ["start_Pa", "arrest_1_m", "restart_1_Pa", "pressure_at_40_Pa"]
+    mesh, half, double = found.lines
+    assert mesh.effects["start_Pa"].value == pytest.approx(-0.03e6) and mesh.effects["restart_1_Pa"].value == pytest.approx(0.07e6)
+    assert (half.status, half.effects) == ("refused", {}) and double.status == "failed"
+    assert double.effects["pressure_at_40_Pa"].value is None and "does not reach 40 m" in double.effects["pressure_at_40_Pa"].note
+    assert double.effects["arrest_1_m"].note == "no arrest" and found.total("start_Pa", ["numerical", "model"])[0] == pytest.approx(0.05e6)
+    silent = replace(found, lines=(replace(double, status="completed"),))
+    assert "does not reach 40 m, at least 3.2e+06 Pa" in words(silent)
+    assert all(part in words(found) for part in ("refused: unknown key", "failed: a mechanism", "-30.00 -1.25%", "all factors, plain sum"))
+
+
+def test_every_experiment_has_its_budget_of_variants_that_exist() -> None:
+    assert set(BUDGETED) == {scene.stem for scene in scenes_of(EXPERIMENTS)}
+    assert all(set(BUDGETED[scene.stem]) <= set(variants_of(scene)) for scene in scenes_of(EXPERIMENTS))
+
+
+def test_a_small_budget_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Experiment 1 with cells and increments of 2 m up to 13 m: factors in one table; a second call makes no run again."""
+    settings = [word for one in ("numerics.cell_m=2.0", "fracture.increment_m=2.0", "stop.tip_y_m=13") for word in ("--set", one)]
+    arguments = ["exp1", "--variants", "soft", "--out", str(tmp_path), *settings]
+    assert budget(arguments) == 0
+    found = json.loads((tmp_path / "quasistatic" / f"{EXP1.stem}.soft.json").read_text())
+    assert {"start_Pa", "restart_1_Pa", "pressure_at_10_Pa"} <= set(found["base"])
+    effects = {one["id"]: one["effects"]["start_Pa"]["value"] for one in found["lines"]}
+    assert len(effects) == 12 and all(map(math.isfinite, effects.values())) and {one["status"] for one in found["lines"]} == {"completed"}
+    # The first growth knows nothing of the increment, and a slower ramp starts it at a lower pressure, a faster one at a higher.
+    assert effects["increment_half"] == effects["increment_double"] == 0.0
+    assert effects["rate_half"] < 0.0 < effects["rate_double"]
+    assert abs(effects["mesh_half"]) > 1e4
+    capsys.readouterr()
+    assert budget(arguments) == 0
+    assert capsys.readouterr().out.count("done before") == 13
