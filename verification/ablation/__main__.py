@@ -16,6 +16,7 @@ from verification.harness.plan import affordable, make_all
 from verification.harness.run import Job
 from verification.harness.scenes import MECHANICS, chosen, content_of, mechanics_of, scene_of, scenes_of
 
+ABLATION_RUNS, BUDGET_RUNS = RUNS / "ablation", RUNS / "budget"
 EVERYTHING, INTERFACES, SOME = "everything", "interfaces", "some"  # how much of a scene is left out
 WHOLE = ("perfect", "soft", "weak_soft", "soft_weak")  # variants of which everything is left out in turn
 
@@ -65,7 +66,7 @@ def ablate(arguments: list[str] | None = None) -> int:
     mechanics (explicit). Tables are printed, and kept in verification/ablation/records (DIR) where nothing was chosen by --ingredients or --set.
     What cells, steps, rings and points a cell are worth ci/budget and ci/refine say. Exit status: 0, 3 where a scene's own run failed, 2 for bad input.
     """
-    parser = command("ci/ablate", ablate.__doc__, "variants", "set", "out", "runs", out=tables.RECORDS, runs=RUNS / "ablation")
+    parser = command("ci/ablate", ablate.__doc__, "variants", "set", "out", "runs", out=tables.RECORDS, runs=ABLATION_RUNS)
     parser.add_argument("experiments", nargs="*", help="beginnings of names, or scene files (default: all)")
     parser.add_argument("--ingredients", default="", help="ids, comma-separated (default: all)")
     options = parser.parse_args(arguments)
@@ -96,7 +97,7 @@ def budget(arguments: list[str] | None = None) -> int:
     the cells are those of ci/refine. Prints a table a variant and writes DIR/MECHANICS/EXPERIMENT.VARIANT.json (DIR: runs/budget). Exit status: 0 where
     all runs completed, 3 where some did not, 2 for bad input.
     """
-    parser = command("ci/budget", budget.__doc__, "variants", "set", "jobs", "limit", "yes", "out", out=RUNS / "budget")
+    parser = command("ci/budget", budget.__doc__, "variants", "set", "jobs", "limit", "yes", "out", out=BUDGET_RUNS)
     parser.add_argument("experiments", nargs="*", help="beginnings of names, or scene files (default: all)")
     parser.add_argument("--factors", default="", help="mesh, step, ring, particles, increment, block, rate (default: all)")
     parser.add_argument("--mechanics", default="quasistatic", choices=MECHANICS)

@@ -36,12 +36,6 @@ def first_kink_deg(experiment: int) -> float:
     return float(values("crack_path", "kink_deg", **path_settings(experiment, 1.0, "forward", 1.0))[0])
 
 
-def leaving_m() -> float:
-    """Length over which Experiment 6's path leaves its line, K_Ic^2/(8 T^2), m, with T the stress along the fracture above that
-    across it (Cotterell & Rice, Int. J. Fracture 16 (1980) 155)."""
-    return (_STIFF["toughness_Pa_sqrt_m"] / (_ALONG_PA[6] - _ACROSS_PA)) ** 2 / 8.0
-
-
 def grown(run: Run) -> Array:
     """Tips of a run from the first on, x from the first crack, shape (n, 2), m; LoadError if it grew less than twice."""
     path = run.path[1:] - np.array([run.path[0, 0], 0.0])

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from verification.benchmarks import machine
-from verification.harness.choose import beginnings
+from verification.harness.choose import beginnings, choose
 from verification.harness.command import command
 from verification.harness.paths import reference_program, solver
 from verification.harness.plan import about_s
@@ -60,14 +60,9 @@ class Task:
 
 def chosen(only: str, methods: str, quick: bool) -> list[Problem]:
     """The problems and methods that are asked for; raises ValueError for names that are not there."""
-    wanted, starts = beginnings(only), beginnings(methods)
-    if strangers := set(wanted) - {problem.name for problem in PROBLEMS}:
-        raise ValueError(f"no problem {', '.join(sorted(strangers))}; there are {', '.join(problem.name for problem in PROBLEMS)}")
-    found = [thinned(problem) if quick else problem for problem in PROBLEMS if not wanted or problem.name in wanted]
-    found = [replace(one, methods=tuple(method for method in one.methods if not starts or method.name.startswith(starts))) for one in found]
-    if not any(problem.methods for problem in found):
-        raise ValueError(f"no method begins with {' or '.join(starts)}")
-    return found
+    found = choose({one.name: thinned(one) if quick else one for one in PROBLEMS}, beginnings(only), "problem")
+    named = choose({method.name: method for one in found.values() for method in one.methods}, beginnings(methods), "method")
+    return [replace(one, methods=tuple(method for method in one.methods if method.name in named)) for one in found.values()]
 
 
 def tasks_of(problem: Problem, sheet: Sheet | None, same: bool, fresh: bool) -> list[Task]:

@@ -45,7 +45,7 @@ class Failure(Exception):
 def job_of(method: Method, level: Level, folder: Path = Path()) -> Job:
     """The run of a method of the solver at a level."""
     assert isinstance(method.source, Path)
-    return Job(method.source, level.variant, folder, level.settings, method.threads)
+    return Job(method.source, level.variant, folder, level.settings)
 
 
 def key_of(method: Method, level: Level) -> str:

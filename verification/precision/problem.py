@@ -4,7 +4,7 @@ A problem and its methods only describe; measuring (measure.py), judging (judge.
 Scenes, samples and references are the ladder's (verification/ladder/case.py).
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -55,22 +55,40 @@ class Setting:
         return (*found, *self.further)
 
 
+# What of a scene depends on how it is solved: variant and further settings for a setting and a cell size (m).
+Base = Callable[[Setting, float], tuple[str, tuple[str, ...]]]
+
+
 @dataclass(frozen=True)
 class Method:
     """A way to solve a problem, a curve of the chart: coarse to fine.
 
-    source: the scene of the solver's runs, or the name of a solution of strata-reference, to which the levels' settings then go.
+    source: the scene of the solver's runs at `cells_m` (m), or the name of a solution of strata-reference, to which the levels' settings then go.
     """
 
     name: str  # unique in its problem, as in a file name
     label: str  # for legends
-    program: str
-    source: Path | str
-    levels: tuple[Level, ...]
-    setting: Setting | None = None
+    setting: Setting | None
+    cells_m: tuple[float, ...] = ()
     main: bool = False  # drawn in the foreground of the front page
     quick: int = 0  # so many coarse levels are enough to try the chart out
-    threads: int = 1
+    source: Path | str = ""
+    levels: tuple[Level, ...] = ()
+
+    @property
+    def program(self) -> str:
+        """The program that it runs."""
+        return STRATA if isinstance(self.source, Path) else ELEMENTS
+
+
+def methods(scene: Path, base: Base, found: Iterable[Method]) -> tuple[Method, ...]:
+    """Methods of the solver as those of a problem whose scene is given."""
+
+    def level(setting: Setting, cell_m: float) -> Level:
+        variant, further = base(setting, cell_m)
+        return Level(f"{cell_m:g} m", cell_m, (*setting.keys(cell_m), *further), variant)
+
+    return tuple(replace(one, source=scene, levels=tuple(level(one.setting or Setting(), cell) for cell in one.cells_m)) for one in found)
 
 
 @dataclass(frozen=True)

@@ -35,9 +35,10 @@ def test_nothing_of_the_checkout_is_touched(place: str, monkeypatch: pytest.Monk
 def test_all_runs_go_below_one_folder_of_the_tests() -> None:
     """Every default of the harness, and no other place in the sources says where runs are."""
     assert not paths.RUNS.is_relative_to(ROOT) and paths.RUNS.is_dir() and cases.RUNS.is_relative_to(paths.RUNS)
-    modules = {"harness.refine": "REFINE_RUNS", "harness.budget": "BUDGET_RUNS", "harness.smoke": "SMOKE_RUNS", "benchmarks.__main__": "LAST"}
-    modules |= {f"{name}": "RUNS" for name in ("ladder.measure", "stability.runner", "precision.measure", "ablation.measure", "measured.__main__")}
-    for module, name in modules.items():
+    modules = [("harness.refine", "REFINE_RUNS"), ("harness.smoke", "SMOKE_RUNS"), ("benchmarks.__main__", "LAST"),
+               ("ablation.__main__", "ABLATION_RUNS"), ("ablation.__main__", "BUDGET_RUNS"),
+               *((name, "RUNS") for name in ("ladder.measure", "stability.runner", "precision.measure", "measured.__main__"))]  # fmt: skip
+    for module, name in modules:
         assert getattr(importlib.import_module(f"verification.{module}"), name).is_relative_to(paths.RUNS), module
     named = []
     for top in ("verification", "reports", "ci"):

@@ -33,7 +33,7 @@ def levels(*sizes: float) -> tuple[Level, ...]:
 
 def method(name: str, *sizes: float, setting: Setting | None = None, program: str = STRATA) -> Method:
     """A method of a made-up problem."""
-    return Method(name, name, program, SCENE if program == STRATA else "block_crack", levels(*sizes), setting or Setting())
+    return Method(name, name, setting or Setting(), source=SCENE if program == STRATA else "block_crack", levels=levels(*sizes))
 
 
 def wanted(name: str = "K") -> Wanted:
@@ -149,7 +149,7 @@ def test_the_key_changes_with_scene_settings_and_program(tmp_path: Path, monkeyp
     program.write_text("one")
     scene.write_text('title = "a"\n[domain]\nwidth_m = 80\n[variants.x]\ndomain.width_m = 40\n')
     monkeypatch.setenv("STRATA", str(program))
-    one = Method("a", "a", STRATA, scene, levels(1.0))
+    one = Method("a", "a", Setting(), source=scene, levels=levels(1.0))
     keys = [measure.key_of(one, one.levels[0])]
     assert measure.key_of(replace(one, name="b", label="other words"), one.levels[0]) == keys[0]
     keys.append(measure.key_of(one, replace(one.levels[0], settings=("numerics.cell_m=0.5",))))

@@ -7,8 +7,8 @@ from verification.harness.load import Run
 from verification.harness.reference import relative_error, settings_of, value
 from verification.ladder.case import Level, Sample
 from verification.ladder.cases import cracks, interfaces
-from verification.precision.methods import Curve, endless, methods, with_inertia, without_inertia
-from verification.precision.problem import ELEMENTS, Answer, Method, Problem, Setting, Wanted
+from verification.precision.methods import endless, with_inertia, without_inertia
+from verification.precision.problem import Answer, Method, Problem, Setting, Wanted, methods
 
 # All have the tip on a grid line, 5 m up, and divide the block of 80 m.
 FINE_M = (2.5, 1.25, 1.0, 0.625, 0.5, 0.25, 0.125)
@@ -28,8 +28,8 @@ def asked(settings: Mapping[str, object], key: str, counts: tuple[int, ...]) -> 
 
 def collocation(name: str, key: str, settings: Mapping[str, object], counts: tuple[int, ...]) -> Method:
     """A solution of strata-reference by so many unknowns of one kind."""
-    return Method(f"be_{name}", f"{'dislocations' if key == 'nodes' else 'collocation'} ({name})", ELEMENTS, name,
-                  asked(settings, key, counts), main=True)  # fmt: skip
+    return Method(f"be_{name}", f"{'dislocations' if key == 'nodes' else 'collocation'} ({name})", None, main=True, source=name,
+                  levels=asked(settings, key, counts))  # fmt: skip
 
 
 BLOCK_SETTINGS = {"width_m": 80.0, "half_height_m": 80.0, "half_length_m": 5.0, "pressure_Pa": cracks.NET_PA}
@@ -54,7 +54,7 @@ def exact_block_K_I(run: Run) -> Sample:
 
 BLOCK_CURVES = [
     *without_inertia(FINE_M, (2.5, 1.25, 1.0, 0.5)),
-    Curve("ex_shaken", "explicit, updated, damped as the experiments", Setting("explicit", kinematics="updated", transfer="flip",
+    Method("ex_shaken", "explicit, updated, damped as the experiments", Setting("explicit", kinematics="updated", transfer="flip",
           damping_1_s=SHAKEN_1_S), (2.5, 1.25, 1.0), True),
     *with_inertia(EXPLICIT_M, (2.5, 1.25, 1.0), (1.0,), SETTLING_1_S),
 ]  # fmt: skip
@@ -99,7 +99,7 @@ def near(layers: tuple[str, str], laws: tuple[str, ...] = ()):  # type: ignore[n
     return base
 
 
-def near_curves() -> list[Curve]:
+def near_curves() -> list[Method]:
     """The curves near an interface; single choices are tried in the block."""
     still = [*without_inertia(NEAR_M, NEAR_EXPLICIT_M), *endless(NEAR_M, WIDE_M)]
     return [*still, *with_inertia(NEAR_EXPLICIT_M, (1.25,), (), NEAR_SETTLING_1_S)]
@@ -148,8 +148,8 @@ BONDED = Problem(
     "bonded", "A crack of 10 m in stiff rock, normal to soft rock bonded to it 2.5 m ahead", (BONDED_K,),
     (
         *methods(interfaces.BONDED, near(("stiff", "soft")), near_curves()), collocation("bonded_normal", "nodes", ROCKS | CRACK, UNKNOWNS),
-        Method("be_curved_crack", "boundary elements (curved_crack)", ELEMENTS, "curved_crack", asked(elements_near(), "refine", (1, 2, 4)),
-               main=True),
+        Method("be_curved_crack", "boundary elements (curved_crack)", None, main=True, source="curved_crack",
+               levels=asked(elements_near(), "refine", (1, 2, 4))),
     ),
 )  # fmt: skip
 SPRUNG = Problem(

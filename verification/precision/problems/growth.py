@@ -11,8 +11,8 @@ from verification.harness.paths import ANALYTIC, EXPERIMENTS
 from verification.harness.reference import settings_of, value
 from verification.ladder.case import Array, Level, Sample
 from verification.ladder.cases import kgd, paths
-from verification.precision.methods import FAR, MOVING, RESTING, STILL, Base, Curve, endless, methods, with_inertia, without_inertia
-from verification.precision.problem import ELEMENTS, Answer, Method, Problem, Setting, Wanted
+from verification.precision.methods import FAR, MOVING, RESTING, STILL, endless, with_inertia, without_inertia
+from verification.precision.problem import Answer, Base, Method, Problem, Setting, Wanted, methods
 
 SHIPPED = ("ex_total_graded", "1 m"), ("ex_total", "1 m")  # what the scenes of Experiments 1 and 6 ask for
 
@@ -48,7 +48,7 @@ CROSSING = Problem(
     methods(EXPERIMENTS / "exp1_single_interface.toml", crossing, [
         *without_inertia(CROSSING_M, (1.0, 0.5)),
         *with_inertia((1.0, 0.5), (1.0,), (), CROSSING_DAMPING_1_S),
-        Curve("ex_undamped", "explicit, updated, undamped", replace(MOVING, damping_1_s=0.0), (1.0,), True),
+        Method("ex_undamped", "explicit, updated, undamped", replace(MOVING, damping_1_s=0.0), (1.0,), True),
     ]), experiments=(1, 2, 3, 4), shipped=SHIPPED[0], limit_s=300.0, about_s=16.0,
 )  # fmt: skip
 
@@ -120,12 +120,12 @@ PATH = Problem(
                " part of the error", lambda run: off(converged, settled_to())(run), elements_off),
     ),
     (
-        Method("be_crack_path", "boundary elements (crack_path)", ELEMENTS, "crack_path", increments(3.0, 1.5, 0.75, 0.375), main=True),
+        Method("be_crack_path", "boundary elements (crack_path)", None, main=True, source="crack_path", levels=increments(3.0, 1.5, 0.75, 0.375)),
         *methods(ANALYTIC / "path_exp6.toml", turning, [
-            Curve("qs_graded", "quasi-static, graded", replace(STILL, graded=FAR), PATH_M, True),
-            Curve("qs_graded_linear", "quasi-static, graded, linear", replace(STILL, graded=FAR, shape="linear"), PATH_M, True),
+            Method("qs_graded", "quasi-static, graded", replace(STILL, graded=FAR), PATH_M, True),
+            Method("qs_graded_linear", "quasi-static, graded, linear", replace(STILL, graded=FAR, shape="linear"), PATH_M, True),
             *endless(PATH_M, 800.0)[:1],
-            Curve("qs_uniform", "quasi-static, uniform, block of 80 m", STILL, (1.0, 0.5), True),
+            Method("qs_uniform", "quasi-static, uniform, block of 80 m", STILL, (1.0, 0.5), True),
             *with_inertia((1.0, 0.5), (1.0,), (), 20.0),
         ]),
     ), experiments=(5, 6), shipped=SHIPPED[1], about_s=20.0,
@@ -149,17 +149,17 @@ def fed(variant: str, share: float = 1.0) -> Base:
     return base
 
 
-def kgd_curves() -> list[Curve]:
+def kgd_curves() -> list[Method]:
     """Flow that conserves volume is quasi-static only: the explicit curve is there to say so."""
     graded = replace(STILL, graded=FAR)
     return [
         *(curve for curve in without_inertia(KGD_M, (1.0,)) if curve.name in ("qs_graded", "qs_graded_linear", "qs_uniform")),
-        Curve("qs_graded_coarse_flow", "quasi-static, graded, coarse steps of flow",
+        Method("qs_graded_coarse_flow", "quasi-static, graded, coarse steps of flow",
               replace(graded, further=("numerics.flow_error=0.01", "numerics.flow_change=0.3")), KGD_M, True),
-        Curve("qs_graded_fine_flow", "quasi-static, graded, fine steps of flow",
+        Method("qs_graded_fine_flow", "quasi-static, graded, fine steps of flow",
               replace(graded, further=("numerics.flow_error=1e-4", "numerics.flow_change=0.075")), KGD_M[:2], True),
-        Curve("ex_updated", "explicit, updated", MOVING, (1.0,)),
-        Curve("ex_total", "explicit, total", RESTING, (1.0,)),
+        Method("ex_updated", "explicit, updated", MOVING, (1.0,)),
+        Method("ex_total", "explicit, total", RESTING, (1.0,)),
     ]  # fmt: skip
 
 
@@ -167,8 +167,8 @@ def kgd_methods(variant: str) -> tuple[Method, ...]:
     """The curves above in steps of a cell, and increments of parts of one: a fracture that has just grown is ahead of its fluid by half
     an increment in the mean, which is most of the error of length."""
     graded = replace(STILL, graded=FAR)
-    half = Curve("qs_graded_half", "quasi-static, graded, increments of 1/2 cell", graded, KGD_M, True)
-    quarter = Curve("qs_graded_quarter", "quasi-static, graded, increments of 1/4 cell", graded, KGD_M[:3], True)
+    half = Method("qs_graded_half", "quasi-static, graded, increments of 1/2 cell", graded, KGD_M, True)
+    quarter = Method("qs_graded_quarter", "quasi-static, graded, increments of 1/4 cell", graded, KGD_M[:3], True)
     return (
         *methods(kgd.SCENE, fed(variant), kgd_curves()),
         *methods(kgd.SCENE, fed(variant, 0.5), [half]),
