@@ -60,15 +60,14 @@ def _case_rows(results: Sequence[tuple[str, Sequence[CaseResult]]]) -> list[Show
     for together in zip(*(cases for _, cases in results)):
         found = [Shown(mechanics=mechanics_name(mechanics), holds=HOLDS[case.holds], measured=_measured(case), note=case.note)
                  for (mechanics, _), case in zip(results, together)]
-        asked, suffix = together[0].case, _UNIT_SUFFIX.get(together[0].unit, "")
+        asked, suffix = together[0], _UNIT_SUFFIX.get(together[0].unit, "")
         bounds = [f"{sign} {_written(bound, suffix)}" for bound, sign in ((asked.at_least, "≥"), (asked.at_most, "≤")) if bound is not None]
         rows.append(Shown(what=_what(together[0]), asked=" and ".join(bounds), found=found))
     return rows
 
 
-def _what(result: CaseResult) -> str:
+def _what(case: CaseResult) -> str:
     """What a case is about."""
-    case = result.case
     against = ""
     if case.against:
         other = (case.against_scene or "").split("_")[0]
@@ -130,8 +129,8 @@ def _choice_cell(claim: ClaimResult, choice: str) -> Shown:
     reading = next((one for one in claim.readings if one.choice == choice), None)
     if reading is None:
         return Shown(kind="none", words="not applicable")
-    failing = [f"{plain(case.case.variant)}, {plain(case.case.observable.rsplit('_', 1)[0])}" for case in reading.cases if case.holds is False]
-    variants = ", ".join(dict.fromkeys(plain(case.case.variant) for case in reading.cases))
+    failing = [f"{plain(case.variant)}, {plain(case.observable.rsplit('_', 1)[0])}" for case in reading.cases if case.holds is False]
+    variants = ", ".join(dict.fromkeys(plain(case.variant) for case in reading.cases))
     partly = "" if reading.complete else f"holds for {variants}, not run for others"
     return _cell(reading, partly, f": {'; '.join(failing)}")
 

@@ -172,7 +172,7 @@ def case(variant: str = "weak", holds: bool | None = True, value: float = 6.4e5,
     """A case of a plateau: without an upper bound it is open from above."""
     asked = Case("plateau_Pa", variant, at_least=5e4, parameters={"interface": 1})
     note = "" if high is not None else "does not grow on from 10 m"
-    return CaseResult(asked, "Pa", value, value, high, holds, True, note, ())
+    return CaseResult(**vars(asked), unit="Pa", value=value, low=value, high=high, holds=holds, note=note)
 
 
 def claims() -> list[ClaimResult]:

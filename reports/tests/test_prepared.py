@@ -121,7 +121,7 @@ def test_a_variant_is_told_by_what_differs(tmp_path: Path) -> None:
 def test_verdicts_keep_bounds_and_open_cases() -> None:
     """A case that is only bounded says so; one that is open is neither right nor wrong."""
     asked = Case("start_Pa", "soft", at_most=3e6, parameters={"from_m": {"interface": 1, "plus_m": -2}, "interface": 1})
-    result = CaseResult(asked, "Pa", 4e6, 4e6, None, None, True, "", ())
+    result = CaseResult(**vars(asked), unit="Pa", value=4e6, low=4e6)
     claim = ClaimResult("2c", STEMS[2], "explicit", "t", "w", "start_Pa", NOT_REPRODUCED, None, (result,), (), ())
     row = claim_rows([claim])[0].cases[0]
     assert row.asked == "≤ 3\u00a0MPa" and row.what == "soft: start (from 2\u00a0m below interface 1, interface 1)"

@@ -1,8 +1,6 @@
 """Claims and what became of them as plain data, and claims.json written from it and read back."""
 
-import json
-from collections.abc import Callable
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -30,19 +28,18 @@ class Case:
     parameters: dict[str, Any] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
-class CaseResult:
+@dataclass(frozen=True, kw_only=True)
+class CaseResult(Case):
     """A case with what was measured: value in `unit`, its bounds (null: unbounded), whether it holds (null: open)."""
 
-    case: Case
     unit: str
-    value: float | None
-    low: float | None
-    high: float | None
-    holds: bool | None
-    evaluated: bool
-    note: str
-    flags: tuple[str, ...]
+    value: float | None = None
+    low: float | None = None
+    high: float | None = None
+    holds: bool | None = None
+    evaluated: bool = True
+    note: str = ""
+    flags: tuple[str, ...] = ()
     meaning: str = ""
 
 
@@ -75,31 +72,19 @@ class ClaimResult:
     flags: tuple[str, ...]
 
 
-Plain = dict[str, Any]
+@dataclass(frozen=True)
+class Claims:
+    """What claims.json holds."""
 
-
-def _with_cases(holder: Plain, changed: Callable[[Plain], Plain]) -> Plain:
-    """A claim, or a reading of one, with each of its cases changed."""
-    readings = {"readings": [_with_cases(one, changed) for one in holder["readings"]]} if "readings" in holder else {}
-    return {**holder, "cases": [changed(case) for case in holder["cases"]], **readings}
+    claims: list[ClaimResult]
 
 
 def write_claims(results: list[ClaimResult], path: Path) -> None:
-    """Write claims.json; a case's keys stand beside what was measured."""
-    claims = [_with_cases(claim, lambda case: {**case["case"], **{key: case[key] for key in case if key != "case"}}) for claim in store.plain(results)]
-    store.write({"claims": claims}, path)
+    """Write claims.json."""
+    store.write(Claims(results), path)
 
 
 def read_claims(path: Path) -> list[ClaimResult]:
     """Read claims.json; none where there is no such file, ValueError where it is not as write_claims leaves it."""
-    own = {item.name for item in fields(Case)}
-
-    def nest(case: Plain) -> Plain:
-        return {"case": {key: case[key] for key in case if key in own}, **{key: case[key] for key in case if key not in own}}
-
-    if not path.is_file():
-        return []
-    try:
-        return store.built(list[ClaimResult], [_with_cases(claim, nest) for claim in json.loads(path.read_text(encoding="utf-8"))["claims"]])
-    except (KeyError, TypeError) as error:
-        raise ValueError(f"{path}: {error}") from error
+    found = store.read(Claims, path)
+    return found.claims if found is not None else []

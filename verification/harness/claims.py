@@ -84,13 +84,13 @@ def evaluate_case(case: Case, experiment: str, runs: Runs) -> CaseResult:
     found = [runs.get(*names) for names in runs_of(case, experiment)]
     known = [run for run, _ in found if run is not None]
     if problem := next((problem for _, problem in found if problem), ""):
-        return CaseResult(case, observable.unit, None, None, None, None, False, problem, (), observable.meaning)
+        return CaseResult(**vars(case), unit=observable.unit, evaluated=False, note=problem, meaning=observable.meaning)
     measured = measure(case.observable, case.parameters, known[0], known[1] if len(known) > 1 else None)
     marks = [f"suspect run {run.name}: {mark.why}" for run in known for mark in run.summary.suspect if mark.monitor != OF_SPEEDS]
     flags = (*measured.flags, *(() if measured.exact else ("bound only",)), *marks)
     low, high = (bound if math.isfinite(bound) else None for bound in (measured.low, measured.high))
-    holds = measured.holds(case.at_least, case.at_most)
-    return CaseResult(case, observable.unit, measured.value, low, high, holds, True, measured.note, flags, observable.meaning)
+    own = {"value": measured.value, "low": low, "high": high, "holds": measured.holds(case.at_least, case.at_most), "note": measured.note}
+    return CaseResult(**vars(case), **own, unit=observable.unit, flags=flags, meaning=observable.meaning)
 
 
 def all_hold(cases: Sequence[CaseResult]) -> bool | None:

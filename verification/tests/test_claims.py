@@ -172,7 +172,7 @@ def test_a_choice_puts_its_variants_in_place_of_those_named(tmp_path: Path, scen
     written(tmp_path, weak=0.2, soft=0.2, other=0.0)
     result = evaluate(TWICE, "exp", Runs(tmp_path), [OTHER], scenes)
     (reading,) = result.readings
-    assert [case.case.variant for case in reading.cases] == ["other", "soft"]
+    assert [case.variant for case in reading.cases] == ["other", "soft"]
     assert (reading.choice, reading.name, reading.holds, reading.complete) == ("c", "unit: another", False, True)
     assert result.verdict == REPRODUCED and "does not hold under: unit: another" in result.flags
     write(tmp_path, "other", 0.2)
