@@ -8,7 +8,7 @@ from typing import Any
 
 from verification.ablation import table as tables
 from verification.ablation.changes import Change, factors_of, ingredients_of, named
-from verification.ablation.measure import Maker, NoBase, anew, left_out, table_of, varied
+from verification.ablation.measure import Maker, NoBase, left_out, table_of, varied
 from verification.harness.choose import beginnings
 from verification.harness.command import command
 from verification.harness.paths import EXPERIMENTS, RUNS, need_solver
@@ -17,6 +17,7 @@ from verification.harness.run import Job
 from verification.harness.scenes import MECHANICS, chosen, content_of, mechanics_of, scene_of, scenes_of
 
 ABLATION_RUNS, BUDGET_RUNS = RUNS / "ablation", RUNS / "budget"
+LIMIT_S = 900.0  # a run of an ingredient left out that takes longer says nothing
 EVERYTHING, INTERFACES, SOME = "everything", "interfaces", "some"  # how much of a scene is left out
 WHOLE = ("perfect", "soft", "weak_soft", "soft_weak")  # variants of which everything is left out in turn
 
@@ -84,7 +85,7 @@ def ablate(arguments: list[str] | None = None) -> int:
         if not only and (not options.settings or options.out != tables.RECORDS):
             tables.write(table, options.out)
 
-    return made(planned(parser, options, plan, {}), anew, tell)
+    return made(planned(parser, options, plan, {}), lambda jobs: make_all(jobs, 1, force=True, limit_s=LIMIT_S), tell)
 
 
 def budget(arguments: list[str] | None = None) -> int:
@@ -118,7 +119,7 @@ def budget(arguments: list[str] | None = None) -> int:
     every = planned(parser, options, plan, BUDGETED)
     if not affordable([job for _, _, _, base, jobs in every for job in (base, *jobs)], options):
         return 2
-    status = made(every, lambda jobs: [(one, 0.0) for one in make_all(jobs, options.jobs)], tell)
+    status = made(every, lambda jobs: make_all(jobs, options.jobs), tell)
     return status or (3 if failed else 0)
 
 

@@ -5,9 +5,7 @@ by the base's own, a path by its length. A change whose run has no value where t
 """
 
 import math
-import threading
 from collections.abc import Callable, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,30 +14,17 @@ from verification.ablation.table import Table, Tried
 from verification.harness import quantities as harness
 from verification.harness.load import Run
 from verification.harness.observables import path_length
-from verification.harness.plan import Made, expected_s, made_words, make, name_of
+from verification.harness.plan import Made
 from verification.harness.quantities import NO_ARREST, Effect, Quantity, followed, turns
 from verification.harness.refine import job_of
-from verification.harness.run import Job, timed
-from verification.harness.side_by_side import Task, side_by_side
-
-LIMIT_S = 900.0  # a run that takes longer says nothing
+from verification.harness.run import Job
 
 Effects = tuple[dict[str, Effect], dict[str, float]]  # in their units, and as shares
-Maker = Callable[[Sequence[Job]], list[tuple[Made, float]]]  # makes jobs: how each ended, and its CPU time, s, where it was alone
+Maker = Callable[[Sequence[Job]], list[Made]]
 
 
 class NoBase(Exception):
     """The scene's own run has no result; the message says why."""
-
-
-def anew(jobs: Sequence[Job]) -> list[tuple[Made, float]]:
-    """Make jobs anew, one at a time, with their CPU times."""
-
-    def one(job: Job, stop: threading.Event) -> tuple[Made, float]:
-        found, (_, cpu_s) = timed(lambda: make(job, stop, force=True, limit_s=LIMIT_S))
-        return found, cpu_s
-
-    return side_by_side([Task(name_of(job), partial(one, job), lambda made: made_words(made[0]), expected_s(job)) for job in jobs], 1)
 
 
 def scale_of(quantity: Quantity, base: Run) -> float:
@@ -89,12 +74,12 @@ def varied(
     return base, [half if one.id == "mesh_half" else job(one) for one in changes if one.settings]
 
 
-def table_of(content: dict[str, Any], extent: str, changes: Sequence[Change], base: Job, jobs: Sequence[Job], made_by: Maker = anew) -> Table:
+def table_of(content: dict[str, Any], extent: str, changes: Sequence[Change], base: Job, jobs: Sequence[Job], made_by: Maker) -> Table:
     """The table of a scene (its keys with a variant's in place) from the runs of it as it is and of the changes that apply. Raises NoBase where the
     scene's own run fails."""
-    [((outcome, own), cpu_s)] = made_by([base])
+    [(outcome, own)] = made_by([base])
     if own is None or not outcome.ok:
-        raise NoBase(f"{base.scene.stem} {base.variant}: {outcome.word if not outcome.ok else 'failed'}: {outcome.reason}")
+        raise NoBase(f"{base.scene.stem} {base.variant}: {outcome.word}: {outcome.reason}")
     made = iter(made_by(jobs))
     quantities, with_path = followed(content, own), turns(content)
 
@@ -102,12 +87,12 @@ def table_of(content: dict[str, Any], extent: str, changes: Sequence[Change], ba
         """A change, with its run where it has one."""
         if not one.settings:
             return Tried(one.id, one.label, one.done, one.settings, "", one.why_not, {}, {}, 0.0, one.group)
-        (ended, run), seconds = next(made)
+        ended, run = next(made)
         short = "up to where the run failed" if one.group and not ended.ok else ""
         # Where the path may turn only the ways of both are compared, a straight one too.
         found = ({}, {}) if run is None else effects_of(quantities, with_path, own, one.view.of(run, own), bool(one.group), short)
-        return Tried(one.id, one.label, one.done, one.settings, ended.word if run else "failed" if ended.ok else ended.word, ended.reason, *found, seconds, one.group)
+        return Tried(one.id, one.label, one.done, one.settings, ended.word, ended.reason, *found, 0.0 if one.group else ended.cpu_s, one.group)
 
     names = [(one.name, one.label, one.unit) for one in quantities] + [("path_m", "path", "m")] * with_path
     values = {one.name: one.measure(own).low for one in quantities}
-    return Table(base.scene.stem, base.variant, extent, own.summary.version, cpu_s, tuple(names), values, tuple(map(tried, changes)))
+    return Table(base.scene.stem, base.variant, extent, own.summary.version, outcome.cpu_s, tuple(names), values, tuple(map(tried, changes)))

@@ -36,7 +36,7 @@ def result_line(made: Made) -> str:
     """A run's result in a few words."""
     outcome, found = made
     if not outcome.ok or found is None:
-        return "completed, but it cannot be read" if outcome.ok else f"FAILED: {outcome.reason}"
+        return f"FAILED: {outcome.reason}"
     start = next((event.inlet_Pa for event in found.summary.events if event.kind == "start"), None)
     begun = f"starts at {start / 1e6:.3f} MPa" if start is not None else "never starts"
     top = float(found.history["tip_y_m"].max())

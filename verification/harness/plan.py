@@ -4,6 +4,7 @@ import argparse
 import sys
 import threading
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -16,7 +17,7 @@ from verification.harness.side_by_side import Task, side_by_side
 # without. Seconds a point of a uniform grid, with inertia those of cells of 1 m.
 SECONDS_A_POINT = {"explicit": 3.0e-3, "quasistatic": 2.6e-4}
 
-Made = tuple[Outcome, Run | None]  # how a run ended, and its data where it has any
+Made = tuple[Outcome, Run | None]  # how a run ended, and its data where it has any, as every completed one has
 
 
 def about_s(content: dict[str, Any]) -> float:
@@ -57,13 +58,13 @@ def affordable(jobs: Sequence[Job], options: argparse.Namespace) -> bool:
 
 
 def make(job: Job, stop: threading.Event | None = None, force: bool = False, limit_s: float | None = None) -> Made:
-    """Run a job (see run) and read what it wrote: one that failed as far as it came, one that was refused not at all. A folder that cannot be used
-    fails its run alone."""
+    """Run a job (see run) and read what it wrote: one that failed as far as it came, one that was refused not at all. A completed one that cannot be
+    read has failed; a folder that cannot be used fails its run alone."""
     try:
         outcome = run(job, force=force, limit_s=limit_s, stop=stop)
         return outcome, None if outcome.exit_status == BAD_INPUT else load(job.out)
-    except LoadError:
-        return outcome, None
+    except LoadError as error:
+        return replace(outcome, status="failed", reason=f"completed, but it cannot be read: {error}") if outcome.ok else outcome, None
     except OSError as error:
         return Outcome(job.scene.stem, job.variant, "failed", BAD_INPUT, str(error), 0.0, ""), None
 
@@ -75,6 +76,6 @@ def made_words(made: Made) -> str:
     return f"{outcome.status} ({how}) {outcome.reason[:160]}".rstrip()
 
 
-def make_all(jobs: Sequence[Job], at_a_time: int, words: Callable[[Made], str] = made_words) -> list[Made]:
-    """Make all jobs on so many threads, with a line for each."""
-    return side_by_side([Task(name_of(job), partial(make, job), words, expected_s(job), job.threads) for job in jobs], at_a_time)
+def make_all(jobs: Sequence[Job], at_a_time: int, words: Callable[[Made], str] = made_words, **how: Any) -> list[Made]:
+    """Make all jobs on so many threads, with a line for each; `how` as make has it."""
+    return side_by_side([Task(name_of(job), partial(make, job, **how), words, expected_s(job), job.threads) for job in jobs], at_a_time)

@@ -47,7 +47,7 @@ class Job:
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a run ended; wall_s in seconds. It is kept in the run's folder as outcome.json."""
+    """How a run ended, with its wall time and, where no other was made at the same time, its CPU time, s. It is kept in the run's folder as outcome.json."""
 
     scene: str
     variant: str
@@ -58,6 +58,7 @@ class Outcome:
     key: str
     settings: tuple[str, ...] = ()
     skipped: bool = False
+    cpu_s: float = 0.0
 
     @property
     def ok(self) -> bool:
@@ -191,15 +192,15 @@ def run(job: Job, binary: Path | None = None, force: bool = False, limit_s: floa
     if done is not None:
         return replace(done, skipped=True)
     wait_for_solver(job.out)
-    start, key = time.monotonic(), key_of(job, binary)
+    start, key, spent_s = time.monotonic(), key_of(job, binary), 0.0
     if before is not None and before.key == key and before.exit_status in CUT_SHORT and (job.out / "scene.toml").is_file():
         words = [str(binary), "resume", str(job.out), "--threads", str(job.threads), "--quiet"]
-        start -= before.wall_s
+        start, spent_s = start - before.wall_s, before.cpu_s
     else:
         clear(job.out)
         words = command_of(job, binary)
         store.write(Outcome(job.scene.stem, job.variant, "failed", INTERRUPTED, "killed with what ran it", 0.0, key, job.settings), job.out / OUTCOME)
-    exit_status, said = ended(words, limit_s, stop)
+    (exit_status, said), (_, cpu_s) = timed(lambda: ended(words, limit_s, stop))
     wall_s = round(time.monotonic() - start, 6)
     (job.out / "log.txt").write_text(said, encoding="utf-8")
     ending = summary_in(job.out).get("status")
@@ -207,6 +208,6 @@ def run(job: Job, binary: Path | None = None, force: bool = False, limit_s: floa
         exit_status = 3
     complete = exit_status == 0 and ending is not None
     status, reason = ("completed", "") if complete else ("failed", reason_of(job.out, exit_status, said))
-    outcome = Outcome(job.scene.stem, job.variant, status, exit_status, reason, wall_s, key, job.settings)
+    outcome = Outcome(job.scene.stem, job.variant, status, exit_status, reason, wall_s, key, job.settings, cpu_s=round(cpu_s + spent_s, 6))
     store.write(outcome, job.out / OUTCOME)
     return outcome

@@ -118,7 +118,7 @@ def measure_case(case: Case, stop: threading.Event | None = None) -> Values:
     mechanics, experiment, variant = case
     folder = SMOKE_RUNS.joinpath(*case)
     outcome, found = make(Job(EXPERIMENTS / f"{experiment}.toml", variant, folder, settings_of(mechanics)), stop)
-    if found is None or not outcome.ok:
+    if not outcome.ok or found is None:
         raise RuntimeError(f"{'/'.join(case)}: {outcome.reason}")
     if found.summary.mechanics != mechanics:
         raise RuntimeError(f"{'/'.join(case)}: the solver ran {found.summary.mechanics}")

@@ -12,6 +12,8 @@ from typing import Any, TypeVar
 
 T = TypeVar("T")
 
+WIDTH = 120  # columns of a file's lines
+
 
 def plain(value: Any, digits: int | None = None) -> Any:
     """A value as JSON holds it: dataclasses as tables, tuples as lists, numbers to so many digits, those that are not finite as None."""
@@ -62,22 +64,29 @@ def read(kind: type[T], path: Path) -> T | None:
         raise ValueError(f"{path}: {type(error).__name__}: {error}") from error
 
 
-def text_of(content: Mapping[str, Any], lines: Collection[str] = ()) -> str:
-    """A table as JSON; what stands under `lines` has a line, or, where it is a list, a line an item."""
-    rows = []
-    for name, value in content.items():
-        if name in lines and isinstance(value, list) and value:
-            inner = "[\n" + ",\n".join(f"  {json.dumps(item, allow_nan=False)}" for item in value) + "\n ]"
-        else:
-            inner = json.dumps(value, indent=None if name in lines else 1, allow_nan=False).replace("\n", "\n ")
-        rows.append(f" {json.dumps(name)}: {inner}")
-    return "{\n" + ",\n".join(rows) + "\n}\n"
+def text_of(content: Any, lines: Collection[str] = (), depth: int = 0) -> str:
+    """A table as JSON: what fits into WIDTH columns stands on a line, and whatever its length what stands under `lines`, or, where that is a list, each
+    of its items."""
+    whole = json.dumps(content, allow_nan=False)
+    if not isinstance(content, (dict, list)) or not content or (0 < depth and depth + len(whole) < WIDTH):
+        return whole
+
+    def under(name: str, value: Any) -> str:
+        if name not in lines:
+            return text_of(value, (), depth + 1)
+        items = [json.dumps(item, allow_nan=False) for item in value] if isinstance(value, list) else []
+        return "[\n  " + ",\n  ".join(items) + "\n ]" if items else json.dumps(value, allow_nan=False)
+
+    table = isinstance(content, dict)
+    rows = [f"{json.dumps(name)}: {under(name, value)}" for name, value in content.items()] if table else [text_of(item, (), depth + 1) for item in content]
+    space = "\n" + " " * depth
+    return f"{space} ".join(["{" if table else "[", f",{space} ".join(rows)]) + space + ("}" if table else "]")
 
 
 def write(record: Any, path: Path, lines: Collection[str] = (), digits: int | None = None) -> Path:
     """Write a record (or a table) beside its place and move it there, laid out as by text_of."""
     path.parent.mkdir(parents=True, exist_ok=True)
     new = path.with_name(f"{path.name}.new")
-    new.write_text(text_of(plain(record, digits), lines), encoding="utf-8")
+    new.write_text(text_of(plain(record, digits), lines) + "\n", encoding="utf-8")
     new.replace(path)
     return path

@@ -130,7 +130,7 @@ def main(arguments: list[str] | None = None) -> int:
     print(text(rows))
     for line in stale:
         print(f"gate of nothing: {line}")
-    minutes, skipped = sum(outcome.wall_s for _, outcome in made) / 60.0, sum(outcome.skipped for _, outcome in made)
+    minutes, skipped = sum(outcome.wall_s for _, (outcome, _) in made) / 60.0, sum(outcome.skipped for _, (outcome, _) in made)
     print(f"{len(made)} runs, {skipped} of them made before, {minutes:.1f} thread-minutes in all")
     print(f"ladder: {counted.words()}{f'; {len(stale)} gates of nothing' if stale else ''}; written to {out}")
     return 3 if counted.failed else 1 if counted.wrong or stale or not rows else 0

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from verification.harness import paths
+from verification.harness import paths, plan
 from verification.harness.choose import claimed, folder_name
-from verification.harness.load import Run, load
-from verification.harness.run import Job, Outcome, load_outcome, run
+from verification.harness.load import Run
+from verification.harness.run import Job, load_outcome
 from verification.harness.side_by_side import Task, Tell, say, side_by_side
 from verification.ladder.case import Case, Families, Level, Quantity, Sample
 from verification.ladder.gates import Gate, Key
@@ -40,7 +40,7 @@ class Rung:
         return before.wall_s if before is not None else 0.1 * 8.0 ** self.case.levels.index(self.level)
 
 
-Made = tuple[Rung, Outcome]  # a run and how it ended
+Made = tuple[Rung, plan.Made]
 
 
 def rungs_of(chosen: Families, smoke: bool = False, runs: Path = RUNS) -> list[Rung]:
@@ -54,14 +54,14 @@ def rungs_of(chosen: Families, smoke: bool = False, runs: Path = RUNS) -> list[R
 def make_one(rung: Rung, stop: threading.Event | None = None) -> Made:
     """Make one run unless it is there; another process that wants the same one waits for it."""
     with claimed(rung.folder):
-        return rung, run(rung.job(), stop=stop)
+        return rung, plan.make(rung.job(), stop)
 
 
 def make_all(rungs: list[Rung], jobs: int = 2, tell: Tell = say) -> list[Made]:
     """Make the runs of all rungs on `jobs` threads, those that take longest first; in the order given."""
 
     def words(made: Made) -> str:
-        outcome = made[1]
+        outcome = made[1][0]
         return f"FAILED: {outcome.reason}" if not outcome.ok else "done before" if outcome.skipped else f"{outcome.wall_s:.1f} s"
 
     names = [f"{rung.family}/{rung.case.name} {rung.level.label}" for rung in rungs]
@@ -136,8 +136,8 @@ def with_coarser(rows: list[Row]) -> list[tuple[Row | None, Row]]:
 def rows_of(made: list[Made]) -> list[Row]:
     """The rows of all runs, by case and quantity from coarse to fine, with their orders and without gates."""
     groups: dict[tuple[str, str], list[tuple[Rung, Run | str]]] = {}
-    for rung, outcome in made:
-        groups.setdefault((rung.family, rung.case.name), []).append((rung, _load(rung, outcome)))
+    for rung, own in made:
+        groups.setdefault((rung.family, rung.case.name), []).append((rung, measurable(rung, own)))
     rows = [row_of(rung, run, quantity) for group in groups.values() for quantity in group[0][0].case.quantities for rung, run in group]
     return [
         row if before is None or before.failure or row.failure else replace(row, order=order_of(before.error, row.error, before.size / row.size))
@@ -145,15 +145,11 @@ def rows_of(made: list[Made]) -> list[Row]:
     ]
 
 
-def _load(rung: Rung, outcome: Outcome) -> Run | str:
+def measurable(rung: Rung, made: plan.Made) -> Run | str:
     """The run of a rung, or why there is none."""
-    if not outcome.ok:
+    (outcome, run), asked = made, rung.case.mechanics
+    if not outcome.ok or run is None:
         return outcome.reason or f"exit status {outcome.exit_status}"
-    try:
-        run = load(rung.folder)
-    except Exception as error:  # whatever is wrong with a run's folder is told in its rows
-        return f"{type(error).__name__}: {error}"
-    asked = rung.case.mechanics
     return run if run.summary.mechanics == asked else f"the solver ran {run.summary.mechanics} instead of {asked}"
 
 

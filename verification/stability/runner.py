@@ -8,14 +8,14 @@ from verification.harness import paths
 from verification.harness.choose import claimed, folder_name
 from verification.harness.load import OF_SPEEDS, LoadError, Run, load
 from verification.harness.paths import ROOT
-from verification.harness.run import Job, Outcome, run, timed
+from verification.harness.plan import make
+from verification.harness.run import Job, Outcome
 from verification.harness.side_by_side import Tell
 from verification.stability.family import FAILED, GARBAGE, MARKED, REFUSED, STABLE, Checked, Family, Point, bisected
 from verification.stability.store import EdgeFound, PointFound, Record
 
 RUNS = paths.RUNS / "atlas"
 LIMIT_S = 120.0  # a run that takes longer is garbage: nobody knows what it would say
-CPU = "cpu_s.json"
 REASON_LENGTH = 400
 BAD_INPUT, NUMERICS_FAILED = 2, 3
 
@@ -25,26 +25,16 @@ def folder_of(family: Family, point: Point | PointFound, runs: Path = RUNS) -> P
     return runs / family.name / folder_name(point.label)
 
 
-def make(point: Point, folder: Path) -> tuple[Outcome, float]:
-    """A point's run and its CPU time (s), made unless it is there; another process that wants the same one waits for it."""
-    with claimed(folder):
-        outcome, (_, cpu_s) = timed(lambda: run(Job(point.scene, point.variant, folder, point.settings), limit_s=LIMIT_S))
-        if outcome.skipped and (folder / CPU).is_file():
-            return outcome, float(json.loads((folder / CPU).read_text(encoding="utf-8")))
-        (folder / CPU).write_text(json.dumps(round(cpu_s, 4)), encoding="utf-8")
-    return outcome, cpu_s
-
-
 def short(text: str) -> str:
     """A text in a line that is not too long, without the folder where it was run."""
     return " ".join(text.split()).replace(f"{ROOT}/", "")[:REASON_LENGTH]
 
 
-def of_failure(point: Point, outcome: Outcome, cpu_s: float) -> PointFound:
+def of_failure(point: Point, outcome: Outcome) -> PointFound:
     """What a run without a result is: refused, failed, or something that must not be (killed, crashed, without a reason)."""
     known = {BAD_INPUT: REFUSED, NUMERICS_FAILED: FAILED}.get(outcome.exit_status, GARBAGE)
     how = short(outcome.reason)
-    return PointFound(point.label, point.value, known if how else GARBAGE, None, how or "ended without a reason", round(cpu_s, 2))
+    return PointFound(point.label, point.value, known if how else GARBAGE, None, how or "ended without a reason", round(outcome.cpu_s, 2))
 
 
 def of_run(family: Family, point: Point, run: Run, cpu_s: float) -> PointFound:
@@ -60,15 +50,11 @@ def of_run(family: Family, point: Point, run: Run, cpu_s: float) -> PointFound:
 
 
 def found(family: Family, point: Point, runs: Path = RUNS) -> PointFound:
-    """How a point ends."""
+    """How a point ends; another process that wants the same run waits for it."""
     folder = folder_of(family, point, runs)
-    outcome, cpu_s = make(point, folder)
-    if not outcome.ok:
-        return of_failure(point, outcome, cpu_s)
-    try:
-        return of_run(family, point, load(folder), cpu_s)
-    except LoadError as error:
-        return PointFound(point.label, point.value, GARBAGE, None, short(str(error)), round(cpu_s, 2))
+    with claimed(folder):
+        outcome, run = make(Job(point.scene, point.variant, folder, point.settings), limit_s=LIMIT_S)
+    return of_run(family, point, run, outcome.cpu_s) if outcome.ok and run is not None else of_failure(point, outcome)
 
 
 def edge_of(family: Family, points: tuple[PointFound, ...], runs: Path = RUNS, tell: Tell = lambda _: None) -> EdgeFound | None:

@@ -9,7 +9,6 @@ for what wants a reason; ingredients without need that want none.
 
 import json
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,7 +20,7 @@ from verification.ablation.measure import NoBase, effects_of, left_out, table_of
 from verification.ablation.table import CHANGES, NEEDED, NOTHING, SPARED, Table, Tried, read_all, reasons, words, write
 from verification.harness.load import Run, load
 from verification.harness.paths import EXPERIMENTS
-from verification.harness.plan import Made
+from verification.harness.plan import Made, make_all
 from verification.harness.quantities import Effect, quantities_of
 from verification.harness.refine import REFINE_RUNS
 from verification.harness.run import Job, Outcome
@@ -158,7 +157,7 @@ def test_a_short_run_is_taken_apart(tmp_path: Path) -> None:
     """Both halves of the block give the scene's own result, no flow and no stress other ones, and the rock is one."""
     content = content_of(EXP1, "perfect", SHORT)
     changes = named(ingredients_of(content), ("flow", "symmetry", "prestress", "layering"))
-    table = table_of(content, EVERYTHING, changes, *left_out(EXP1, "perfect", SHORT, changes, tmp_path))
+    table = table_of(content, EVERYTHING, changes, *left_out(EXP1, "perfect", SHORT, changes, tmp_path), lambda jobs: make_all(jobs, 1))
     lines = {one.id: one for one in table.lines}
     assert {one.status for one in table.lines if one.applies} == {"completed"} and min(one.cpu_s for one in table.lines if one.applies) > 0.0
     assert lines["symmetry"].largest is not None and lines["symmetry"].largest < 1e-3 and not lines["symmetry"].lost
@@ -174,7 +173,7 @@ def test_what_cannot_be_run_has_no_table(tmp_path: Path, capsys: pytest.CaptureF
     assert ended.value.code == 2 and "divide" in capsys.readouterr().err
     base = Job(EXP1, "soft", tmp_path, ())
     with pytest.raises(NoBase, match="failed: a mechanism"):
-        table_of({}, EVERYTHING, [], base, [], lambda jobs: [(made_up(tmp_path / "run", 3, 2.4e6, 0.2e6, "a mechanism"), 0.0)])
+        table_of({}, EVERYTHING, [], base, [], lambda jobs: [made_up(tmp_path / "run", 3, 2.4e6, 0.2e6, "a mechanism")])
 
 
 def test_kept_tables_are_whole_and_explained() -> None:
@@ -280,10 +279,7 @@ def test_effects_are_differences_from_the_base_and_failures_are_failures(tmp_pat
     ran = [made_up(tmp_path / "base", 0, 2.40e6, 0.20e6), made_up(tmp_path / "mesh", 0, 2.37e6, 0.30e6), made_up(tmp_path, 2, 0.0, 0.0, "unknown key"),
            made_up(tmp_path / "rate", 3, 2.44e6, 0.04e6, "a mechanism", to_m=20.0)]  # fmt: skip
 
-    def maker(asked: Sequence[Job]) -> list[tuple[Made, float]]:
-        return [(ran.pop(0), 0.0) for _ in asked]
-
-    found = table_of(content, "quasistatic", changes, base, jobs, maker)
+    found = table_of(content, "quasistatic", changes, base, jobs, lambda asked: [ran.pop(0) for _ in asked])
     assert [name for name, _, _ in found.quantities] == ["start_Pa", "arrest_1_m", "restart_1_Pa", "pressure_at_40_Pa"]
     mesh, half, double = found.lines
     assert mesh.effects["start_Pa"].value == pytest.approx(-0.03e6) and mesh.effects["restart_1_Pa"].value == pytest.approx(0.07e6)

@@ -1,5 +1,6 @@
 """What all lists of cases share: records as JSON, choosing by name, tables, options."""
 
+import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -45,10 +46,14 @@ def test_a_record_is_read_as_it_was_written(tmp_path: Path) -> None:
 
 
 def test_a_record_has_an_item_a_line(tmp_path: Path) -> None:
-    """So that a change of one point is one line of difference; digits are as asked."""
-    lines = store.write(RECORD, tmp_path / "a.json", ("edge", "points"), digits=3).read_text(encoding="utf-8").splitlines()
+    """So that a change of one point is one line of difference; digits are as asked. Else what fits stands on a line, what does not has one an item."""
+    path = store.write(RECORD, tmp_path / "a.json", ("edge", "points"), digits=3)
+    lines = path.read_text(encoding="utf-8").splitlines()
     assert lines[:5] == ["{", ' "name": "a",', ' "edge": {"value": 1.5, "words": ""},', ' "points": [', '  {"value": null, "words": "none"},']
-    assert '  "y": 0.333' in lines
+    assert ' "plain": {"y": 0.333},' in lines and lines[-1] == "}"
+    long = {"a": [], "b": {"c": [{"d": "x" * store.WIDTH}, {"e": [1.0, {}]}]}}
+    told = store.text_of(long)
+    assert json.loads(told) == long and told.splitlines()[:3] == ["{", ' "a": [],', ' "b": {'] and '   {"e": [1.0, {}]}' in told.splitlines()
 
 
 @pytest.mark.parametrize("broken", ["{", "[]", '{"name": "a"}', '{"name": "a", "edge": 1, "points": [], "named": {}}',

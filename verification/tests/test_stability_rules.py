@@ -127,6 +127,6 @@ def test_what_a_run_is_and_one_that_was_killed() -> None:
         run: Any = SimpleNamespace(summary=SimpleNamespace(suspect=suspect))
         assert of_run(replace(family, check=lambda _, value=value: at_most(value, 1.0)), family.points[0], run, 0.0).outcome == outcome
     died = Outcome("scene", "", "failed", -9, "killed by signal 9", 1.0, "")
-    for exit_status, outcome in ((-9, GARBAGE), (1, GARBAGE), (124, GARBAGE), (2, REFUSED), (3, FAILED)):
-        assert of_failure(family.points[0], replace(died, exit_status=exit_status), 0.0).outcome == outcome
-    assert of_failure(family.points[0], replace(died, exit_status=3, reason=""), 0.0).outcome == GARBAGE
+    for exit_status, outcome in ((-9, GARBAGE), (0, GARBAGE), (1, GARBAGE), (124, GARBAGE), (2, REFUSED), (3, FAILED)):
+        assert of_failure(family.points[0], replace(died, exit_status=exit_status)).outcome == outcome
+    assert of_failure(family.points[0], replace(died, exit_status=3, reason="")).outcome == GARBAGE
