@@ -12,7 +12,7 @@ from pathlib import Path
 from verification.benchmarks import measure, record
 from verification.benchmarks.machine import Load, busy_processors, this_build, this_machine
 from verification.benchmarks.record import BAD, BAND, NEW, SLOWER, STEP, BadRecord, Figure, Line, Record, compare, marks
-from verification.harness.command import aligned
+from verification.harness.command import aligned, command
 from verification.harness.paths import RUNS
 
 LAST = RUNS / "bench" / "last.json"
@@ -25,7 +25,7 @@ QUICK_KERNELS = re.compile(r"step/\w+/\w+/flip/\w+/points4/cells80/|stage/|growt
 
 def parse(arguments: Sequence[str] | None) -> argparse.Namespace:
     """The options."""
-    parser = argparse.ArgumentParser(prog="ci/bench", description=__doc__)
+    parser = command("ci/bench", __doc__, "list", "out", out=LAST)
     parser.add_argument("--kernels", action="store_true", help="kernels and events only")
     parser.add_argument("--runs", action="store_true", help="whole runs only")
     parser.add_argument("--quick", action="store_true", help="fewer figures in fewer repetitions, under a minute; never recorded")
@@ -33,9 +33,7 @@ def parse(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("--only", default="", metavar="REGEX", help="figures whose names match")
     parser.add_argument("--record", action="store_true", help="keep what was measured in verification/benchmarks/records/")
     parser.add_argument("--force", action="store_true", help="record although the machine is busy")
-    parser.add_argument("--list", action="store_true", help="names of the kernels, nothing run")
     parser.add_argument("--load", type=float, default=None, help=argparse.SUPPRESS)  # load average when ci/bench began
-    parser.add_argument("--out", type=Path, default=LAST, help="where the figures go (default: runs/bench/last.json)")
     return parser.parse_args(arguments)
 
 

@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import Any
 
 from verification.benchmarks.record import STEP, Figure
-from verification.harness.load import read_summary
 from verification.harness.paths import EXPERIMENTS, ROOT
-from verification.harness.run import Job, run
+from verification.harness.plan import make
+from verification.harness.run import Job
 from verification.harness.scenes import STUDY_VARIANTS, variants_of
 
 # Beyond this working set a step waits for memory rather than for the core (twice a last cache of 32 MB).
@@ -170,8 +170,8 @@ def taken(job: Job, until: float) -> tuple[str, int]:
     if left <= 0.0:
         return "not begun: the time for these runs was over", 0
     with tempfile.TemporaryDirectory() as folder:
-        outcome = run(replace(job, out=Path(folder) / "run"), limit_s=left if math.isfinite(left) else None)
-        return ("", read_summary(Path(folder) / "run" / "summary.json").particles) if outcome.ok else (outcome.reason, 0)
+        outcome, run = make(replace(job, out=Path(folder) / "run"), limit_s=left if math.isfinite(left) else None)
+        return ("", run.summary.particles) if outcome.ok and run is not None else (outcome.reason, 0)
 
 
 def whole_figure(whole: Whole, rates: Rates = rates) -> Figure:
