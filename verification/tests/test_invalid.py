@@ -1,47 +1,52 @@
-"""Scenes that must be refused: with status 2, all that their head expects on stderr, and nothing written."""
+"""Scenes that must be refused: with status 2, all that is expected of them on stderr, and nothing written."""
 
 import re
 from pathlib import Path
 
 import pytest
 
+from verification.mistakes import changed, mistakes
 from verification.tests.cases import strata
 
-FOLDER = Path(__file__).resolve().parents[1] / "invalid"
-SCENES = sorted(FOLDER.glob("*.toml"))
-assert len(SCENES) >= 176  # as many mistakes as there were when this was written
+MISTAKES = mistakes()
+assert len(MISTAKES) >= 200  # as many as there were when this was written
 
 
-def head_lines(scene: Path, word: str) -> list[str]:
-    """The texts behind `# word: ` at the head of a scene."""
-    prefix = f"# {word}: "
-    return [line[len(prefix):] for line in scene.read_text().splitlines() if line.startswith(prefix)]
+@pytest.fixture()
+def place(tmp_path: Path) -> Path:
+    """Where a scene is, away from where the solver runs."""
+    (tmp_path / "scene").mkdir()
+    (tmp_path / "here").mkdir()
+    return tmp_path / "scene" / "mistake.toml"
 
 
-@pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.stem)
-def test_check_says_what_is_wrong(scene: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", MISTAKES)
+def test_check_says_what_is_wrong(name: str, place: Path, tmp_path: Path) -> None:
     """`check` ends with 2 and says, for every expected text, a line with the file's name that holds it."""
-    expected = head_lines(scene, "expect")
-    assert expected, "a scene in verification/invalid begins with # expect:"
-    done = strata(tmp_path, "check", str(scene))
-    assert done.returncode == 2, done.stderr
-    assert done.stdout == ""
-    for text in expected:
-        assert text in done.stderr
+    place.write_text(MISTAKES[name].text, encoding="utf-8")
+    done = strata(tmp_path / "here", "check", place)
+    assert (done.returncode, done.stdout) == (2, ""), done.stderr
+    assert MISTAKES[name].expect and all(text in done.stderr for text in MISTAKES[name].expect), done.stderr
     for line in done.stderr.splitlines():
-        assert re.match(re.escape(str(scene)) + r":\d+:\d+: \S", line), f"no place in: {line}"
+        assert re.match(re.escape(str(place)) + r":\d+:\d+: \S", line), f"no place in: {line}"
 
 
-@pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.stem)
-def test_run_writes_nothing(scene: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", MISTAKES)
+def test_run_writes_nothing(name: str, place: Path, tmp_path: Path) -> None:
     """`run` ends with 2 and leaves no folder behind; a mistake that only a variant makes is met with that variant."""
-    variant = head_lines(scene, "variant")
-    chosen = ["--variant", variant[0]] if variant else []
-    done = strata(tmp_path, "run", str(scene), *chosen, "--out", "X")
+    mistake = MISTAKES[name]
+    place.write_text(mistake.text, encoding="utf-8")
+    done = strata(tmp_path / "here", "run", place, *(["--variant", mistake.variant] if mistake.variant else []), "--out", "X")
     assert done.returncode == 2, done.stderr
-    for text in head_lines(scene, "expect"):
-        assert text in done.stderr or text.startswith("[variant")
-    assert list(tmp_path.iterdir()) == []
+    assert all(text in done.stderr or text.startswith("[variant") for text in mistake.expect), done.stderr
+    assert list((tmp_path / "here").iterdir()) == [] and [path.name for path in place.parent.iterdir()] == [place.name]
+
+
+def test_a_mistake_is_put_in_its_place() -> None:
+    """A section replaces that of its heading, a second one of the same heading and a new one stand behind the one before, at the end where none is."""
+    base = "[a]\nx = 1\n\n[b]\ny = 2\n\n[c]\nz = 3\n"
+    assert changed(base, "[b]\ny = 4\n[d]\n[b]\n", ["[c]"]) == "[a]\nx = 1\n\n[b]\ny = 4\n\n[d]\n\n[b]\n"
+    assert changed(base, "[d]\n", ["[a]"]) == "[b]\ny = 2\n\n[c]\nz = 3\n\n[d]\n" and changed("", "q = 1\n[a]\n", []) == "q = 1\n\n[a]\n"
 
 
 GOOD = """\
