@@ -1,8 +1,8 @@
 """Scenes that must be refused, each made of a sound one by a mistake: verification/invalid/*.toml.
 
 A table is a mistake: `expect`, texts that the solver must say; `scene`, sections in place of the base's with the same heading, others behind the one before
-(at the end where none is); `without`, headings of the base that are left out; `base`, whose sections are taken (by default "joint"); `variant`, with which
-a run meets it.
+(at the end where none is); `without`, headings of the base that are left out; `base`, the scene of verification/invalid/sound that it is made of (by default
+"joint"); `variant`, with which a run meets it.
 usage: python3 -m verification.mistakes FOLDER     (writes all scenes there, NAME.toml)
 """
 
@@ -14,90 +14,7 @@ from pathlib import Path
 
 FOLDER = Path(__file__).resolve().parent / "invalid"
 
-BASES = {
-    "": "",
-    "joint": """
-[domain]
-width_m = 80
-height_m = 80
-
-[in_situ]
-vertical_Pa = 3e6
-horizontal_Pa = 2e6
-
-[rock.stiff]
-youngs_modulus_Pa = 10e9
-poisson_ratio = 0.2
-
-[interface.joint]
-law = "friction"
-coefficient = 0.6
-
-[strata]
-layers = [{rock = "stiff", thickness_m = 10}, {rock = "stiff"}]
-interfaces = ["joint"]
-
-[fracture]
-path_m = [[40, 0], [40, 5]]
-
-[fluid]
-inlet = {start_Pa = 2e6, rate_Pa_s = 0.35e6}
-
-[numerics]
-cell_m = 1
-
-[stop]
-inlet_Pa = 4e6
-""",
-    "fed": """
-[domain]
-width_m = 80
-height_m = 80
-
-[in_situ]
-vertical_Pa = 3e6
-horizontal_Pa = 2e6
-
-[rock.stiff]
-youngs_modulus_Pa = 10e9
-poisson_ratio = 0.2
-
-[strata]
-layers = [{rock = "stiff"}]
-
-[fracture]
-path_m = [[40, 0], [40, 5]]
-
-[fluid]
-law = "reynolds"
-inlet = {rate_m2_s = 1e-4}
-
-[numerics]
-cell_m = 1
-mechanics = "quasistatic"
-
-[stop]
-tip_y_m = 70
-time_s = 100
-""",
-    "block": """
-[domain]
-width_m = 8
-height_m = 8
-
-[rock.stiff]
-youngs_modulus_Pa = 10e9
-
-[strata]
-layers = [{rock = "stiff"}]
-
-[numerics]
-cell_m = 1
-
-[stop]
-time_s = 1
-""",
-}
+BASES = {"": ""} | {path.stem: path.read_text(encoding="utf-8") for path in FOLDER.glob("sound/*.toml")}
 
 
 @dataclass(frozen=True)

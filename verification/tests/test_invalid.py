@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from verification.mistakes import changed, mistakes
+from verification.mistakes import BASES, changed, mistakes
 from verification.tests.cases import strata
 
 MISTAKES = mistakes()
@@ -40,6 +40,13 @@ def test_run_writes_nothing(name: str, place: Path, tmp_path: Path) -> None:
     assert done.returncode == 2, done.stderr
     assert all(text in done.stderr or text.startswith("[variant") for text in mistake.expect), done.stderr
     assert list((tmp_path / "here").iterdir()) == [] and [path.name for path in place.parent.iterdir()] == [place.name]
+
+
+@pytest.mark.parametrize("base", [name for name in BASES if name])
+def test_what_mistakes_are_made_in_is_sound(base: str, place: Path, tmp_path: Path) -> None:
+    place.write_text(BASES[base], encoding="utf-8")
+    done = strata(tmp_path, "check", place)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
 def test_a_mistake_is_put_in_its_place() -> None:
