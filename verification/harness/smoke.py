@@ -1,17 +1,27 @@
-"""The six experiments at smoke size in each mechanics, and the values of them that the regression keeps."""
+"""The six experiments at smoke size in each mechanics, and the values of them that the regression keeps.
+
+usage: ci/accept [--only exp1] [--mechanics explicit|quasistatic|both] [--dry-run]
+
+Rewrites experiments/expected/MECHANICS/*.json from runs at smoke size, and prints what differs from what was expected so far.
+"""
 
 import json
+import os
+import sys
 import threading
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from verification.harness import store
+from verification.harness.command import command
 from verification.harness.load import Run
 from verification.harness.observables import path_length, resample
 from verification.harness.paths import EXPERIMENTS, RUNS
 from verification.harness.plan import make
 from verification.harness.run import Job
 from verification.harness.scenes import MECHANICS, mechanics_of
+from verification.harness.side_by_side import Task, side_by_side
 
 EXPECTED = EXPERIMENTS / "expected"
 SMOKE_RUNS = RUNS / "smoke"
@@ -123,3 +133,42 @@ def measure_case(case: Case, stop: threading.Event | None = None) -> Values:
     if found.summary.mechanics != mechanics:
         raise RuntimeError(f"{'/'.join(case)}: the solver ran {found.summary.mechanics}")
     return measured_values(found)
+
+
+def changes(before: Values, now: Values) -> list[str]:
+    """A line for each value that is new, gone or changed."""
+    lines = []
+    for name in sorted(before.keys() | now.keys()):
+        old, new = before.get(name, {}).get("value"), now.get(name, {}).get("value")
+        if old != new:
+            outside = old is not None and new is not None and abs(new - old) > before[name]["tolerance"]
+            unit = (now.get(name) or before[name])["unit"]
+            lines.append(f"  {name}: {old} -> {new} {unit}{' (outside its tolerance)' if outside else ''}")
+    return lines
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run, print the changes and, unless asked not to, write."""
+    parser = command("ci/accept", __doc__, "mechanics", "jobs", jobs=os.cpu_count() or 1)
+    parser.add_argument("--only", default="", help="experiments whose name begins so")
+    parser.add_argument("--dry-run", action="store_true", help="print the differences, write nothing")
+    options = parser.parse_args(arguments)
+    every = [case for case in cases(MECHANICS if options.mechanics == "both" else (options.mechanics,)) if case[1].startswith(options.only)]
+    tasks = [Task("/".join(case), partial(measure_case, case), lambda values: f"{len(values)} values") for case in every]
+    measured = dict(zip(every, side_by_side(tasks, options.jobs)))
+    count = 0
+    for mechanics, experiment in dict.fromkeys(case[:2] for case in every):
+        before = read_expected(mechanics, experiment)
+        now = {case[2]: values for case, values in measured.items() if case[:2] == (mechanics, experiment)}
+        for variant in dict.fromkeys([*before, *now]):
+            lines = changes(before.get(variant, {}), now.get(variant, {}))
+            count += len(lines)
+            print("\n".join([f"{mechanics} {experiment} {variant}: {f'{len(lines)} differences' if lines else 'no difference'}", *lines]))
+        if not options.dry_run:
+            write_expected(mechanics, experiment, now)
+    print(f"ci/accept: {count} differences, {'nothing written' if options.dry_run else f'written to {EXPECTED}'}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
