@@ -134,8 +134,8 @@ def words(table: Table) -> str:
 
 
 def write(table: Table, folder: Path = RECORDS) -> Path:
-    """Keep a table; the file of an experiment's variant."""
-    return store.write(table, folder / f"{table.experiment}.{table.variant}.json")
+    """Keep a table, a change a line; the file of an experiment's variant."""
+    return store.write(table, folder / f"{table.experiment}.{table.variant}.json", ("lines",))
 
 
 def read_all(folder: Path = RECORDS) -> list[Table]:
