@@ -11,7 +11,7 @@ from pathlib import Path
 
 from verification.benchmarks import measure, record
 from verification.benchmarks.machine import Load, busy_processors, this_build, this_machine
-from verification.benchmarks.record import BAD, BAND, NEW, SLOWER, STEP, BadRecord, Figure, Line, Record, compare, marks
+from verification.benchmarks.record import BAD, BAND, NEW, SLOWER, STEP, Figure, Line, Record, compare, marks
 from verification.harness.command import aligned, command
 from verification.harness.paths import RUNS
 
@@ -136,7 +136,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     then = None
     try:
         then = record.last_of(now.machine)
-    except BadRecord as error:
+    except ValueError as error:
         print(f"ci/bench: not compared: {error}", file=sys.stderr)
     lines = compare(now, then) if then else []
     print("\n".join(report(now, lines, then)))

@@ -28,10 +28,6 @@ SLOWER, FASTER, SAME, NEW, GONE, BROKEN, UNJUDGED = "slower", "faster", "same", 
 BAD = (SLOWER, GONE, BROKEN)
 
 
-class BadRecord(Exception):
-    """A file of records that cannot be read; the message says where."""
-
-
 @dataclass(frozen=True)
 class Figure:
     """A cost, the less the better: seconds a unit of work (`per`), one value a repetition.
@@ -134,17 +130,17 @@ def as_json(record: Record) -> str:
 
 
 def records_in(path: Path) -> list[Record]:
-    """All records of a file, the oldest first; none where there is no file. Raises BadRecord."""
+    """All records of a file, the oldest first; none where there is no file. Raises ValueError."""
     known, found = {item.name for item in fields(Figure)}, []
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines() if path.is_file() else [], 1):
         try:
             content = json.loads(line)
             if (version := content.pop("format")) != FORMAT:
-                raise BadRecord(f"{path}:{number}: format {version}, not {FORMAT}")
+                raise ValueError(f"format {version}, not {FORMAT}")
             content["figures"] = [{key: value for key, value in figure.items() if key in known} for figure in content["figures"]]
             found.append(built(Record, content))
         except (ValueError, KeyError, TypeError) as error:
-            raise BadRecord(f"{path}:{number}: {type(error).__name__}: {error}") from error
+            raise ValueError(f"{path}:{number}: {type(error).__name__}: {error}") from error
     return found
 
 

@@ -4,14 +4,10 @@ import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from verification.harness.choose import twice
+from verification.harness.choose import refuse, twice
 from verification.harness.scenes import scenes_of, variants_of
 
 FILE = Path("choices") / "points.toml"  # below the folder of the scenes
-
-
-class BadChoice(Exception):
-    """A choice that names something which does not exist."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +35,7 @@ class Point:
 
 
 def read_points(experiments: Path) -> list[Point]:
-    """The open points of a folder of scenes, none where it has no such file; raises BadChoice for names that are not there."""
+    """The open points of a folder of scenes, none where it has no such file; raises ValueError for names that are not there."""
     path = experiments / FILE
     if not path.is_file():
         return []
@@ -49,11 +45,9 @@ def read_points(experiments: Path) -> list[Point]:
         points.append(Point(item["id"], item["open"], item["default"], tuple(choices)))
     known = {scene.stem: set(variants_of(scene)) for scene in scenes_of(experiments)}
     every = [choice for point in points for choice in point.choices]
-    if twice(choice.id for choice in every):
-        raise BadChoice("two choices have the same id")
+    refuse({"two choices have the same id": twice(choice.id for choice in every)})
     for choice, experiment, pairs in ((choice, *named) for choice in every for named in choice.runs.items()):
-        if experiment not in known:
-            raise BadChoice(f"choice {choice.id}: there is no experiment {experiment}")
-        if strangers := {*pairs, *pairs.values()} - known[experiment]:
-            raise BadChoice(f"choice {choice.id}: {experiment} has no variant {', '.join(sorted(strangers))}")
+        strangers = {*pairs, *pairs.values()} - known.get(experiment, set())
+        refuse({f"choice {choice.id}: there is no experiment {experiment}": experiment not in known,
+                f"choice {choice.id}: {experiment} has no variant {', '.join(sorted(strangers))}": strangers})  # fmt: skip
     return points

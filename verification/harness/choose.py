@@ -38,6 +38,13 @@ def twice(names: Iterable[str]) -> list[str]:
     return sorted({name for name in every if every.count(name) > 1})
 
 
+def refuse(wrong: Mapping[str, object]) -> None:
+    """Raises ValueError with the first of some words that are so."""
+    for words, is_so in wrong.items():
+        if is_so:
+            raise ValueError(words)
+
+
 def folder_name(label: str) -> str:
     """A label as the name of a folder: letters, digits, points and signs stay, anything else becomes a line."""
     return "".join(letter if letter.isalnum() or letter in ".+-=" else "_" for letter in label)

@@ -33,19 +33,15 @@ FINER, FINER_RECORD, CELLS = Path("set") / "0.5m", Path("expected") / "claims_0.
 CASE_KEYS = ("observable", "variant", "against", "against_scene", "at_least", "at_most")
 
 
-class BadClaim(Exception):
-    """A claim that cannot be evaluated as it is written."""
-
-
 def case_of(content: dict[str, Any], default_observable: str, where: str) -> Case:
-    """A case from its TOML table; raises BadClaim for one that could not fail."""
+    """A case from its TOML table; raises ValueError for one that could not fail."""
     name = str(content.get("observable", default_observable))
     if name not in OBSERVABLES:
-        raise BadClaim(f"{where}: no observable {name}; there are {', '.join(sorted(OBSERVABLES))}")
+        raise ValueError(f"{where}: no observable {name}; there are {', '.join(sorted(OBSERVABLES))}")
     if "at_least" not in content and "at_most" not in content:
-        raise BadClaim(f"{where}: {name} has neither at_least nor at_most, so it could not fail")
+        raise ValueError(f"{where}: {name} has neither at_least nor at_most, so it could not fail")
     if OBSERVABLES[name].compares != ("against" in content):
-        raise BadClaim(f"{where}: {name} {'needs' if OBSERVABLES[name].compares else 'takes no'} key against")
+        raise ValueError(f"{where}: {name} {'needs' if OBSERVABLES[name].compares else 'takes no'} key against")
     parameters = {key: value for key, value in content.items() if key not in CASE_KEYS}
     known = {key: content[key] for key in CASE_KEYS if key in content}
     return Case(**{**known, "observable": name}, parameters=parameters)
@@ -125,7 +121,7 @@ def readings_of(
         asked = [case_of(content, claim["observable"], where) for content in reading["case"]]
         choice_id = str(reading.get("choice", ""))
         if choice_id and choices and choice_id not in titles:
-            raise BadClaim(f"{where}: there is no choice {choice_id}")
+            raise ValueError(f"{where}: there is no choice {choice_id}")
         written.append((str(reading.get("name", choice_id)), choice_id, asked, not choice_id or len(asked) >= len(cases)))
     spoken_for = {choice_id for _, choice_id, _, _ in written}
     for choice in choices:
@@ -145,7 +141,7 @@ def evaluate(claim: dict[str, Any], experiment: str, runs: Runs, choices: Sequen
     where = f"{experiment}, claim {claim.get('id')}"
     for key in ("id", "text", "observable", "case", "why"):
         if not claim.get(key):
-            raise BadClaim(f"{where}: no {key}")
+            raise ValueError(f"{where}: no {key}")
     asked = [case_of(content, claim["observable"], where) for content in claim["case"]]
     cases = tuple(evaluate_case(case, experiment, runs) for case in asked)
     readings = readings_of(claim, asked, experiment, runs, choices, experiments)

@@ -122,12 +122,8 @@ def cell_levels(*cells_m: float, settings: tuple[str, ...] = (), variant: str = 
 Families = dict[str, tuple[Case, ...]]
 
 
-class BadCase(ValueError):
-    """A case that the ladder cannot judge; the message says which and why."""
-
-
 def families() -> Families:
-    """All families by name; raises BadCase for one that is not as it should be."""
+    """All families by name; raises ValueError for one that is not as it should be."""
     found = {name: tuple(cases) for name, cases in choose.listed(package, "CASES").items()}
     for family, members in found.items():
         check(family, members)
@@ -144,7 +140,7 @@ def about(family: str) -> str:
 
 
 def check(family: str, members: Iterable[Case]) -> None:
-    """Names are unique, sizes fall from level to level, something is measured; raises BadCase otherwise."""
+    """Names are unique, sizes fall from level to level, something is measured; raises ValueError otherwise."""
     members = tuple(members)
     double = {f"{family}: cases": choose.twice(case.name for case in members)}
     wrong = {}
@@ -161,9 +157,7 @@ def check(family: str, members: Iterable[Case]) -> None:
             f"{where}: {case.smoke} smoke levels of {len(case.levels)}": not 1 <= case.smoke <= len(case.levels),
         }
     wrong |= {f"{what} of the same name: {', '.join(names)}": names for what, names in double.items()}
-    for words, is_so in wrong.items():
-        if is_so:
-            raise BadCase(words)
+    choose.refuse(wrong)
 
 
 def chosen(known: Families, wanted: Iterable[str] = (), names: Iterable[str] = ()) -> Families:

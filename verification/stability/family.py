@@ -161,10 +161,6 @@ class Family:
         return words()["remark"].get(self.name, "")
 
 
-class BadFamily(ValueError):
-    """A family that the atlas cannot judge; the message says which and why."""
-
-
 def bisected(sound: Callable[[float], bool], good: float, bad: float, resolution: float) -> tuple[float, float]:
     """Where something ceases to hold: the last sound and first unsound value, halving what is between until they differ by `resolution` of the larger
     one. Raises ValueError where the first is not sound or the second one is."""

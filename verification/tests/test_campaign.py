@@ -10,7 +10,7 @@ import pytest
 from verification.harness import campaign as campaigns
 from verification.harness import choices, store
 from verification.harness.campaign import jobs_of, main
-from verification.harness.choices import BadChoice, read_points
+from verification.harness.choices import read_points
 from verification.harness.paths import EXPERIMENTS
 from verification.harness.plan import expected_s
 from verification.harness.run import Outcome, load_outcome
@@ -168,5 +168,5 @@ def test_a_choice_of_something_that_is_not_there_is_refused(scene: Path, name: s
     path.parent.mkdir()
     text = "[[point]]\nid = 'a'\nopen = 'b'\ndefault = 'c'\n[[point.choice]]\nid = 'd'\nname = 'e'\n"
     path.write_text(text + f"runs.{name} = {{plain = '{variant}'}}\n")
-    with pytest.raises(BadChoice, match="there is no experiment exp9" if name == "exp9" else "nobody"):
+    with pytest.raises(ValueError, match="there is no experiment exp9" if name == "exp9" else "nobody"):
         read_points(scene.parent)

@@ -2,22 +2,22 @@
 
 import sys
 
-from verification.harness.choose import folder_name, listed, twice
-from verification.stability.family import MARKED, SAFE, STABLE, BadFamily, Family
+from verification.harness.choose import folder_name, listed, refuse, twice
+from verification.stability.family import MARKED, SAFE, STABLE, Family
 
 
 def families() -> dict[str, Family]:
-    """All families by name, in the order of their modules' names and of each module; raises BadFamily."""
+    """All families by name, in the order of their modules' names and of each module; raises ValueError."""
     found = [family for members in listed(sys.modules[__name__], "FAMILIES").values() for family in members]
     for family in found:
         check(family)
-    if twice(family.name for family in found):
-        raise BadFamily(f"two families are called {', '.join(twice(family.name for family in found))}")
+    double = twice(family.name for family in found)
+    refuse({f"two families are called {', '.join(double)}": double})
     return {family.name: family for family in found}
 
 
 def check(family: Family) -> None:
-    """Labels are unique, scenes are there, smoke points are two or three; raises BadFamily otherwise."""
+    """Labels are unique, scenes are there, smoke points are two or three; raises ValueError otherwise."""
     double = twice(folder_name(point.label) for point in family.points)
     wrong = {
         f"points of the same label: {', '.join(double)}": double,
@@ -30,6 +30,4 @@ def check(family: Family) -> None:
     }
     for point in family.points:
         wrong[f"{point.label}: no scene {point.scene}"] = not point.scene.is_file()
-    for words, is_so in wrong.items():
-        if is_so:
-            raise BadFamily(f"{family.name}: {words}")
+    refuse({f"{family.name}: {words}": is_so for words, is_so in wrong.items()})
