@@ -53,6 +53,7 @@ def test_a_record_has_an_item_a_line(tmp_path: Path) -> None:
     assert ' "plain": {"y": 0.333},' in lines and lines[-1] == "}"
     long = {"a": [], "b": {"c": [{"d": "x" * store.WIDTH}, {"e": [1.0, {}]}]}}
     told = store.text_of(long)
+    assert store.text_of(long, ("c",)) == told, "of the record itself, not of what is in it"
     assert json.loads(told) == long and told.splitlines()[:3] == ["{", ' "a": [],', ' "b": {'] and '   {"e": [1.0, {}]}' in told.splitlines()
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from verification.harness import run as harness
 from verification.harness import store
+from verification.harness.plan import make
 from verification.harness.run import Job, Outcome, key_of, load_outcome, run
 from verification.tests.cases import wait_for
 from verification.tests.fake_run import program
@@ -85,6 +86,14 @@ def test_a_failure_is_kept_with_its_reason_and_tried_again_where_there_is_no_sum
     assert (outcome.status, outcome.exit_status, outcome.reason) == ("failed", exit_status, reason) and load_outcome(job.out) == outcome
     run(job, solver)
     assert calls(solver) == 2
+
+
+def test_a_run_that_completes_and_cannot_be_read_has_failed(tmp_path: Path, solver: Path, scene: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whoever makes runs finds data in every completed one; how it ended itself stays in its folder."""
+    monkeypatch.setenv("STRATA", str(solver))
+    outcome, found = make(Job(scene, "one", tmp_path / "out"))
+    assert (outcome.ok, outcome.word, found) == (False, "failed", None) and "it cannot be read: " in outcome.reason and "scene.toml" in outcome.reason
+    assert load_outcome(tmp_path / "out").ok  # type: ignore[union-attr]
 
 
 def interrupted(job: Job, solver: Path) -> Outcome:
