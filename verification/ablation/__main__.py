@@ -32,9 +32,10 @@ BUDGETED: dict[str, tuple[str, ...]] = {
 }
 
 Planned = tuple[dict[str, Any], str, list[Change], Job, list[Job]]  # of a scene's variant, as table_of takes it
+Plan = Callable[[Path, str], Planned | None]
 
 
-def planned(parser: argparse.ArgumentParser, options: argparse.Namespace, plan: Callable[[Path, str], Planned | None], usual: dict[str, tuple[str, ...]]) -> list[Planned]:
+def planned(parser: argparse.ArgumentParser, options: argparse.Namespace, plan: Plan, usual: dict[str, tuple[str, ...]]) -> list[Planned]:
     """What is to be made of the experiments and variants that are asked for; ends the command for bad input."""
     try:
         need_solver()

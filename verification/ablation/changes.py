@@ -196,8 +196,8 @@ def factors_of(content: dict[str, Any], mechanics: str) -> list[Change]:
     return [
         Change("mesh_half", "mesh", f"cells of {cell / 2.0:g} m", (half_cell,), group=NUMERICAL),
         # The direction of growth of a path that turns looks at both.
-        *([Change("mesh_increment_half", "mesh and increment", f"cells {cell / 2.0:g} m, increment {increment / 2.0:g} m", (half_cell, half_step), group=BESIDE)]
-          if turns(content) else []),
+        *([Change("mesh_increment_half", "mesh and increment", f"cells {cell / 2.0:g} m, increment {increment / 2.0:g} m", (half_cell, half_step),
+                  group=BESIDE)] if turns(content) else []),
         _step(content, mechanics),
         *(Change(f"ring_{r:g}", "J ring", f"{r:g} cells", (f"numerics.ring_cells={r!r}",), group=NUMERICAL) for r in RINGS),
         *(Change(f"particles_{n}", "particles", f"{n} a cell", (f"numerics.particles_per_cell={n}",), group=NUMERICAL) for n in counts),
