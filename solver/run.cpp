@@ -77,6 +77,9 @@ std::optional<std::string> reason_to_stop(const Scene& scene, const State& state
   if (stop.tip_y_m && tip != nullptr && tip_position(state, *tip).y() >= *stop.tip_y_m - 1e-3 * state.grid.h) {
     return fmt::format("tip reached y = {} m", *stop.tip_y_m);
   }
+  const Tip* lower = lower_tip(state);
+  if (stop.lower_tip_y_m && lower && tip_position(state, *lower).y() <= *stop.lower_tip_y_m + 1e-3 * state.grid.h)
+    return fmt::format("lower tip reached y = {} m", *stop.lower_tip_y_m);
   const bool stuck = !state.tips.empty() && std::ranges::none_of(state.tips, &Tip::growing);
   if (stuck && !stop.time_s && !stop.inlet_Pa) return "no tip can grow any further: " + state.tips.front().stopped_by;
   return std::nullopt;
@@ -327,7 +330,7 @@ int run_scene(const Scene& scene, const RunOptions& options) {
   set_up(scene, options);
   const RunFolder folder{options.out};
   make_folder(folder.path);
-  const Descriptor lock = lock_folder(folder.path);
+  const fmt::file lock = lock_folder(folder.path);
   if (!options.quiet) tell("{}\n", announce(scene));
   return run_anew(scene, options, folder, options.replace, start);
 }
@@ -335,7 +338,7 @@ int run_scene(const Scene& scene, const RunOptions& options) {
 int resume_run(const std::filesystem::path& dir, const RunOptions& options) {
   const Clock::time_point start = Clock::now();
   const RunFolder folder{dir};
-  const Descriptor lock = lock_folder(dir);
+  const fmt::file lock = lock_folder(dir);
   const ReadResult read = read_scene(folder.scene(), "", {});
   for (const std::string& error : read.errors) tell("{}\n", error_in_colour(error));
   if (!read.scene) return bad_input;

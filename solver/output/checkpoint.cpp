@@ -21,7 +21,7 @@ namespace {
 
 // A file is this line, with a number to be raised with every change of what is saved, the checksum of what follows,
 // the scene as it was resolved, what was written, and the state.
-constexpr std::string_view magic = "strata-checkpoint 15\n";
+constexpr std::string_view magic = "strata-checkpoint 16\n";
 
 template <class T, class Plain>
 concept Is = std::is_same_v<std::remove_const_t<T>, Plain>;

@@ -1,21 +1,12 @@
 // result.h5: the fields of a run at its output times, and result.xdmf, through which ParaView reads them.
-//
-//   attributes scene, version    what the run was made with: the resolved scene, the version of strata that began it
-//   /times                       time of each output (s)
-//   /history/<column>            the columns of history.csv
-//   /fracture/00000/...          at the fracture's vertices: x_m, y_m, arc_m, opening_m, slip_m, pressure_Pa,
-//                                permeability_m2; attributes time_s, inlet_Pa
-//   /interfaces/00000/<k>/...    at the points of the scene's interface k, from 0: x_m, y_m, opening_m, slip_m,
-//                                reaction_n_Pa, reaction_t_Pa, failed_s, split (0 or 1); attributes law, at_m
-//   /particles/00000/...         in the order of their id: id, rock, x_m, y_m, u_x_m, u_y_m, v_x_m_s, v_y_m_s, s_xx_Pa,
-//                                s_yy_Pa, s_xy_Pa (total stress, tension positive), volume_m2; attribute time_s
-//
-// Each of these groups has paraview/position_m, the particles' paraview/displacement_m and velocity_m_s as well: (n, 3)
-// made of the above with z = 0, virtual; and paraview/order: 0 to n - 1. Every data set has attributes `unit` and
-// `description`, and the .xdmf names all that the groups hold. The number of particles may change. The normal points
-// from the - to the + side, on the left of the path, along which the tangent runs. Particles are stored in single
-// precision, all else in double. While a run goes on each output time is a file of its own, RunFolder::fields(k), with
-// the same paths: it costs the same whatever was written before, and whenever the process is killed all can be read.
+// Its attributes `scene` and `version` say what the run was made with. /times are the output times, /history has the
+// columns of history.csv; /fracture/00000, /particles/00000 (in the order of their id) and /interfaces/00000/<k> (of
+// the scene's interface k, from 0) the fields at the first output time, which fields.cpp lists. Every data set has
+// attributes `unit` and `description`, and the .xdmf names all that these groups hold. The number of particles may
+// change. The normal points from the - to the + side, on the left of the path, along which the tangent runs. Particles
+// are stored in single precision, all else in double. While a run goes on each output time is a file of its own,
+// RunFolder::fields(k), with the same paths: it costs the same whatever was written before, and whenever the process is
+// killed all can be read.
 #pragma once
 
 #include <cstddef>

@@ -67,6 +67,12 @@ const Tip* leading_tip(const State& state) {
   });
 }
 
+const Tip* lower_tip(const State& state) {
+  const Tip* leading = leading_tip(state);
+  if (leading == nullptr || state.tips.size() < 2) return nullptr;
+  return leading == &state.tips.front() ? &state.tips.back() : &state.tips.front();
+}
+
 double mouth_opening(const State& state) {
   if (!state.has_fracture) return 0.0;
   const Surface& fracture = state.fracture();
@@ -93,9 +99,13 @@ double leaked_volume(const State& state) {
 
 // Those that the first versions had come first, so that files of all can be laid side by side.
 std::vector<HistoryColumn> history_columns(const Scene& scene, const State& state) {
-  const Tip* tip = leading_tip(state);
-  const Vec2 x = tip ? tip_position(state, *tip) : Vec2{nan, nan};
-  const TipNumbers told = tip ? tip_numbers(scene, *tip) : TipNumbers{nan, nan, nan, nan, nan, ""};
+  const auto numbers_of = [&](const Tip* tip) {
+    return tip ? tip_numbers(scene, *tip) : TipNumbers{nan, nan, nan, nan, nan, ""};
+  };
+  const auto place_of = [&](const Tip* tip) { return tip ? tip_position(state, *tip) : Vec2{nan, nan}; };
+  const Tip *tip = leading_tip(state), *lower = lower_tip(state);
+  const Vec2 x = place_of(tip);
+  const TipNumbers told = numbers_of(tip), told_of_lower = numbers_of(lower);
   std::vector<HistoryColumn> all{
       {"time_s", "s", state.time, "time"},
       {"inlet_Pa", "Pa", state.has_fracture ? state.fluid.inlet_Pa : 0.0, "fluid pressure at the inlet"},
@@ -139,6 +149,11 @@ std::vector<HistoryColumn> history_columns(const Scene& scene, const State& stat
     all.push_back({"G_along_N_m", "N/m", tip ? tip->G_along : nan,
                    "energy released per length by parting the interface, over crossing_increment_m"});
   }
+  all.insert(all.end(), {{"lower_tip_y_m", "m", place_of(lower).y(), "place of the lower one of two tips: y"},
+                         {"lower_tip_K_I_Pa_sqrt_m", "Pa m^0.5", told_of_lower.K_I_Pa_sqrt_m,
+                          "K_I of the lower tip, from the interaction integral"},
+                         {"lower_tip_K_II_Pa_sqrt_m", "Pa m^0.5", told_of_lower.K_II_Pa_sqrt_m,
+                          "K_II of the lower tip, from the interaction integral"}});
   return all;
 }
 

@@ -26,6 +26,9 @@ const char* name_of(Obstacle what);
 /// The tip with the largest y, the first of equal ones, or nullptr where there is none; throws nothing.
 const Tip* leading_tip(const State& state);
 
+/// The tip that is not the leading one, or nullptr where there are not two; throws nothing.
+const Tip* lower_tip(const State& state);
+
 /// Opening face to face (m) at the end of the fracture on the symmetry line y = 0 or, where none lies there, the
 /// largest of its vertices; 0 without a fracture. Throws nothing.
 double mouth_opening(const State& state);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <fmt/os.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -9,7 +10,6 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <utility>
 
 namespace strata {
 
@@ -31,25 +31,12 @@ struct RunFolder {
   std::filesystem::path fields(std::size_t k) const { return all_fields() / fmt::format("{:05}.h5", k); }
 };
 
-// An open file or folder of the system; -1 where it could not be opened.
-class Descriptor {
- public:
-  Descriptor(const std::filesystem::path& file, int flags);
-  Descriptor(Descriptor&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-  Descriptor& operator=(Descriptor&&) = delete;
-  ~Descriptor();
-  int get() const { return descriptor_; }
-
- private:
-  int descriptor_;
-};
-
 /// Makes a folder, with its parents, where it is missing. Throws OutputFailure where it cannot be made.
 void make_folder(const std::filesystem::path& folder);
 
 /// Locks a folder for the process that writes to it, until what is returned goes or the process ends; on a file system
 /// without locks nothing is locked. Throws OutputFailure where it is locked already or cannot be opened.
-Descriptor lock_folder(const std::filesystem::path& folder);
+fmt::file lock_folder(const std::filesystem::path& folder);
 
 /// Makes way for a run: throws OutputFailure, saying what may be done, where the folder holds one, unless `replace`,
 /// which removes that one's files but scene.toml, which the new run's replaces in one piece: it can always be resumed.

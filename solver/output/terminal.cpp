@@ -85,6 +85,11 @@ double fraction_done(const Scene& scene, const State& state) {
     const double start = std::ranges::max(scene.fracture->path_m, {}, [](const auto& x) { return x[1]; })[1];
     done = std::max(done, way(start, *stop.tip_y_m, tip_position(state, *tip).y()));
   }
+  const Tip* lower = lower_tip(state);
+  if (stop.lower_tip_y_m && lower) {
+    const double start = std::ranges::min(scene.fracture->path_m, {}, [](const auto& x) { return x[1]; })[1];
+    done = std::max(done, way(-start, -*stop.lower_tip_y_m, -tip_position(state, *lower).y()));
+  }
   return done;
 }
 

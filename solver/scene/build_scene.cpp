@@ -111,8 +111,8 @@ void check_required(Reading& reading) {
                    "fluid.inlet is missing; a fracture needs it. Give inlet = {{start_Pa = 2e6, rate_Pa_s = 0.35e6}} "
                    "in [fluid].");
   }
-  if (none("stop.tip_y_m", "stop.inlet_Pa", "stop.time_s"))
-    reading.refuse("stop", "nothing ends the run. Give tip_y_m, inlet_Pa or time_s in [stop].");
+  if (none("stop.tip_y_m", "stop.lower_tip_y_m", "stop.inlet_Pa", "stop.time_s"))
+    reading.refuse("stop", "nothing ends the run. Give tip_y_m, lower_tip_y_m, inlet_Pa or time_s in [stop].");
 }
 
 // Index of the element whose name was given for `path`, or a fault that lists the names there are.

@@ -125,7 +125,9 @@ std::vector<GrowthWay> ways_of_growth(const Scene& scene) {
   }
   std::vector<GrowthWay> ways;
   for (const auto& [tip, d] : rays) {
-    const double length = std::min(longest, way_to_edge(scene.domain, tip, d));
+    const bool to_stop = scene.stop.lower_tip_y_m && d[1] < 0.0;
+    const double length = std::min(to_stop ? std::max(0.0, (*scene.stop.lower_tip_y_m - tip[1]) / d[1]) : longest,
+                                   way_to_edge(scene.domain, tip, d));
     ways.push_back({{tip[0] + length * d[0], tip[1] + length * d[1]}, length});
   }
   return ways;

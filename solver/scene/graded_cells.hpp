@@ -28,8 +28,8 @@ struct GrowthWay {
   double length = 0.0;          // m
 };
 
-/// The ways of all tips that may grow, each in the direction of its end of the path: up to stop.tip_y_m, or else to the
-/// block's edge; a tip that does not go up goes as far as the one that does.
+/// The ways of all tips that may grow, each in the direction of its end of the path: up to stop.tip_y_m (of the lower
+/// to stop.lower_tip_y_m), or else to the block's edge; a tip that does not go up goes as far as the one that does.
 std::vector<GrowthWay> ways_of_growth(const Scene& scene);
 
 /// Stretches along x (axis 0) or y (1) on which all cells are of cell_m: around the fracture and the straight way of

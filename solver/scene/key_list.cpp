@@ -275,6 +275,8 @@ constexpr Key keys[] = {
            "pressure, over the largest net one. Steps with four times as much are tried again with half the length."),
     number("stop.tip_y_m", at<&Scene::stop, &Stop::tip_y_m>, "m", positive, "Ends the run when a tip is as high.",
            "y is counted upwards from the block's lower edge."),
+    number("stop.lower_tip_y_m", at<&Scene::stop, &Stop::lower_tip_y_m>, "m", positive,
+           "Ends the run when the lower one of two tips has come down to it."),
     number("stop.inlet_Pa", at<&Scene::stop, &Stop::inlet_Pa>, "Pa", finite,
            "Ends the run when the inlet pressure is as high."),
     number("stop.time_s", at<&Scene::stop, &Stop::time_s>, "s", not_negative,

@@ -264,7 +264,7 @@ struct Numerics {
 
 // The first bound reached ends the run; one that is absent does not stop it.
 struct Stop {
-  std::optional<double> tip_y_m;
+  std::optional<double> tip_y_m, lower_tip_y_m;
   std::optional<double> inlet_Pa;
   std::optional<double> time_s;
   bool operator==(const Stop&) const = default;

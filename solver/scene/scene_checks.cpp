@@ -171,18 +171,26 @@ void check_fracture(Reading& reading, bool cells_sound) {
 // Stops that have no meaning, or that the start has passed already.
 void check_stop_values(Reading& reading) {
   const Scene& scene = reading.scene;
-  for (const char* path : {"stop.tip_y_m", "stop.inlet_Pa"})
+  for (const char* path : {"stop.tip_y_m", "stop.lower_tip_y_m", "stop.inlet_Pa"})
     reading.refuse_if(!scene.fracture, path, "cannot be reached: the scene has no [fracture]. Use stop.time_s.");
   if (!scene.fracture) return;
   const double height_m = scene.domain.height_m, tip_y_m = scene.stop.tip_y_m.value_or(0.0);
   reading.refuse_if(reading.usable("domain.height_m") && tip_y_m >= height_m, "stop.tip_y_m",
                     "is not below the top of the block at {} m. {}", height_m, upwards(height_m));
   if (reading.usable("fracture.path_m")) {
-    const double tip_m = std::max(scene.fracture->path_m.front()[1], scene.fracture->path_m.back()[1]);
+    const auto [low_m, tip_m] = std::minmax(scene.fracture->path_m.front()[1], scene.fracture->path_m.back()[1]);
     reading.refuse_if(tip_y_m <= tip_m, "stop.tip_y_m",
                       "ends the run before it starts: a tip is at y = {} m. Give more than that.", tip_m);
+    const bool one_tip = scene.domain.bottom == Edge::symmetry && low_m == 0.0;
+    reading.refuse_if(one_tip, "stop.lower_tip_y_m",
+                      "is never reached: the fracture begins on the symmetry line and has no lower tip. Use "
+                      "bottom = \"traction\" and a path inside the block, or leave it out.");
+    reading.refuse_if(!one_tip && scene.stop.lower_tip_y_m >= low_m, "stop.lower_tip_y_m",
+                      "ends the run before it starts: the lower tip is at y = {} m. Give less than that.", low_m);
   }
   const bool pressed = !scene.fluid.rate_m2_s && scene.fluid.table.empty() && reading.sound("fluid.inlet.start_Pa");
+  reading.refuse_if(scene.fracture->growth == Fracture::Growth::none, "stop.lower_tip_y_m",
+                    "is never reached: the fracture does not grow (fracture.growth = \"none\"). Leave it out.");
   reading.refuse_if(pressed && scene.fluid.start_Pa >= scene.stop.inlet_Pa, "stop.inlet_Pa",
                     "ends the run before it starts: fluid.inlet.start_Pa = {}. Give more than that.",
                     scene.fluid.start_Pa);
@@ -191,7 +199,8 @@ void check_stop_values(Reading& reading) {
 // Whether one of the stops given is sure to be reached: a fracture under a pressure that does not rise may stay; one
 // that is fed at a rate grows, or takes ever more pressure where it may not.
 void check_end(Reading& reading) {
-  const bool by_inlet = reading.given("stop.inlet_Pa"), by_tip = reading.given("stop.tip_y_m");
+  const bool by_inlet = reading.given("stop.inlet_Pa"), by_upper = reading.given("stop.tip_y_m");
+  const bool by_tip = by_upper || reading.given("stop.lower_tip_y_m");
   if (!reading.scene.fracture || reading.given("stop.time_s") || (!by_inlet && !by_tip)) return;
   for (const char* path : {"fluid.inlet.rate_Pa_s", "fluid.inlet.rate_m2_s", "fracture.growth"})
     if (!reading.sound(path)) return;
@@ -202,7 +211,8 @@ void check_end(Reading& reading) {
   const bool grows = reading.scene.fracture->growth != Fracture::Growth::none;
   const bool rises = fed ? !grows : rate_Pa_s > 0.0;
   if ((by_inlet && rises) || (by_tip && grows && (fed || rises))) return;
-  reading.refuse(by_inlet ? "stop.inlet_Pa" : "stop.tip_y_m", "the run could never end: {}. Give stop.time_s too.",
+  const char* stop = by_inlet ? "stop.inlet_Pa" : by_upper ? "stop.tip_y_m" : "stop.lower_tip_y_m";
+  reading.refuse(stop, "the run could never end: {}. Give stop.time_s too.",
                  rises ? "the fracture does not grow (fracture.growth = \"none\")"
                  : fed ? "the pressure of a fracture fed at a rate falls as it grows"
                        : fmt::format("the inlet pressure does not rise (fluid.inlet.rate_Pa_s = {})", rate_Pa_s));

@@ -10,9 +10,9 @@
 #include <random>
 
 #include "output/fields.hpp"
-#include "output/hdf5_io.hpp"
 #include "output/recorder.hpp"
 #include "output_state.hpp"
+#include "result_file.hpp"
 
 using namespace strata;
 using namespace strata::test;
@@ -53,7 +53,7 @@ void require_whole(const std::filesystem::path& path, std::size_t k) {
     REQUIRE(hdf5::read(file, fmt::format("particles/{:05}/{}", k, field)).size() == made_state().particles.size());
   }
   REQUIRE(hdf5::read(file, fmt::format("fracture/{:05}/pressure_Pa", k)) == made_state().fluid.P);
-  REQUIRE(hdf5::exists(file, fmt::format("interfaces/{:05}", k)));
+  REQUIRE(file.nameExists(fmt::format("interfaces/{:05}", k)));
 }
 
 }  // namespace
@@ -219,7 +219,7 @@ TEST_CASE("a folder that holds a run is refused unless it is to be replaced, whi
 TEST_CASE("a folder has one writer, until that is gone") {
   const TemporaryFolder folder;
   {
-    const Descriptor lock = lock_folder(folder.path);
+    const fmt::file lock = lock_folder(folder.path);
     CHECK_THROWS_WITH(lock_folder(folder.path), Catch::Contains("in use by a run"));
   }
   CHECK_NOTHROW(lock_folder(folder.path));

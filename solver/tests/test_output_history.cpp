@@ -18,7 +18,8 @@ TEST_CASE("history.csv starts with the columns of the contract, in its order") {
           "fracture_volume_m2,kinetic_J,strain_J,interface_strain_J,fluid_work_J,in_situ_work_J,edge_work_J,damping_J,"
           "transfer_J,integration_J,friction_J,failure_J,fracture_J,excess_J,energy_closure,J_spread,kink_deg,at_"
           "interface,ring_m,"
-          "G_N_m,G_by_J_N_m,fluid_volume_balance,body_work_J,initial_kinetic_J,near\n");
+          "G_N_m,G_by_J_N_m,fluid_volume_balance,body_work_J,initial_kinetic_J,near,"
+          "lower_tip_y_m,lower_tip_K_I_Pa_sqrt_m,lower_tip_K_II_Pa_sqrt_m\n");
 }
 
 TEST_CASE("a row says of the state what the state says") {
@@ -86,6 +87,8 @@ TEST_CASE("the tip reported is the highest one") {
   Numbers number{500};
   state.tips.push_back(made_tip(false, number));
   CHECK(leading_tip(state) == &state.tips[0]);
+  CHECK(of(history_row(made_scene(), state), "lower_tip_y_m") == 0.0);  // closed: without numbers, as a leading one
+  CHECK(std::isnan(of(history_row(made_scene(), state), "lower_tip_K_I_Pa_sqrt_m")));
   state.fracture().vertices[0].x = {7.0, 3.0};
   CHECK(leading_tip(state) == &state.tips[1]);
   const HistoryRow row = history_row(made_scene(), state);
@@ -93,6 +96,9 @@ TEST_CASE("the tip reported is the highest one") {
   CHECK(of(row, "height_m") == 3.0);
   CHECK(of(row, "ring_m") == state.tips[1].ring_m);
   CHECK(of(row, "at_interface") == 0.0);
+  CHECK(of(row, "lower_tip_y_m") == 2.0);
+  CHECK(of(row, "lower_tip_K_I_Pa_sqrt_m") == state.tips[0].K_I);
+  CHECK(of(row, "lower_tip_K_II_Pa_sqrt_m") == state.tips[0].K_II);
 }
 
 TEST_CASE("without a fracture what belongs to a tip is nan, volume and opening are 0") {
@@ -101,9 +107,22 @@ TEST_CASE("without a fracture what belongs to a tip is nan, volume and opening a
   state.surfaces.erase(state.surfaces.begin());
   state.tips.clear();
   const HistoryRow row = history_row(made_scene(), state);
-  const std::set<std::string> absent = {"tip_x_m",        "tip_y_m",    "height_m", "J_N_m",        "K_I_Pa_sqrt_m",
-                                        "K_II_Pa_sqrt_m", "J_spread",   "kink_deg", "at_interface", "ring_m",
-                                        "G_N_m",          "G_by_J_N_m", "near"};
+  const std::set<std::string> absent = {"tip_x_m",
+                                        "tip_y_m",
+                                        "height_m",
+                                        "J_N_m",
+                                        "K_I_Pa_sqrt_m",
+                                        "K_II_Pa_sqrt_m",
+                                        "J_spread",
+                                        "kink_deg",
+                                        "at_interface",
+                                        "ring_m",
+                                        "G_N_m",
+                                        "G_by_J_N_m",
+                                        "near",
+                                        "lower_tip_y_m",
+                                        "lower_tip_K_I_Pa_sqrt_m",
+                                        "lower_tip_K_II_Pa_sqrt_m"};
   for (std::size_t c = 0; c < row.size(); ++c) {
     INFO(history_columns()[c].name);
     CHECK(std::isnan(row[c]) == absent.contains(history_columns()[c].name));

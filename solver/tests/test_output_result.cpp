@@ -6,9 +6,9 @@
 #include <thread>
 
 #include "output/fields.hpp"
-#include "output/hdf5_io.hpp"
 #include "output/recorder.hpp"
 #include "output_state.hpp"
+#include "result_file.hpp"
 
 using namespace strata;
 using namespace strata::test;
@@ -41,21 +41,18 @@ std::filesystem::path result_of(const TemporaryFolder& folder, const std::vector
 }
 
 // All that the file says, with the paths: equal texts mean equal content.
-std::string dump(hdf5::Id parent, const std::string& path) {
+std::string dump(const H5::Group& parent, const std::string& path) {
   std::string text;
   for (const std::string& name : hdf5::names(parent, path)) {
     const std::string at = path + "/" + name;
     text += at;
-    try {
-      const auto values = hdf5::read(parent, at);
-      text += fmt::format(" [{}]", hdf5::text_attribute(parent, at, "unit"));
-      CHECK(hdf5::text_attribute(parent, at, "description").size() > 3);
-      for (const double value : values) text += fmt::format(" {}", value);
-      text += "\n";
-    } catch (const std::runtime_error&) {  // a group
-      text += '\n';
-      text += dump(parent, at);
+    if (hdf5::is_group(parent, at)) {
+      text += '\n' + dump(parent, at);
+      continue;
     }
+    text += fmt::format(" [{}]", hdf5::text_attribute(parent, at, "unit"));
+    CHECK(hdf5::text_attribute(parent, at, "description").size() > 3);
+    text += fmt::format(" {}\n", fmt::join(hdf5::read(parent, at), " "));
   }
   return text;
 }
@@ -104,11 +101,11 @@ TEST_CASE("large fields are packed without loss") {
       label[k] = static_cast<std::int32_t>(k);
     }
     for (const bool packed : {false, true}) {
-      hdf5::write_file(path, [&](hdf5::Id root) {
+      hdf5::write_file(path, [&](const H5::Group& root) {
         hdf5::write(root, "smooth", smooth, {"Pa", "a wave"}, packed);
         hdf5::write(root, "label", label, {"1", "a number"}, packed);
       });
-      const hdf5::Handle file = hdf5::open_file(path);
+      const H5::H5File file = hdf5::open_file(path);
       const std::vector<double> read = hdf5::read(file, "smooth"), labels = hdf5::read(file, "label");
       CHECK(std::equal(read.begin(), read.end(), smooth.begin(), smooth.end(),
                        [](double a, float b) { return a == static_cast<double>(b); }));
@@ -180,7 +177,7 @@ TEST_CASE("particles are written in the order of their id, and their number may 
     CHECK(hdf5::names(file, at_k).size() == 12 + 1);  // and what ParaView takes
     REQUIRE(x.size() == p.size());
     const auto moved = field("paraview/displacement_m", "m"), runs = field("paraview/velocity_m_s", "m/s");
-    CHECK(hdf5::layout(file, at_k + "paraview/displacement_m").shape == std::vector<std::uint64_t>{p.size(), 3});
+    CHECK(hdf5::shape(file, at_k + "paraview/displacement_m") == std::vector<hsize_t>{p.size(), 3});
     for (std::size_t q = 0; q < p.size(); ++q) {
       const auto at = static_cast<std::size_t>(p.id[q]);  // ids of the made-up particles are 0 to n - 1
       CHECK(ids[at] == static_cast<double>(at));
@@ -239,8 +236,7 @@ TEST_CASE("the .xdmf names data sets that exist, of the shape they have") {
     const std::string path = text.substr(at + 11, text.find('<', at) - at - 11);
     INFO(path);
     const std::size_t dimensions = text.rfind("Dimensions=\"", at) + 12;
-    CHECK(fmt::format("{}\">", fmt::join(hdf5::layout(file, path).shape, " ")) ==
-          text.substr(dimensions, at - dimensions));
+    CHECK(fmt::format("{}\">", fmt::join(hdf5::shape(file, path), " ")) == text.substr(dimensions, at - dimensions));
     ++items;
   }
   CHECK(items == 2 * ((4 + 10) + (2 + 5) + (2 + 6)));  // particles, fracture, one interface
@@ -254,9 +250,9 @@ TEST_CASE("a scene without fracture and interfaces has particles alone") {
   state.has_fracture = false;
   state.surfaces.clear();
   const auto file = hdf5::open_file(result_of(folder, {state}));
-  CHECK(hdf5::exists(file, "particles/00000/x_m"));
-  CHECK_FALSE(hdf5::exists(file, "fracture/00000"));
-  CHECK_FALSE(hdf5::exists(file, "interfaces/00000"));
+  CHECK(file.nameExists("particles/00000/x_m"));
+  CHECK_FALSE(file.nameExists("fracture/00000"));
+  CHECK_FALSE(file.nameExists("interfaces/00000"));
   CHECK(content_of(folder.path / "result.xdmf").find("fracture") == std::string::npos);
 }
 

@@ -5,8 +5,8 @@
 #include "interfaces/surface_law.hpp"
 #include "output/checkpoint.hpp"
 #include "output/fields.hpp"
-#include "output/hdf5_io.hpp"
 #include "output_state.hpp"
+#include "result_file.hpp"
 #include "small_scenes.hpp"
 
 using namespace strata;

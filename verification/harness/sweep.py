@@ -39,7 +39,7 @@ from verification.harness.command import command
 from verification.harness.load import LoadError, Run, read_history
 from verification.harness.paths import ROOT, RUNS, need_solver, solver
 from verification.harness.plan import Made, make
-from verification.harness.run import CUT_SHORT, FINAL, Job, done_before, load_outcome
+from verification.harness.run import CUT_SHORT, FINAL, Job, done_before, load_outcome, summary_in
 from verification.harness.side_by_side import Task, duration, say, side_by_side
 
 TRIES = 3  # of runs that are killed each time
@@ -126,7 +126,7 @@ def missing(jobs: Sequence[Job], observe: str) -> list[Job]:
 def row_of(job: Job) -> Row:
     """A run's row: its name and keys, how it ended, what was observed."""
     outcome, kept = load_outcome(job.out), kept_of(job)
-    status, reason = ("missing", "not made") if outcome is None else (outcome.word, outcome.reason)
+    status, reason = ("missing", "not made") if outcome is None else (outcome.word, outcome.reason or str(summary_in(job.out).get("reason", "")))
     if status == "completed" and "row" not in kept:
         status, reason = "failed", kept.get("why", "completed, but what it wrote cannot be read")
     return {"run": job.out.name, **axes_of(job), "status": status, "reason": reason, **(kept["row"] if status == "completed" else {})}

@@ -6,6 +6,7 @@ one, a run done before taken for one that failed since, rows in the order of the
 """
 
 import csv
+import json
 import math
 import os
 import signal
@@ -137,6 +138,7 @@ def test_failures_are_rows_and_no_kill_changes_a_table(tmp_path: Path) -> None:
     rows = list(csv.DictReader((out / "sweep.csv").read_text().splitlines()))
     assert [row["run"] for row in rows] == ["2000000_0", "2000000_0.6", "4000000_0", "4000000_0.6"]
     assert [row["status"] for row in rows] == ["failed", "completed"] * 2
+    assert rows[1]["reason"] == json.loads((out / "runs" / "2000000_0.6" / "summary.json").read_text())["reason"] == "tip reached y = 14 m"
     assert rows[0]["reason"].startswith("the block has become a mechanism") and rows[0]["start_Pa"] == "" and float(rows[1]["start_Pa"]) > 2e6
     with h5py.File(out / "sweep.h5") as file:
         assert list(file["table/start_Pa"][()])[1] == float(rows[1]["start_Pa"]) and set(file["histories"]) == {"2000000_0.6", "4000000_0.6"}
