@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
+#include <functional>
 #include <iterator>
 #include <set>
 #include <sstream>
@@ -46,6 +46,8 @@ STRATA_SAVED(Tip, at_back, growing, stopped_by, K_I, K_II, J, J_spread, ring_m, 
              no_length, last_growth_s, last_growth_Pa, due_s, runs_until_s, G_trial, G_along, G, G_by_J, criterion,
              grew_by, has_grown, arrested, reached)
 STRATA_SAVED(Event, kind, time_s, inlet_Pa, tip_x_m, tip_y_m, at_interface, by)
+STRATA_SAVED(SavedState, time, step, dt, grid, particles, surfaces, has_fracture, fluid, reynolds, balance, grown, tips,
+             ties, events, ledger, monitors)
 STRATA_SAVED(Written, rows, output_times)
 #undef STRATA_SAVED
 
@@ -53,14 +55,6 @@ template <class Archive>
 void fields(Archive& archive, Is<Particles> auto& particles) {
   for_each_array(particles, [&](auto& array) { archive(array); });
   archive(particles.next_id);
-}
-
-// All of the state but what rebuild_copies() derives of it.
-template <class Archive>
-void fields(Archive& archive, Is<State> auto& state) {
-  archive(state.time, state.step, state.dt, state.grid, state.particles, state.surfaces, state.has_fracture);
-  archive(state.fluid, state.reynolds, state.balance, state.grown, state.tips, state.ties, state.events, state.ledger);
-  archive(state.monitors, state.total.velocity);
 }
 
 // Saves values one behind another, or loads them.
@@ -105,11 +99,8 @@ struct Archive {
   }
 };
 
-// FNV-1a, 64 bit (Fowler, Noll, Vo; RFC 9923).
-std::uint64_t checksum(std::string_view bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
-  return hash;
+std::size_t checksum(std::string_view bytes) {
+  return std::hash<std::string_view>()(bytes);
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& file, std::string_view reason) {
@@ -139,9 +130,11 @@ std::string missing(const Lines& others, const Lines& some) {
 
 }  // namespace
 
+// All of the state but what rebuild_copies() derives of it.
 void save_checkpoint(const std::filesystem::path& file, const Scene& scene, const Checkpoint& checkpoint) {
   Archive<false> content, sum;
-  content(scene.resolved_toml, checkpoint.written, checkpoint.state);
+  const State& state = checkpoint.state;
+  content(scene.resolved_toml, checkpoint.written, static_cast<const SavedState&>(state), state.total.velocity);
   sum(checksum(content.bytes));
   atomic_write(file, std::string(magic) + sum.bytes + content.bytes);
 }
@@ -150,7 +143,7 @@ Checkpoint load_checkpoint(const std::filesystem::path& file, const Scene& scene
   const std::string bytes = read_whole(file);
   if (!bytes.starts_with(magic)) refuse(file, "is no checkpoint of strata, or has another version's format");
   Archive<true> content{std::string_view(bytes).substr(magic.size())};
-  std::uint64_t sum = 0;
+  std::size_t sum = 0;
   if (content.bytes.size() > sizeof sum) content(sum);
   if (checksum(content.bytes) != sum) refuse(file, "is torn");
   std::string of_run;
@@ -162,7 +155,7 @@ Checkpoint load_checkpoint(const std::filesystem::path& file, const Scene& scene
                     file.string()));
   }
   Checkpoint checkpoint;
-  content(checkpoint.written, checkpoint.state);
+  content(checkpoint.written, static_cast<SavedState&>(checkpoint.state), checkpoint.state.total.velocity);
   return checkpoint;
 }
 

@@ -31,29 +31,29 @@ enum class Pack { no, one_value, yes };  // one_value: where all values are equa
 // much. The low bytes of others are noise, over which its search takes as long as small runs do and of which it leaves
 // three quarters.
 template <class Number = double>
-void put(const H5::Group& group, const char* name, const hdf5::Meaning& meaning, const auto& all, const auto& value_of,
-         Pack pack = Pack::no) {
+void put(const H5::Group& group, const char* name, const std::string& unit, const std::string& what, const auto& all,
+         const auto& value_of, Pack pack = Pack::no) {
   std::vector<Number> field;
   field.reserve(all.size());
   for (const auto& each : all) field.push_back(static_cast<Number>(value_of(each)));
   const bool one_value = std::ranges::adjacent_find(field, std::not_equal_to{}) == field.end();
-  hdf5::write(group, name, field, meaning, pack == Pack::yes || (pack == Pack::one_value && one_value));
+  hdf5::write(group, name, field, unit, what, pack == Pack::yes || (pack == Pack::one_value && one_value));
 }
 
 // What ParaView takes of n points: vectors, and which points its cells are made of.
 void put_positions(const H5::Group& group, std::size_t n) {
-  hdf5::write_vectors(group, "paraview/position_m", {"x_m", "y_m"}, {"m", "place: x, y, 0"});
+  hdf5::write_vectors(group, "paraview/position_m", "x_m", "y_m", "m", "place: x, y, 0");
   std::vector<std::int32_t> order(n);
   std::iota(order.begin(), order.end(), 0);
-  hdf5::write(group, "paraview/order", order, {"1", "the points, from 0, in their order"}, true);
+  hdf5::write(group, "paraview/order", order, "1", "the points, from 0, in their order", true);
 }
 
 void write_places(const H5::Group& group, const std::vector<SurfacePoint>& points) {
-  put(group, "x_m", {"m", "place, moved with the rock: x"}, points, [](auto& s) { return s.x.x() + s.u.x(); });
-  put(group, "y_m", {"m", "place, moved with the rock: y"}, points, [](auto& s) { return s.x.y() + s.u.y(); });
-  put(group, "opening_m", {"m", "opening face to face, negative where faces overlap"}, points,
+  put(group, "x_m", "m", "place, moved with the rock: x", points, [](auto& s) { return s.x.x() + s.u.x(); });
+  put(group, "y_m", "m", "place, moved with the rock: y", points, [](auto& s) { return s.x.y() + s.u.y(); });
+  put(group, "opening_m", "m", "opening face to face, negative where faces overlap", points,
       [](auto& s) { return s.opening(); });
-  put(group, "slip_m", {"m", "slip: motion of the + side (on the left of the path) along the path"}, points,
+  put(group, "slip_m", "m", "slip: motion of the + side (on the left of the path) along the path", points,
       [](auto& s) { return s.w.dot(tangent(s)); });
   put_positions(group, points.size());
 }
@@ -62,10 +62,10 @@ void write_fracture(const H5::Group& group, const Scene& scene, const State& sta
   const std::vector<SurfacePoint>& vertices = state.fracture().vertices;
   const double floor = scene.fluid.minimum_opening_m;
   write_places(group, vertices);
-  put(group, "arc_m", {"m", "length along the path"}, vertices, [](auto& s) { return s.arc; });
-  put(group, "permeability_m2", {"m^2", "w^2/12, of the opening w or its floor"}, vertices,  // between parallel plates
+  put(group, "arc_m", "m", "length along the path", vertices, [](auto& s) { return s.arc; });
+  put(group, "permeability_m2", "m^2", "w^2/12, of the opening w or its floor", vertices,  // between parallel plates
       [&](auto& s) { return std::pow(std::max(s.opening(), floor), 2) / 12.0; });
-  hdf5::write(group, "pressure_Pa", state.fluid.P, {"Pa", "fluid pressure, positive in compression"});
+  hdf5::write(group, "pressure_Pa", state.fluid.P, "Pa", "fluid pressure, positive in compression");
   hdf5::set_attribute(group, "time_s", state.time);
   hdf5::set_attribute(group, "inlet_Pa", state.fluid.inlet_Pa);
 }
@@ -79,13 +79,13 @@ void write_interface(const H5::Group& file, const std::string& interfaces, const
   const H5::Group group = hdf5::make_group(file, fmt::format("{}/{}", interfaces, nearest - places.begin()));
   const std::vector<SurfacePoint>& points = surface.points;
   write_places(group, points);
-  put(group, "reaction_n_Pa", {"Pa", "traction on the + face normal to the interface, positive in compression"}, points,
+  put(group, "reaction_n_Pa", "Pa", "traction on the + face normal to the interface, positive in compression", points,
       [](auto& s) { return s.reaction.dot(s.n); });
-  put(group, "reaction_t_Pa", {"Pa", "traction on the + face along the interface"}, points,
+  put(group, "reaction_t_Pa", "Pa", "traction on the + face along the interface", points,
       [](auto& s) { return s.reaction.dot(tangent(s)); });
-  put(group, "failed_s", {"s", "time at which the place let go, -1 where it has not"}, points,
+  put(group, "failed_s", "s", "time at which the place let go, -1 where it has not", points,
       [](auto& s) { return s.failed_s; });
-  put<std::int32_t>(group, "split", {"1", "1 where the law acts between two sides, 0 where the rock is whole"}, points,
+  put<std::int32_t>(group, "split", "1", "1 where the law acts between two sides, 0 where the rock is whole", points,
                     [](auto& s) { return s.split ? 1 : 0; });
   hdf5::set_attribute(group, "law", scene.laws.at(surface.law).name);
   hdf5::set_attribute(group, "at_m", nearest->at_m);
@@ -105,7 +105,7 @@ void write_particles(const H5::Group& group, const Scene& scene, const State& st
   const std::vector<std::size_t> order = by_id(of);
   const double moved = scene.numerics.keeps_places() ? 1.0 : 0.0;  // positions are where the rock now is
   const auto field = [&](const char* name, const char* unit, const std::string& what, Pack pack, const auto& value_of) {
-    put<float>(group, name, {unit, what}, order, value_of, pack);
+    put<float>(group, name, unit, what, order, value_of, pack);
   };
   const auto place = [&](const char* name, const char* what, const SpreadArray& x, const SpreadArray& u) {
     field(name, "m", what, Pack::yes, [&](std::size_t p) { return x[p] + moved * u[p]; });
@@ -129,13 +129,13 @@ void write_particles(const H5::Group& group, const Scene& scene, const State& st
   stress("s_xy_Pa", "xy", &Stress::xy);
   const auto label = [&](const char* name, const char* what, const auto& values) {
     const auto value_of = [&](std::size_t p) { return values[p]; };
-    put<std::int32_t>(group, name, {"1", what}, order, value_of, Pack::yes);
+    put<std::int32_t>(group, name, "1", what, order, value_of, Pack::yes);
   };
   label("id", "number of the particle", of.id);
   label("rock", "number of its rock in the scene, from 0", of.rock);
   put_positions(group, order.size());
-  hdf5::write_vectors(group, "paraview/displacement_m", {"u_x_m", "u_y_m"}, {"m", "displacement: x, y, 0"});
-  hdf5::write_vectors(group, "paraview/velocity_m_s", {"v_x_m_s", "v_y_m_s"}, {"m/s", "velocity: x, y, 0"});
+  hdf5::write_vectors(group, "paraview/displacement_m", "u_x_m", "u_y_m", "m", "displacement: x, y, 0");
+  hdf5::write_vectors(group, "paraview/velocity_m_s", "v_x_m_s", "v_y_m_s", "m/s", "velocity: x, y, 0");
   hdf5::set_attribute(group, "time_s", state.time);
 }
 
@@ -224,11 +224,11 @@ void gather_fields(const RunFolder& folder, const std::vector<HistoryColumn>& co
   const auto write_head = [&](const H5::Group& file) {
     if (!times.empty()) set_made_with(file, made_with(folder));
     for (const char* kind : {"particles", "fracture", "interfaces"}) file.createGroup(kind);
-    hdf5::write(file, "times", times, {"s", "output times"});
+    hdf5::write(file, "times", times, "s", "output times");
     std::vector<double> values(rows.size());
     for (std::size_t c = 0; c < columns.size(); ++c) {
       std::ranges::transform(rows, values.begin(), [&](const HistoryRow& row) { return row[c]; });
-      hdf5::write(file, "history/" + columns[c].name, values, {columns[c].unit, columns[c].description});
+      hdf5::write(file, "history/" + columns[c].name, values, columns[c].unit, columns[c].description);
     }
   };
   const auto copy_fields = [&](const H5::Group& file) {

@@ -11,6 +11,8 @@ namespace strata::hdf5 {
 
 namespace {
 
+using Text = const std::string&;
+
 // The deepest message of the last error, which tells its cause: the library forgets it once objects have been closed.
 std::string cause;
 
@@ -68,12 +70,12 @@ H5::StrType text_type() {
 }
 
 // Makes a data set without the time, so that files of equal runs are equal.
-H5::DataSet make(const H5::Group& parent, const std::string& path, const H5::DataType& type, const H5::DataSpace& space,
-                 const H5::DSetCreatPropList& properties, const Meaning& meaning) {
+H5::DataSet make(const H5::Group& parent, Text path, const H5::DataType& type, const H5::DataSpace& space,
+                 const H5::DSetCreatPropList& properties, const std::string& unit, const std::string& description) {
   H5Pset_obj_track_times(properties.getId(), false);
   H5::DataSet set = parent.createDataSet(path, type, space, properties, H5::DSetAccPropList::DEFAULT, with_groups());
-  set_attribute(set, "unit", meaning.unit);
-  set_attribute(set, "description", meaning.description);
+  set_attribute(set, "unit", unit);
+  set_attribute(set, "description", description);
   return set;
 }
 
@@ -119,7 +121,7 @@ void copy(const H5::Group& from, const std::string& path, const H5::Group& to) {
 }
 
 template <class Number>
-void write(const H5::Group& parent, const std::string& path, const std::vector<Number>& values, const Meaning& meaning,
+void write(const H5::Group& parent, Text path, const std::vector<Number>& values, Text unit, Text description,
            bool packed) {
   const H5::PredType& type = std::is_same_v<Number, double>  ? H5::PredType::NATIVE_DOUBLE
                              : std::is_same_v<Number, float> ? H5::PredType::NATIVE_FLOAT
@@ -131,25 +133,24 @@ void write(const H5::Group& parent, const std::string& path, const std::vector<N
     properties.setShuffle();
     properties.setDeflate(1);
   }
-  make(parent, path, type, H5::DataSpace(1, &n), properties, meaning).write(values.data(), type);
+  make(parent, path, type, H5::DataSpace(1, &n), properties, unit, description).write(values.data(), type);
 }
-template void write(const H5::Group&, const std::string&, const std::vector<double>&, const Meaning&, bool);
-template void write(const H5::Group&, const std::string&, const std::vector<float>&, const Meaning&, bool);
-template void write(const H5::Group&, const std::string&, const std::vector<std::int32_t>&, const Meaning&, bool);
+template void write(const H5::Group&, Text, const std::vector<double>&, Text, Text, bool);
+template void write(const H5::Group&, Text, const std::vector<float>&, Text, Text, bool);
+template void write(const H5::Group&, Text, const std::vector<std::int32_t>&, Text, Text, bool);
 
-void write_vectors(const H5::Group& group, const std::string& path, const std::vector<std::string>& components,
-                   const Meaning& meaning) {
-  const H5::DataSet first = group.openDataSet(components.front());
+void write_vectors(const H5::Group& group, Text path, Text x, Text y, Text unit, Text description) {
+  const H5::DataSet first = group.openDataSet(x);
   const H5::DataSpace points = first.getSpace();
   const hsize_t shape[] = {static_cast<hsize_t>(points.getSimpleExtentNpoints()), 3}, column[] = {shape[0], 1};
   const H5::DataSpace space(2, shape);
   const H5::DSetCreatPropList properties;
-  for (hsize_t c = 0; c < components.size() && shape[0] > 0; ++c) {
+  for (hsize_t c = 0; c < 2 && shape[0] > 0; ++c) {
     const hsize_t start[] = {0, c};
     space.selectHyperslab(H5S_SELECT_SET, column, start);
-    properties.setVirtual(space, ".", group.getObjName() + "/" + components[c], points);  // ".": the same file
+    properties.setVirtual(space, ".", group.getObjName() + "/" + (c == 0 ? x : y), points);  // ".": the same file
   }
-  make(group, path, first.getDataType(), space, properties, meaning);
+  make(group, path, first.getDataType(), space, properties, unit, description);
 }
 
 void set_attribute(const H5::H5Object& of, const std::string& attribute, double value) {

@@ -33,22 +33,15 @@ std::vector<std::string> names(const H5::Group& parent, const std::string& path 
 /// Copies what is at `path` below `from` to the same path below `to`, with the groups above it.
 void copy(const H5::Group& from, const std::string& path, const H5::Group& to);
 
-// What a data set says of itself by its attributes of these names.
-struct Meaning {
-  std::string unit;
-  std::string description;
-};
-
-/// Writes a 1-D data set of double, float or std::int32_t, with its meaning and the groups above it; packed: shuffled
-/// and deflated.
+/// Writes a 1-D data set of double, float or std::int32_t, with the groups above it and its attributes of these names;
+/// packed: shuffled and deflated.
 template <class Number>
-void write(const H5::Group& parent, const std::string& path, const std::vector<Number>& values, const Meaning& meaning,
-           bool packed = false);
+void write(const H5::Group& parent, const std::string& path, const std::vector<Number>& values, const std::string& unit,
+           const std::string& description, bool packed = false);
 
-/// Writes vectors of three components, (n, 3), which are those of 1-D data sets of the group, and 0 beyond: virtual, so
-/// that nothing is stored twice.
-void write_vectors(const H5::Group& group, const std::string& path, const std::vector<std::string>& components,
-                   const Meaning& meaning);
+/// Writes vectors of three components, (n, 3): two 1-D data sets of the group, and 0. Virtual: nothing is stored twice.
+void write_vectors(const H5::Group& group, const std::string& path, const std::string& x, const std::string& y,
+                   const std::string& unit, const std::string& description);
 
 /// Attributes of a file, group or data set.
 void set_attribute(const H5::H5Object& of, const std::string& attribute, double value);

@@ -13,39 +13,31 @@ namespace strata {
 
 namespace {
 
-// What is too near to a tip, and what its rings then cross.
-struct Words {
-  const char* name;
-  const char* crossed;
-};
-constexpr Words words_of(Obstacle what) {
-  constexpr Words words[] = {
-      {"", ""},
-      {"interface", "an interface whose faces have come apart"},
-      {"rock border", "another rock"},
-      {"symmetry line", "the symmetry line"},
-      {"edge", "an edge of the block"},
-      {"fracture", "another part of the fracture"},
-  };
-  return words[static_cast<std::size_t>(what)];
-}
-
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+const TipNumbers no_numbers{nan, nan, nan, nan, nan, ""};
 
 }  // namespace
 
 const char* name_of(Obstacle what) {
-  return words_of(what).name;
+  constexpr const char* names[] = {"", "interface", "rock border", "symmetry line", "edge", "fracture"};
+  return names[static_cast<std::size_t>(what)];
 }
 
 TipNumbers tip_numbers(const Scene& scene, const Tip& tip) {
   TipNumbers told{tip.K_I, tip.K_II, tip.J, tip.J_spread, tip.kink * (180.0 / std::numbers::pi), ""};
   const bool shut = tip.closed && tip.J == 0.0;  // whatever is near
   if (tip.crossed && !shut) {
-    told = {nan, nan, nan, nan, nan, std::string("the rings on which J and K are measured cross ")};
-    told.reason += words_of(tip.near).crossed;
-    if (tip.no_length)
-      told.reason = "the tip stands on an interface whose faces have come apart: it has no length in the rock ahead";
+    constexpr const char* crossed[] = {"",
+                                       "an interface whose faces have come apart",
+                                       "another rock",
+                                       "the symmetry line",
+                                       "an edge of the block",
+                                       "another part of the fracture"};
+    told = no_numbers;
+    told.reason = tip.no_length
+                      ? "the tip stands on an interface whose faces have come apart: it has no length in the rock ahead"
+                      : std::string("the rings on which J and K are measured cross ") +
+                            crossed[static_cast<std::size_t>(tip.near)];
   } else if (tip.closed) {
     told.kink_deg = nan;
     told.reason = "the tip is closed: it has no direction to open into";
@@ -62,9 +54,7 @@ TipNumbers tip_numbers(const Scene& scene, const Tip& tip) {
 
 const Tip* leading_tip(const State& state) {
   if (!state.has_fracture || state.tips.empty()) return nullptr;
-  return &*std::max_element(state.tips.begin(), state.tips.end(), [&](const Tip& a, const Tip& b) {
-    return tip_position(state, a).y() < tip_position(state, b).y();
-  });
+  return &*std::ranges::max_element(state.tips, {}, [&](const Tip& tip) { return tip_position(state, tip).y(); });
 }
 
 const Tip* lower_tip(const State& state) {
@@ -75,15 +65,12 @@ const Tip* lower_tip(const State& state) {
 
 double mouth_opening(const State& state) {
   if (!state.has_fracture) return 0.0;
-  const Surface& fracture = state.fracture();
-  // Vertices follow the rock: one that started on the line may be off it by round-off.
-  const auto on_symmetry_line = [&](const SurfacePoint& s) { return std::abs(s.x.y()) < 1e-6 * state.grid.h; };
-  const auto& v = fracture.vertices;
-  if (on_symmetry_line(v.front())) return v.front().opening();
-  if (on_symmetry_line(v.back())) return v.back().opening();
-  double largest = v.front().opening();
-  for (const SurfacePoint& s : v) largest = std::max(largest, s.opening());
-  return largest;
+  const auto& v = state.fracture().vertices;
+  for (const SurfacePoint* end : {&v.front(), &v.back()}) {
+    // Vertices follow the rock: one that started on the line may be off it by round-off.
+    if (std::abs(end->x.y()) < 1e-6 * state.grid.h) return end->opening();
+  }
+  return std::ranges::max(v, {}, &SurfacePoint::opening).opening();
 }
 
 double fracture_volume(const State& state) {
@@ -99,9 +86,7 @@ double leaked_volume(const State& state) {
 
 // Those that the first versions had come first, so that files of all can be laid side by side.
 std::vector<HistoryColumn> history_columns(const Scene& scene, const State& state) {
-  const auto numbers_of = [&](const Tip* tip) {
-    return tip ? tip_numbers(scene, *tip) : TipNumbers{nan, nan, nan, nan, nan, ""};
-  };
+  const auto numbers_of = [&](const Tip* tip) { return tip ? tip_numbers(scene, *tip) : no_numbers; };
   const auto place_of = [&](const Tip* tip) { return tip ? tip_position(state, *tip) : Vec2{nan, nan}; };
   const Tip *tip = leading_tip(state), *lower = lower_tip(state);
   const Vec2 x = place_of(tip);

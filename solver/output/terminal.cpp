@@ -19,11 +19,6 @@ namespace strata {
 
 namespace {
 
-// Way from `from` to `to` that is done at `now`, 0 to 1; a bound that is already reached is 1.
-double way(double from, double to, double now) {
-  return now >= to ? 1.0 : std::clamp((now - from) / (to - from), 0.0, 1.0);
-}
-
 // Where the fracture started, stayed and went on: all that fits into a line.
 std::string growth_line(const State& state) {
   constexpr std::size_t most = 6;
@@ -32,11 +27,11 @@ std::string growth_line(const State& state) {
     if (event.kind == "start" || event.kind == "arrest" || event.kind == "restart")
       parts.push_back(fmt::format("{} {:.4g} MPa at y = {:.2f} m", event.kind, 1e-6 * event.inlet_Pa, event.tip_y_m));
   }
-  if (parts.empty()) return "growth: none";
-  const std::size_t all = parts.size();
-  parts.resize(std::min(all, most));
-  return fmt::format("growth: {}{}", fmt::join(parts, "; "),
-                     all > most ? fmt::format("; {} more in summary.json", all - most) : "");
+  if (parts.size() > most) {
+    const std::string rest = fmt::format("{} more in summary.json", parts.size() - most);
+    parts.resize(most), parts.push_back(rest);
+  }
+  return fmt::format("growth: {}", parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, "; ")));
 }
 
 // Without round-off, and so without a sign that is none.
@@ -75,21 +70,16 @@ std::string monitor_line(const Scene& scene, const State& state) {
 }  // namespace
 
 double fraction_done(const Scene& scene, const State& state) {
-  const Stop& stop = scene.stop;
   double done = 0.0;
-  if (stop.time_s) done = std::max(done, way(0.0, *stop.time_s, state.time));
+  const auto towards = [&](const std::optional<double>& stop, double start, double now) {
+    if (stop) done = std::max(done, *stop == start ? 1.0 : std::clamp((now - start) / (*stop - start), 0.0, 1.0));
+  };
+  towards(scene.stop.time_s, 0.0, state.time);
   if (!state.has_fracture || !scene.fracture) return done;
-  if (stop.inlet_Pa) done = std::max(done, way(scene.fluid.start_Pa, *stop.inlet_Pa, state.fluid.inlet_Pa));
-  const Tip* tip = leading_tip(state);
-  if (stop.tip_y_m && tip) {
-    const double start = std::ranges::max(scene.fracture->path_m, {}, [](const auto& x) { return x[1]; })[1];
-    done = std::max(done, way(start, *stop.tip_y_m, tip_position(state, *tip).y()));
-  }
-  const Tip* lower = lower_tip(state);
-  if (stop.lower_tip_y_m && lower) {
-    const double start = std::ranges::min(scene.fracture->path_m, {}, [](const auto& x) { return x[1]; })[1];
-    done = std::max(done, way(-start, -*stop.lower_tip_y_m, -tip_position(state, *lower).y()));
-  }
+  towards(scene.stop.inlet_Pa, scene.fluid.start_Pa, state.fluid.inlet_Pa);
+  const auto [low, high] = std::ranges::minmax(scene.fracture->path_m, {}, [](const auto& x) { return x[1]; });
+  if (const Tip* tip = leading_tip(state)) towards(scene.stop.tip_y_m, high[1], tip_position(state, *tip).y());
+  if (const Tip* tip = lower_tip(state)) towards(scene.stop.lower_tip_y_m, low[1], tip_position(state, *tip).y());
   return done;
 }
 
@@ -144,12 +134,10 @@ std::string closing_lines(const Scene& scene, const State& state, const RunRecor
                                   duration_text(record.wall_s), record.reason);
   if (state.has_fracture) lines += growth_line(state) + '\n' + tip_line(scene, state) + '\n';
   if (state.particles.size() > 0) lines += monitor_line(scene, state) + '\n';
-  std::string files;
-  for (const char* file : {"summary.json", "history.csv", "result.h5", "result.xdmf", "checkpoint.bin"}) {
-    std::error_code error;
-    if (std::filesystem::exists(folder / file, error)) files += fmt::format("{}{}", files.empty() ? "" : ", ", file);
-  }
-  return fmt::format("{}results in {}: {}\n", lines, folder.string(), files);
+  std::vector<std::string> files{"summary.json", "history.csv", "result.h5", "result.xdmf", "checkpoint.bin"};
+  std::error_code error;
+  std::erase_if(files, [&](const std::string& file) { return !std::filesystem::exists(folder / file, error); });
+  return fmt::format("{}results in {}: {}\n", lines, folder.string(), fmt::join(files, ", "));
 }
 
 std::string how_it_ended(const RunFolder& folder) {

@@ -102,8 +102,8 @@ TEST_CASE("large fields are packed without loss") {
     }
     for (const bool packed : {false, true}) {
       hdf5::write_file(path, [&](const H5::Group& root) {
-        hdf5::write(root, "smooth", smooth, {"Pa", "a wave"}, packed);
-        hdf5::write(root, "label", label, {"1", "a number"}, packed);
+        hdf5::write(root, "smooth", smooth, "Pa", "a wave", packed);
+        hdf5::write(root, "label", label, "1", "a number", packed);
       });
       const H5::H5File file = hdf5::open_file(path);
       const std::vector<double> read = hdf5::read(file, "smooth"), labels = hdf5::read(file, "label");

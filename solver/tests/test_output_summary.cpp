@@ -196,8 +196,13 @@ TEST_CASE("the fraction done is that of the stop nearest by") {
   CHECK(fraction_done(scene, state) == Approx(0.8));
   state.time = 11.0;
   CHECK(fraction_done(scene, state) == 1.0);
-  scene.stop = {.tip_y_m = {}, .inlet_Pa = {}, .time_s = 0.0};
+  scene.stop = {.tip_y_m = {}, .lower_tip_y_m = {}, .inlet_Pa = {}, .time_s = 0.0};
   CHECK(fraction_done(scene, state) == 1.0);
+  scene.stop = {.tip_y_m = {}, .lower_tip_y_m = -2.0, .inlet_Pa = {}, .time_s = {}};  // from 0
+  state.tips.push_back(state.tips[0]);
+  state.tips[1].at_back = false;
+  state.fracture().vertices[0].x.y() = -0.5;
+  CHECK(fraction_done(scene, state) == Approx(0.25));
 }
 
 TEST_CASE("progress is told in words that a reader knows") {
