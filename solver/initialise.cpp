@@ -57,9 +57,8 @@ void make_fracture(const Scene& scene, State& state) {
       fracture.vertices, {}, [&](const SurfacePoint& s) { return std::abs(s.arc - 0.5 * fracture.length()); });
   state.fluid.inlet = from_symmetry ? 0 : static_cast<std::size_t>(middle - fracture.vertices.begin());
   rest_fluid(scene.fluid, state);
-  if (!from_symmetry) state.tips.push_back(Tip{});
-  for (Tip& tip : state.tips) tip.at_back = false;
-  state.tips.push_back(Tip{});
+  if (!from_symmetry) state.tips.emplace_back().at_back = false;
+  state.tips.emplace_back();
 }
 
 // The points of an interface at `at` (m). Along a graded grid its legs are halves of spans, each with a point in its

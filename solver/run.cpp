@@ -73,12 +73,11 @@ std::optional<std::string> reason_to_stop(const Scene& scene, const State& state
   if (stop.time_s && state.time >= *stop.time_s - slack) return fmt::format("time reached {} s", *stop.time_s);
   if (stop.inlet_Pa && state.has_fracture && state.fluid.inlet_Pa >= *stop.inlet_Pa * (1.0 - 1e-12))
     return fmt::format("inlet pressure reached {} Pa", *stop.inlet_Pa);
-  const Tip* tip = leading_tip(state);
-  if (stop.tip_y_m && tip != nullptr && tip_position(state, *tip).y() >= *stop.tip_y_m - 1e-3 * state.grid.h) {
+  const Tip *tip = leading_tip(state), *lower = lower_tip(state);
+  const double near = 1e-3 * state.grid.h;
+  if (stop.tip_y_m && tip && tip_position(state, *tip).y() >= *stop.tip_y_m - near)
     return fmt::format("tip reached y = {} m", *stop.tip_y_m);
-  }
-  const Tip* lower = lower_tip(state);
-  if (stop.lower_tip_y_m && lower && tip_position(state, *lower).y() <= *stop.lower_tip_y_m + 1e-3 * state.grid.h)
+  if (stop.lower_tip_y_m && lower && tip_position(state, *lower).y() <= *stop.lower_tip_y_m + near)
     return fmt::format("lower tip reached y = {} m", *stop.lower_tip_y_m);
   const bool stuck = !state.tips.empty() && std::ranges::none_of(state.tips, &Tip::growing);
   if (stuck && !stop.time_s && !stop.inlet_Pa) return "no tip can grow any further: " + state.tips.front().stopped_by;

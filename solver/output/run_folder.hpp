@@ -31,18 +31,20 @@ struct RunFolder {
   std::filesystem::path fields(std::size_t k) const { return all_fields() / fmt::format("{:05}.h5", k); }
 };
 
-/// Makes a folder, with its parents, where it is missing. Throws OutputFailure where it cannot be made.
+// What is refused in the following throws OutputFailure, with all as it was.
+
+/// Makes a folder, with its parents, where it is missing.
 void make_folder(const std::filesystem::path& folder);
 
-/// Locks a folder for the process that writes to it, until what is returned goes or the process ends; on a file system
-/// without locks nothing is locked. Throws OutputFailure where it is locked already or cannot be opened.
+/// Locks a folder, if it is not locked already, for the process that writes to it, until what is returned goes or the
+/// process ends; on a file system without locks nothing is locked.
 fmt::file lock_folder(const std::filesystem::path& folder);
 
-/// Makes way for a run: throws OutputFailure, saying what may be done, where the folder holds one, unless `replace`,
-/// which removes that one's files but scene.toml, which the new run's replaces in one piece: it can always be resumed.
+/// Makes way for a run: refuses a folder that holds one, saying what may be done, unless `replace`, which removes that
+/// one's files but scene.toml, which the new run's replaces in one piece: it can always be resumed.
 void clear_run_folder(const RunFolder& folder, bool replace);
 
-/// Removes a file, or a folder with what is in it, if it is there; throws OutputFailure where it cannot.
+/// Removes a file, or a folder with what is in it, if it is there.
 void remove_file(const std::filesystem::path& file);
 
 // Whether what is written is to survive a loss of power, for which one waits for the disc; it survives the end of the
@@ -50,21 +52,20 @@ void remove_file(const std::filesystem::path& file);
 enum class Sync { no, yes };
 
 /// Lets `write` write a file beside `file`, which is then renamed to it: at any time either the old or the new content
-/// is there. Throws OutputFailure, naming the file and the system's reason, with the one beside removed.
+/// is there.
 void write_beside(const std::filesystem::path& file, Sync sync,
                   const std::function<void(const std::filesystem::path& beside)>& write);
 
-/// Writes `text` to `file` by write_beside(); throws as that.
+/// Writes `text` to `file` by write_beside().
 void atomic_write(const std::filesystem::path& file, std::string_view text, Sync sync = Sync::yes);
 
-/// Takes the room of so many bytes for `file`; throws OutputFailure where the disc has not got it.
+/// Takes the room of so many bytes for `file`.
 void take_room(const std::filesystem::path& file, std::uint64_t bytes);
 
-/// Adds `text` by one call of the system to `file`, which must be `bytes` long. Throws OutputFailure, with the file as
-/// it was, where the disc refuses it, or where the file is gone or has another length.
+/// Adds `text` by one call of the system to `file`, which must be there and `bytes` long.
 void append_at(const std::filesystem::path& file, std::uint64_t bytes, std::string_view text);
 
-/// Waits until what `file` holds is on the disc; throws OutputFailure where it cannot be.
+/// Waits until what `file` holds is on the disc.
 void sync_file(const std::filesystem::path& file);
 
 /// All bytes of `file`; throws std::runtime_error where it cannot be read.

@@ -43,14 +43,9 @@ struct Watch {
     note(monitor, value, little && value != 0.0 ? std::nullopt : threshold, why);
   }
 
-  void inputs(), energy(), motion(), flow(), fluid(), held_tips(), growth(), surfaces(), deformation(), loading(),
-      contact(), rocks();
+  void energy(), motion(), flow(), fluid(), held_tips(), growth(), surfaces(), deformation(), loading(), contact(),
+      rocks();
 };
-
-void Watch::inputs() {
-  const std::vector<std::string> odd = implausible(scene);
-  note("implausible_inputs", static_cast<double>(odd.size()), 0.0, fmt::format("{}", fmt::join(odd, "; ")));
-}
 
 void Watch::energy() {
   // K and openings go with the root of an energy: half a per cent of them.
@@ -63,8 +58,8 @@ void Watch::energy() {
   // A step beyond its limit, or contact that does not converge, feeds modes: dissipation below zero.
   share("energy_made", m.largest_made_J, state.ledger.largest, nothing.work, threshold,
         "the time step and the transfer made more than 1 % of the largest energy exchanged out of nothing");
-  // Free vibration has as much of one energy as of the other; more comes of parts that fly. Below, inertia is the
-  // physics of unstable growth. Blocks that a scene itself throws or pulls are not judged.
+  // Free vibration has as much of one as of the other; more comes of parts that fly. Below, inertia is the physics of
+  // unstable growth. Blocks that a scene itself throws or pulls are not judged.
   const bool thrown = scene.initial.velocity_m_s || scene.body.acceleration_m_s2;
   if (thrown && m.largest_strain_J == 0.0) return;
   share("kinetic_share", m.largest_kinetic_J, m.largest_strain_J, nothing.energy, thrown ? Limit() : 1.0,
@@ -116,13 +111,14 @@ void Watch::flow() {
   // "reynolds" faces part within cells, and only a rate needs cells that resolve how far the fluid has gone.
   const bool remembers = scene.fluid.law == Fluid::Law::paper || scene.fluid.rate_m2_s;
   note("flow_fall", growths > 0 ? m.largest_flow_fall : m.flow_fall, remembers ? where_grown(0.6) : std::nullopt,
-       "when the fracture grew, its pressure had fallen to the closing stress within a cell or two of the inlet, which "
-       "they do not resolve; use smaller cells, or a larger fluid.minimum_opening_m if closed faces conduct");
+       "at growth the pressure had fallen to the closing stress within a cell or two of the inlet: use smaller cells, "
+       "or "
+       "a larger fluid.minimum_opening_m if closed faces conduct");
   // Equal parts of the inlet's net pressure. Below 0.03, at 0.1, 0.25, 0.5, 5 and 20 the floor makes fractures that are
   // fed at a rate longer by 0 to 3, 6 to 10, 3 to 4, 8, 8 to 16 and 22 to 45 %.
   note("floor_share", growths > 0 ? m.floor_share_sum / static_cast<double>(growths) : m.floor_share, where_grown(0.1),
-       "fluid.minimum_opening_m decides about more than a tenth of the inlet's net pressure, since fluid flows where "
-       "the fracture opens by less; lower it or use smaller cells until results no longer change");
+       "fluid.minimum_opening_m decides about more than a tenth of the inlet's net pressure: lower it or use smaller "
+       "cells until results no longer change");
 }
 
 void Watch::fluid() {
@@ -155,14 +151,13 @@ void Watch::held_tips() {
   // Between events K may be above by their tolerance and by a step's rise; a tenth of K is a fifth of the energy.
   if (!where.empty())
     note("held_tip", most, 1.1,
-         "a tip that has more than its rock's toughness may not grow, while another may: it is " + where);
+         "a tip with more than its rock's toughness may not grow, while another may: it is " + where);
 }
 
 void Watch::growth() {
   held_tips();
   note("growth_unweighed", static_cast<double>(m.growth_unweighed), 0.0,
-       "energy should have decided about growth, but surfaces had cut off parts that nothing but inertia holds: K "
-       "decided");
+       "K decided about growth instead of energy, since surfaces had cut off parts that inertia alone holds");
   if (m.growths == 0) return;
   // A tenth of J is a twentieth of K, and of the pressure at which a tip grows.
   note("J_spread_mean", m.J_spread_sum / static_cast<double>(m.growths), 0.1,
@@ -187,12 +182,10 @@ void Watch::surfaces() {
   const bool by_energy = std::ranges::any_of(state.events, [](const Event& e) { return e.by == "energy"; });
   if (scene.fracture && by_energy)
     note("crossing_increment_unresolved", state.grid.h / scene.fracture->crossing_increment(), 2.05,
-         "energy decided about growth over less than half a cell: use smaller cells, or a larger "
-         "fracture.crossing_increment_m");
+         "energy decided about growth over less than half a cell: see fracture.crossing_increment_m");
   if (moves && state.ledger.fracture != 0.0)
     note("surface_energy_share", state.ledger.fracture / m.largest_kinetic_J, 0.1,
-         "new surface took nothing of the motion's energy, where it needs more than a tenth of it: speeds of growth "
-         "are no result");
+         "new surface took nothing of the motion's energy, but needs over a tenth: speeds of growth are no result");
 }
 
 // The equations are linear in the displacement. What they leave out of the strain is u_k,i u_k,j/2: half a per cent at
@@ -201,11 +194,8 @@ void Watch::surfaces() {
 void Watch::deformation() {
   const bool keeps = scene.numerics.keeps_places();
   const std::string check = "; check rock.*.youngs_modulus_Pa and the pressures";
-  note("largest_strain", m.largest_strain, keeps ? 0.01 : 0.1,
-       fmt::format("rock is strained by more than {} %, but the equations are those of small strain{}", keeps ? 1 : 10,
-                   check));
-  note("largest_rotation", m.largest_rotation, 0.01,
-       "rock turns by more than 0.01 rad, but the equations are those of small rotations" + check);
+  note("largest_strain", m.largest_strain, keeps ? 0.01 : 0.1, "strains are not small, as the equations ask" + check);
+  note("largest_rotation", m.largest_rotation, 0.01, "rotations are not small, as the equations ask" + check);
   // From half a cell on a node of one face is nearer to another node of the other face than to its own.
   if (keeps)
     note("jump_share", m.largest_jump / state.grid.h, 0.5,
@@ -219,14 +209,12 @@ void Watch::loading() {
   constexpr double threshold = 0.1, pi = std::numbers::pi;
   // Answer of the block (s): a wave's way through it, L/c_S, and with damping d the time d/omega^2 that its slowest
   // mode, omega about pi c_S/L, takes to follow.
-  double slowest = infinite;
-  for (const Elasticity& rock : make_elasticities(scene)) slowest = std::min(slowest, rock.c_S);
+  const double slowest = std::ranges::min(make_elasticities(scene), {}, &Elasticity::c_S).c_S;
   const double crossing = std::max(scene.domain.width_m, scene.domain.height_m) / slowest;
   const double d = scene.numerics.damping_1_s, answer = crossing * (1.0 + d * crossing / (pi * pi));
   note("loading_share", fastest_change(scene.fluid) * answer / m.largest_net_Pa, threshold,
-       "while a wave crosses the block, or its damped motion follows, the pressure rises by more than a tenth of the "
-       "largest net pressure: the load is not slow; lower fluid.inlet.rate_Pa_s, or check density_kg_m3 and "
-       "damping_1_s");
+       "the load is not slow: the pressure rises by more than a tenth of the largest net pressure while the block "
+       "answers; lower fluid.inlet.rate_Pa_s, or check density_kg_m3 and damping_1_s");
   // A pressure above the closing stress at time 0 acts with up to twice its size. What counts is what damping has left
   // of its waves, exp(-d t/2) or, above the critical 2 omega, exp(-omega^2 t/d), at the first growth or the end.
   double until = state.time;
@@ -237,14 +225,12 @@ void Watch::loading() {
   // A run that ends before waves have crossed the block and come back, and grows nothing, is about these waves.
   const bool of_waves = scene.fracture->growth == Fracture::Growth::none && state.time < 2.0 * answer;
   note("shock_share", m.net_at_start_Pa / m.largest_net_Pa * left, of_waves ? Limit() : threshold,
-       "the pressure at time 0 exceeds the closing stress, acts at once, and its waves have not been damped by the "
-       "first growth or the end: start at the closing stress, or use damping_1_s");
+       "the pressure at time 0 exceeds the closing stress, and its waves have not been damped by the first growth or "
+       "the end: start at the closing stress, or use damping_1_s");
 }
 
 void Watch::contact() {
-  double stiffest = 0.0;  // E' (Pa)
-  for (const Rock& rock : scene.rocks)
-    stiffest = std::max(stiffest, rock.youngs_modulus_Pa / (1.0 - rock.poisson_ratio * rock.poisson_ratio));
+  const double stiffest = std::ranges::max(make_elasticities(scene), {}, &Elasticity::E_prime).E_prime;
   // By the laws' contact stiffness faces overlap by 1e-4 of what a cell deforms under the same pressure.
   share("penetration_share", m.largest_penetration * stiffest / state.grid.h, m.largest_contact_Pa, nothing.stress,
         0.01, "closed faces overlapped by more than 1 % of what a cell deforms under the largest contact pressure");
@@ -252,7 +238,7 @@ void Watch::contact() {
         "faces that carry no tension by their law carried some");
   if (moves)
     note("contact_left", m.contact_left, 0.01,
-         "a step's contact ran out of sweeps while a reaction still changed by more than 1 % of the largest");
+         "a step's contact ran out of sweeps while a reaction changed by more than 1 % of the largest");
 }
 
 void Watch::rocks() {
@@ -273,17 +259,19 @@ void Watch::rocks() {
     const double b = scene.rocks[scene.strata.layers[k + 1].rock].youngs_modulus_Pa;
     contrast = std::max({contrast, a / b, b / a});
   }
-  note("stiffness_contrast", contrast, 30.0,
-       "rocks bonded to each other differ so much in stiffness that stresses within three cells of their border are of "
-       "no worth");
+  note(
+      "stiffness_contrast", contrast, 30.0,
+      "rocks bonded to each other differ too much in stiffness: stresses within three cells of their border are wrong");
 }
 
 }  // namespace
 
 std::vector<Watched> watched(const Scene& scene, const State& state) {
   Watch watch{scene, state};
-  for (const auto part : {&Watch::inputs, &Watch::energy, &Watch::motion, &Watch::fluid, &Watch::growth,
-                          &Watch::surfaces, &Watch::deformation, &Watch::loading, &Watch::contact, &Watch::rocks})
+  const std::vector<std::string> odd = implausible(scene);
+  watch.note("implausible_inputs", static_cast<double>(odd.size()), 0.0, fmt::format("{}", fmt::join(odd, "; ")));
+  for (const auto part : {&Watch::energy, &Watch::motion, &Watch::fluid, &Watch::growth, &Watch::surfaces,
+                          &Watch::deformation, &Watch::loading, &Watch::contact, &Watch::rocks})
     (watch.*part)();
   return watch.out;
 }
