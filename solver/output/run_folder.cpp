@@ -15,10 +15,10 @@ namespace strata {
 
 namespace {
 
-using Path = std::filesystem::path;
+using FilePath = std::filesystem::path;
 
 // Does `action` on a file; what the system refuses is said as "FILE: cannot be written: REASON".
-void doing(const char* what, const Path& file, const auto& action) {
+void doing(const char* what, const FilePath& file, const auto& action) {
   try {
     action();
   } catch (const std::system_error& error) {
@@ -30,21 +30,21 @@ void require(bool success, int error = errno) {
   if (!success) throw std::system_error(error, std::generic_category());
 }
 
-fmt::file opened(const Path& file, int how) {
+fmt::file opened(const FilePath& file, int how) {
   return {file.c_str(), how | O_CLOEXEC};
 }
 
-Path beside(Path file) {
+FilePath beside(FilePath file) {
   return file += ".tmp";
 }
 
 }  // namespace
 
-void make_folder(const Path& folder) {
+void make_folder(const FilePath& folder) {
   doing("be made", folder, [&] { std::filesystem::create_directories(folder); });
 }
 
-fmt::file lock_folder(const Path& folder) {
+fmt::file lock_folder(const FilePath& folder) {
   fmt::file lock;
   doing("be opened", folder, [&] { lock = opened(folder, O_RDONLY | O_DIRECTORY); });
   if (::flock(lock.descriptor(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return lock;
@@ -69,12 +69,12 @@ void clear_run_folder(const RunFolder& folder, bool replace) {
   remove_file(folder.all_fields());
 }
 
-void remove_file(const Path& file) {
+void remove_file(const FilePath& file) {
   doing("be removed", file, [&] { std::filesystem::remove_all(file); });
 }
 
-void write_beside(const Path& file, Sync sync, const std::function<void(const Path& beside)>& write) {
-  const Path made = beside(file);
+void write_beside(const FilePath& file, Sync sync, const std::function<void(const FilePath& beside)>& write) {
+  const FilePath made = beside(file);
   try {
     write(made);
     if (sync == Sync::yes) sync_file(made);
@@ -93,8 +93,8 @@ void write_beside(const Path& file, Sync sync, const std::function<void(const Pa
   }
 }
 
-void atomic_write(const Path& file, std::string_view text, Sync sync) {
-  write_beside(file, sync, [text](const Path& made) {
+void atomic_write(const FilePath& file, std::string_view text, Sync sync) {
+  write_beside(file, sync, [text](const FilePath& made) {
     doing("be written", made, [&] {
       fmt::file out = opened(made, O_WRONLY | O_CREAT | O_TRUNC);
       for (std::string_view rest = text; !rest.empty();) rest.remove_prefix(out.write(rest.data(), rest.size()));
@@ -102,14 +102,14 @@ void atomic_write(const Path& file, std::string_view text, Sync sync) {
   });
 }
 
-void take_room(const Path& file, std::uint64_t bytes) {
+void take_room(const FilePath& file, std::uint64_t bytes) {
   doing("be written", file, [&] {
     const int error = ::posix_fallocate(opened(file, O_WRONLY).descriptor(), 0, static_cast<off_t>(bytes));
     require(error == 0, error);
   });
 }
 
-void append_at(const Path& file, std::uint64_t bytes, std::string_view text) {
+void append_at(const FilePath& file, std::uint64_t bytes, std::string_view text) {
   doing("be written", file, [&] {
     fmt::file out = opened(file, O_WRONLY | O_APPEND);
     if (const auto size = static_cast<std::uint64_t>(out.size()); size != bytes)
@@ -122,11 +122,11 @@ void append_at(const Path& file, std::uint64_t bytes, std::string_view text) {
   });
 }
 
-void sync_file(const Path& file) {
+void sync_file(const FilePath& file) {
   doing("be synced", file, [&] { require(::fsync(opened(file, O_WRONLY).descriptor()) == 0); });
 }
 
-std::string read_whole(const Path& file) {
+std::string read_whole(const FilePath& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) throw std::runtime_error(fmt::format("{}: cannot be opened.", file.string()));
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
