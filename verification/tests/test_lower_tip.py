@@ -53,3 +53,10 @@ def test_what_is_refused(tmp_path: Path, settings: tuple[str, ...], said: str) -
     (tmp_path / "scene.toml").write_text(GROWS, encoding="utf-8")
     done = strata(tmp_path, "resolve", "scene.toml", *(word for one in (*RISES, *settings) for word in ("--set", one)))
     assert done.returncode == 2 and said in done.stderr
+
+
+def test_fine_cells_reach_to_the_lower_stop(tmp_path: Path) -> None:
+    """Fluid with a weight drives the lower tip down first, further than the 2 m that stop.tip_y_m leaves the upper one: no coarse cells hold it."""
+    settings = ("fluid.inlet={start_Pa=20.05e6, rate_Pa_s=1e5}", "numerics.far_cell_m=2", "stop.tip_y_m=36", "stop.lower_tip_y_m=4")
+    assert run_in(tmp_path, GROWS, *settings).returncode == 0
+    assert summary_of(tmp_path / "X")["reason"] == "lower tip reached y = 4 m"
