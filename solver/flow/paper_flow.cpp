@@ -59,12 +59,6 @@ void diffuse(const Channel& channel, double mobility, Fluid::TimeRule rule, doub
   }
 }
 
-void diffuse(const Channel& channel, double mobility, Fluid::TimeRule rule, double dt, double inlet_Pa,
-             std::vector<double>& P) {
-  diffuse(
-      channel, mobility, rule, dt, 1, [inlet_Pa](int) { return inlet_Pa; }, P);
-}
-
 Channel channel_of(const Scene& scene, const State& state, std::span<const double> openings) {
   Channel channel;
   channel.inlet = state.fluid.inlet;
@@ -105,8 +99,9 @@ void advance_pressure(const Scene& scene, State& state) {
   if (fluid.law == Fluid::Law::uniform) {
     rest_fluid(fluid, state);
   } else {
-    diffuse(channel_of(scene, state, openings_of(state.fracture())), fluid.bulk_modulus_Pa / fluid.viscosity_Pa_s,
-            fluid.time_rule, state.dt, line.inlet_Pa, line.P);
+    diffuse(
+        channel_of(scene, state, openings_of(state.fracture())), fluid.bulk_modulus_Pa / fluid.viscosity_Pa_s,
+        fluid.time_rule, state.dt, 1, [&](int) { return line.inlet_Pa; }, line.P);
   }
   pass_to_points(state);
   state.monitors.delivered_m2 += state.dt * inflow(scene, state);

@@ -26,10 +26,6 @@ struct Channel {
 void diffuse(const Channel& channel, double mobility, Fluid::TimeRule rule, double dt, int count,
              const std::function<double(int)>& inlet_Pa, std::vector<double>& P);
 
-/// The same, one step.
-void diffuse(const Channel& channel, double mobility, Fluid::TimeRule rule, double dt, double inlet_Pa,
-             std::vector<double>& P);
-
 /// The channel of a state's fracture with these openings (m, one a point), at least minimum_opening_m. Throws nothing.
 Channel channel_of(const Scene& scene, const State& state, std::span<const double> openings);
 

@@ -162,6 +162,9 @@ void add_faces(const Step& step, const Trial& trial, Balance& b) {
       b.by_phi(from, onwards ? 1 : 0) = std::abs(flow.value());
       flow = trial.phi(from) * flow;
     }
+    // Towards a front no more than there is room for behind it.
+    const double most = b.rock.most.size() > 0 ? b.rock.most(k) : std::nan("");
+    if (std::copysign(1.0, most) * flow.value() > std::abs(most)) flow = Dual(most);
     add_flow(b, k, -flow, k, k + 1);
     add_flow(b, k + 1, flow, k, k + 1);
   }

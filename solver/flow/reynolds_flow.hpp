@@ -34,6 +34,7 @@ struct RockResponse {
   Eigen::VectorXd E_prime = {}, closing = {};
   Eigen::VectorXd lost = {};   // by both faces of each cell until the step's end (m^2), or nothing where none leak
   Eigen::VectorXd front = {};  // front_conductances(), or none
+  Eigen::VectorXd most = {};   // that flows to a front, signed, or no number: see limit_to_front()
   Eigen::VectorXd rise = {};   // rho g times each cell's height above the inlet (Pa), or nothing: without weight
 };
 using RockModel = std::function<RockResponse(const Eigen::VectorXd& P)>;  // P absolute, one a point (Pa)

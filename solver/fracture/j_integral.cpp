@@ -39,13 +39,10 @@ std::array<double, 4> interaction(const Elasticity& rock, const Frame& frame, co
 RingParticle ring_particle(const Elasticity& rock, const State& state, const Frame& frame, const RingWeights& weights,
                            std::size_t bin, std::size_t q) {
   const Particles& p = state.particles;
-  RingParticle of{q, bin, {}, {}, {}, {}};
-  for (std::size_t k = 0; k < rings; ++k) {
-    of.V_grad_q[k] = p.V[q] * weights[k].grad;
-    of.V_q[k] = p.V[q] * weights[k].q;
-  }
-  const Vec2 Q = mean_over_rings(Vec2{Vec2::Zero()}, [&](std::size_t k) { return of.V_grad_q[k]; });
-  const double V_q = mean_over_rings(0.0, [&](std::size_t k) { return of.V_q[k]; });
+  RingParticle of{q, bin, {}, {}, {}};
+  for (std::size_t k = 0; k < rings; ++k) of.V[k] = {p.V[q] * weights[k].q, p.V[q] * weights[k].grad};
+  const Vec2 Q = mean_over_rings(Vec2{Vec2::Zero()}, [&](std::size_t k) { return of.V[k].grad; });
+  const double V_q = mean_over_rings(0.0, [&](std::size_t k) { return of.V[k].q; });
   const Vec2 at = frame.local(Vec2{p.x[q], p.y[q]} - frame.tip);
   const double theta = angle_at(at, ((p.sides[q] & state.fracture().mask()) != 0) == (frame.sign > 0.0));
   for (std::size_t mode = 0; mode < 2; ++mode) {
@@ -57,9 +54,9 @@ RingParticle ring_particle(const Elasticity& rock, const State& state, const Fra
   return of;
 }
 
-// Calls visit(RingParticle) for the particles of all bins that count: at rest those where q is 1 all around do not.
-template <class Visit>
-void weigh_particles(const Scene& scene, const Rocks& rocks, const State& state, const TipGeometry& at, Visit visit) {
+// The particles of all bins that count: at rest those where q is 1 all around do not.
+void weigh_particles(const Scene& scene, const Rocks& rocks, const State& state, TipRule& rule) {
+  const TipGeometry& at = rule.at;
   const bool at_rest = scene.numerics.mechanics == Numerics::Mechanics::quasistatic && !scene.body.acceleration_m_s2;
   const auto flat = [](const std::array<double, 9>& q, double value) { return std::ranges::count(q, value) == 9; };
   const Particles& p = state.particles;
@@ -70,14 +67,14 @@ void weigh_particles(const Scene& scene, const Rocks& rocks, const State& state,
     if (at_rest && std::ranges::all_of(*nodes, [&](const auto& q) { return flat(q, 1.0) || flat(q, 0.0); })) continue;
     for (const std::size_t q : bin) {
       const RingWeights weights = ring_weights(state.grid, *nodes, bin.i, bin.j, {p.x[q], p.y[q]});
-      visit(ring_particle(rocks[p.rock[q]], state, at.frame, weights, b, q));
+      rule.particles.push_back(ring_particle(rocks[p.rock[q]], state, at.frame, weights, b, q));
     }
   }
 }
 
-// Calls visit(RingFace) for the points of the fracture that rings may weigh.
-template <class Visit>
-void weigh_faces(const State& state, const TipGeometry& at, bool at_back, Visit visit) {
+// The points of the fracture that rings may weigh.
+void weigh_faces(const State& state, bool at_back, TipRule& rule) {
+  const TipGeometry& at = rule.at;
   const Grid& grid = state.grid;
   const Surface& fracture = state.fracture();
   for (std::size_t point = 0; point < fracture.points.size(); ++point) {
@@ -96,7 +93,7 @@ void weigh_faces(const State& state, const TipGeometry& at, bool at_back, Visit 
     const double near = std::max(from_tip - 0.5 * s.A, 0.0), far = from_tip + 0.5 * s.A;
     face.I = mean_over_rings(0.0, [&](std::size_t k) { return face.q[k]; }) * 4.0 / at.rock.E_prime * 2.0 *
              (std::sqrt(far) - std::sqrt(near)) / std::sqrt(2.0 * std::numbers::pi);
-    visit(face);
+    rule.faces.push_back(face);
   }
 }
 
@@ -167,7 +164,7 @@ void sum_particle(const Scene& scene, const Rocks& rocks, const State& state, co
   const double W = 0.5 * (s.xx * g_xx + s.yy * g_yy + s.xy * (g_xy + g_yx)), T = 0.5 * rock.rho * f.v.squaredNorm();
   const Vec2 flux = s.on(u_1) - (W + T) * e;
   const double inertia = rock.rho * (f.a.dot(u_1) - f.v.dot(f.v_1));
-  for (std::size_t k = 0; k < rings; ++k) sums.J[k] += flux.dot(of.V_grad_q[k]) + inertia * of.V_q[k];
+  for (std::size_t k = 0; k < rings; ++k) sums.J[k] += flux.dot(of.V[k].grad) + inertia * of.V[k].q;
   for (std::size_t mode = 0; mode < 2; ++mode) {
     const auto& c = of.c[mode];
     sums.I[mode] += c[0] * g_xx + c[1] * g_xy + c[2] * g_yx + c[3] * g_yy + rock.rho * f.a.dot(of.V_q_u_1[mode]);
@@ -181,8 +178,8 @@ std::vector<TipRule> make_tip_rules(const Scene& scene, const Rocks& rocks, cons
   for (const Tip& tip : state.tips) {
     TipRule& rule = rules.emplace_back();
     rule.at = tip_geometry(scene, rocks, state, tip);
-    weigh_particles(scene, rocks, state, rule.at, [&](const RingParticle& of) { rule.particles.push_back(of); });
-    weigh_faces(state, rule.at, tip.at_back, [&](const RingFace& face) { rule.faces.push_back(face); });
+    weigh_particles(scene, rocks, state, rule);
+    weigh_faces(state, tip.at_back, rule);
   }
   return rules;
 }
@@ -198,18 +195,8 @@ void measure_tips(const Scene& scene, const Rocks& rocks, const std::vector<TipR
   }
 }
 
-// Without rules, which would take memory in each step.
 void measure_tips(const Scene& scene, const Rocks& rocks, State& state) {
-  const std::vector<Vec2> r = rubbing_reactions(scene, state);
-  for (Tip& tip : state.tips) {
-    const TipGeometry at = tip_geometry(scene, rocks, state, tip);
-    TipSums sums;
-    weigh_particles(scene, rocks, state, at,
-                    [&](const RingParticle& of) { sum_particle(scene, rocks, state, at.frame.e_1, of, sums); });
-    weigh_faces(state, at, tip.at_back,
-                [&](const RingFace& face) { sum_face(state.fracture(), r, at.frame, face, sums); });
-    finish_tip(scene, at, state, sums, tip);
-  }
+  measure_tips(scene, rocks, make_tip_rules(scene, rocks, state), state);
 }
 
 double kink_angle(double K_I, double K_II) {

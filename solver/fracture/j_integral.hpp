@@ -14,10 +14,9 @@ namespace strata {
 // the rings, take c : g + rho a . V q u_1 of Williams' fields.
 struct RingParticle {
   std::size_t particle = 0, bin = 0;
-  std::array<Vec2, ring_fractions.size()> V_grad_q;  // m
-  std::array<double, ring_fractions.size()> V_q;     // m^2
-  std::array<std::array<double, 4>, 2> c;            // of g_xx, g_xy, g_yx and g_yy
-  std::array<Vec2, 2> V_q_u_1;                       // of unit K
+  RingWeights V;                           // times its area: V q (m^2), V grad q (m)
+  std::array<std::array<double, 4>, 2> c;  // of g_xx, g_xy, g_yx and g_yy
+  std::array<Vec2, 2> V_q_u_1;             // of unit K
 };
 
 // And of a point of the fracture.

@@ -121,11 +121,6 @@ SampleKey key_at(const SampleBuilder& b, int column, SideWord sides, bool plus) 
 void add_particles(SampleBuilder& b) {
   const Particles& p = b.state.particles;
   const Grid& g = b.state.grid;
-  struct Last {
-    SampleKey key{};
-    BondSample* sample = nullptr;
-  };
-  std::array<Last, 3> last;  // particles of a bin follow each other, and have the same keys but for sides
   const bool has_body = b.scene.body.acceleration_m_s2.has_value();
   for (std::size_t q = 0; q < p.size(); ++q) {
     const Vec2 x{p.x[q], p.y[q]};
@@ -135,9 +130,7 @@ void add_particles(SampleBuilder& b) {
     const bool plus = (p.sides[q] & b.surface.mask()) != 0;
     for (std::size_t a = 0; a < 3; ++a) {
       if (w.grad[a].isZero() && (!has_body || w.Phi[a] == 0.0)) continue;
-      const SampleKey key = key_at(b, w.column[a], p.sides[q], plus);
-      if (last[a].sample == nullptr || last[a].key != key) last[a] = {key, &b.samples[key]};
-      last[a].sample->particles.push_back({q, p.V[q] * w.grad[a], w.Phi[a]});
+      b.samples[key_at(b, w.column[a], p.sides[q], plus)].particles.push_back({q, p.V[q] * w.grad[a], w.Phi[a]});
     }
   }
 }

@@ -49,7 +49,7 @@ double tip_margin(const Scene& scene, const Rocks& rocks, State& state, Quasista
   const double G = driving(rock, tip);
   if (rock.J_c > 0.0) return std::sqrt(std::max(0.0, G) / rock.J_c);
   if (weighs_energy(tip)) return G > 0.0 ? 2.0 : 0.0;
-  return toughless_margin(scene.fluid, state, rock.E_prime, tip);
+  return toughless_margin(state, rock.E_prime, tip);
 }
 
 double margin_of(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run) {

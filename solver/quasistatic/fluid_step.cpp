@@ -81,31 +81,41 @@ void add_place(const ContactPlace& place, const LawAnswer& r, double w, RockResp
 }
 
 // What both faces of each cell have lost to the rock by a time (s), 2 (2 C_L sqrt(t - t_0)) A (m^2; Carter, in Howard &
-// Fast 1957); nothing where no rock takes up fluid.
-Eigen::VectorXd lost_by(const Scene& scene, double time, const State& state) {
+// Fast 1957), with fronts that are at their tips at a time `there`; nothing where no rock takes up fluid.
+Eigen::VectorXd lost_by(const Scene& scene, double time, double there, const State& state) {
   if (!scene.leaks() || state.reynolds.size() == 0) return {};
   Eigen::VectorXd lost(state.fracture().points.size());
-  const std::vector<double> wet = wet_times(state.reynolds, time, true, true);
+  const std::vector<double> wet = wet_times(state.reynolds, there, true, true);
   for (std::size_t k = 0; k < state.reynolds.size(); ++k) {
     const SurfacePoint& s = state.fracture().points[k];
     const double C_L = scene.rocks[rock_at(scene, s.x)].leakoff_m_sqrt_s;
-    lost[static_cast<Eigen::Index>(k)] = 4.0 * C_L * std::sqrt(time - wet[k]) * s.A;
+    lost[static_cast<Eigen::Index>(k)] = 4.0 * C_L * std::sqrt(std::max(0.0, time - wet[k])) * s.A;
   }
   return lost;
 }
 
-// What conducts near the fronts of tips that go on at a time (s).
-Eigen::VectorXd conductances_at_fronts(const Scene& scene, const Rocks& rocks, double time, const State& state) {
-  if (state.grown.line.size() == 0) return {};
+// Whether a tip grew when the steps of the flow last began; what is just after growth takes a step of its own.
+bool grew_last(const State& state, const Tip& tip) {
+  return state.grown.time - tip.last_growth_s < 2.0 * shortest_coupled_step;
+}
+
+// What conducts near the fronts of tips that go on at a time (s) and, where those of the last growth are at their tips
+// `there` only, the most that flows to them.
+void add_fronts(const Scene& scene, const Rocks& rocks, double time, double there, const State& state,
+                RockResponse& of) {
+  if (state.grown.line.size() == 0) return;
   const ReynoldsLine& line = state.reynolds;
-  Eigen::VectorXd front = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(line.size()) - 1);
+  of.front = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(line.size()) - 1);
+  of.most = Eigen::VectorXd::Constant(of.front.size(), std::nan(""));
   for (const Tip& tip : state.tips) {
     const auto& points = state.fracture().points;
     const Elasticity& rock = rocks[rock_at(scene, (tip.at_back ? points.back() : points.front()).x)];
     const double K_Ic = std::sqrt(rock.J_c * rock.E_prime);
-    front += front_conductances(scene.fluid, line, tip.at_back, rock.E_prime, K_Ic, time);
+    const double at_tip = grew_last(state, tip) ? there : time;
+    of.front += front_conductances(scene.fluid, line, tip.at_back, rock.E_prime, K_Ic, at_tip);
+    if (at_tip > time)
+      limit_to_front(scene.fluid, line, tip.at_back, rock.E_prime, K_Ic, time, there, of.lost, of.most);
   }
-  return front;
 }
 
 // rho g times the height of cells above the inlet (Pa).
@@ -118,32 +128,29 @@ Eigen::VectorXd rise_of_cells(const Scene& scene, const State& state) {
 }
 
 // The rock at a time (s) as the flow sees it: openings and their change with the pressures, in equilibrium with all
-// surfaces.
-RockModel rock_of(const Scene& scene, double time, State& state, QuasistaticModel& model) {
+// surfaces; fronts of the last growth are at their tips at a time `there`.
+RockModel rock_of(const Scene& scene, double time, double there, State& state, QuasistaticModel& model) {
   const auto& points = state.fracture().points;
-  Eigen::VectorXd E_prime(points.size()), closing(points.size());
+  RockResponse fixed;  // what no pressure changes
+  fixed.E_prime.resize(std::ssize(points)), fixed.closing.resize(std::ssize(points));
   const Rocks rocks = make_elasticities(scene);
-  for (Eigen::Index k = 0; k < closing.size(); ++k) {
+  for (Eigen::Index k = 0; k < std::ssize(points); ++k) {
     const SurfacePoint& s = points[static_cast<std::size_t>(k)];
-    E_prime[k] = rocks[rock_at(scene, s.x)].E_prime, closing[k] = s.closing_stress();
+    fixed.E_prime[k] = rocks[rock_at(scene, s.x)].E_prime, fixed.closing[k] = s.closing_stress();
   }
   if (model.dw_dP_of != model.factor.pieces) model.dw_dP.resize(0, 0);
-  const Eigen::VectorXd lost = lost_by(scene, time, state), fronts = conductances_at_fronts(scene, rocks, time, state);
-  const Eigen::VectorXd rise = rise_of_cells(scene, state);
-  return [&scene, time, &state, &model, E_prime, closing, lost, fronts, rise](const Eigen::VectorXd& P) {
+  fixed.lost = lost_by(scene, time, there, state);
+  fixed.rise = rise_of_cells(scene, state);
+  add_fronts(scene, rocks, time, there, state, fixed);
+  return [&scene, time, &state, &model, fixed](const Eigen::VectorXd& P) {
     set_point_pressures(P, state);
     const Equilibrium at = find_equilibrium(scene, time, state, model);
     if (model.dw_dP_of != at.pieces || model.dw_dP.size() == 0) {  // the same as long as no place opens or closes
       model.dw_dP = opening_per_pressure(state, model.condensed, model.places, at, model.factor);
       model.dw_dP_of = at.pieces;
     }
-    RockResponse rock{.w = Eigen::VectorXd::Zero(P.size()),
-                      .dw_dP = model.dw_dP,
-                      .E_prime = E_prime,
-                      .closing = closing,
-                      .lost = lost,
-                      .front = fronts,
-                      .rise = rise};
+    RockResponse rock = fixed;
+    rock.w = Eigen::VectorXd::Zero(P.size()), rock.dw_dP = model.dw_dP;
     for (std::size_t k = 0; k < model.places.size(); ++k) {
       const ContactPlace& place = model.places[k];
       if (place.tie < 0 && place.surface == 0) add_place(place, at.answers[k], at.w[k].dot(place.n), rock);
@@ -170,15 +177,17 @@ void rest_at_ends(const Fluid& fluid, State& state) {
     P.back() = fluid.at_rest(P.back(), vertices.back().x.y() - points.back().x.y());
 }
 
-FluidStep couple(const Scene& scene, double dt, State& state, QuasistaticModel& model) {
+FluidStep couple(const Scene& scene, double dt, bool on_the_way, State& state, QuasistaticModel& model) {
   // Of the largest opening, a step: some hundred of them add up to less than a per cent, since what one does wrong the
   // next ones heal.
   const double allowed = scene.numerics.flow_error;
   const double end = state.time + std::max(dt, shortest_coupled_step);
   const bool grown = state.grown.line.size() > 0;
   GrownFluid from = grown ? state.grown : GrownFluid{state.time, 0.0, state.reynolds, state.balance};
+  const bool known = from.took < from.time;  // what the first growth took says nothing of the next
+  const double there = on_the_way && known ? std::max(end, from.time + from.took) : end;
   const StepReport report = step_reynolds(scene.fluid, inlet_over(scene, state, from.time, end), end - from.time,
-                                          rock_of(scene, end, state, model), from.line, from.balance);
+                                          rock_of(scene, end, there, state, model), from.line, from.balance);
   if (!report.converged) return {false, 0.0, report.reason};
   state.time = end;
   state.reynolds = std::move(from.line);
@@ -191,25 +200,6 @@ FluidStep couple(const Scene& scene, double dt, State& state, QuasistaticModel& 
       state);
   state.monitors.volume_balance = state.balance.closure();
   return {true, report.error_w / allowed, ""};
-}
-
-// A rock without toughness lets a tip grow as soon as the fracture is open there: where K_I, and the K that each
-// opening within two cells behind the tip stands for (w = 8 K/E' sqrt(x/(2 pi))), exceed what a cell resolves of the
-// net pressure's own. Fluid that has just wetted the last cells would let the tip run ahead of the open fracture
-// otherwise.
-double margin_by_K(const State& state, double E_prime, const Tip& tip) {
-  constexpr double resolved = 0.1;  // of p sqrt(h)
-  constexpr double large_K = 1e8;   // Pa sqrt(m), of which the tolerance of an event is 1e-4
-  const Surface& fracture = state.fracture();
-  const SurfacePoint& last = tip.at_back ? fracture.points.back() : fracture.points.front();
-  double K = tip.K_I;
-  for (const SurfacePoint& s : fracture.points) {
-    const double x = tip.at_back ? fracture.length() - s.arc : s.arc;
-    if (x < 2.0 * state.grid.h) K = std::min(K, E_prime / 8.0 * std::sqrt(2.0 * std::numbers::pi / x) * s.opening());
-  }
-  const double net = state.fluid.inlet_Pa - last.closing_stress();
-  if (net <= 0.0) return 0.0;
-  return 1.0 + (K - resolved * net * std::sqrt(state.grid.h)) / large_K;
 }
 
 }  // namespace
@@ -229,7 +219,7 @@ void fill_fracture(const Scene& scene, State& state, QuasistaticModel& model) {
       P = std::min(P, closing - held * std::abs(closing) + rise[static_cast<Eigen::Index>(k)]);
     }
   }
-  const RockResponse rock = rock_of(scene, state.time, state, model)((P - rise.array()).matrix());
+  const RockResponse rock = rock_of(scene, state.time, state.time, state, model)((P - rise.array()).matrix());
   std::vector<double> length;
   for (const SurfacePoint& s : points) length.push_back(s.A);
   state.reynolds = full_line(scene.fluid, length, state.fluid.inlet, P, rock.w, state.balance, rise);
@@ -262,15 +252,19 @@ void start_fronts(double took, State& state) {
   guess_new_cells(state.grown.line);
 }
 
-double toughless_margin(const Fluid& fluid, const State& state, double E_prime, const Tip& tip) {
-  if (state.grown.line.size() == 0 || tip.last_growth_s != state.grown.time) return margin_by_K(state, E_prime, tip);
-  const MovingFront front(fluid, state.reynolds, tip.at_back, E_prime, 0.0, state.time);
-  double w = 0.0, behind_front = 0.0;
-  for (const SurfacePoint& s : state.fracture().points) {
-    const double x = tip.at_back ? state.fracture().length() - s.arc : s.arc;
-    if (x > state.grid.h && x < 2.0 * state.grid.h) w += s.opening(), behind_front += front.opening(std::sqrt(x));
+double toughless_margin(const State& state, double E_prime, const Tip& tip) {
+  constexpr double resolved = 0.1;  // of p sqrt(h)
+  constexpr double large_K = 1e8;   // Pa sqrt(m), of which the tolerance of an event is 1e-4
+  const Surface& fracture = state.fracture();
+  const SurfacePoint& last = tip.at_back ? fracture.points.back() : fracture.points.front();
+  double K = tip.K_I;
+  for (const SurfacePoint& s : fracture.points) {
+    const double x = tip.at_back ? fracture.length() - s.arc : s.arc;
+    if (x < 2.0 * state.grid.h) K = std::min(K, E_prime / 8.0 * std::sqrt(2.0 * std::numbers::pi / x) * s.opening());
   }
-  return w / behind_front;
+  const double net = state.fluid.inlet_Pa - last.closing_stress();
+  if (net <= 0.0) return 0.0;
+  return 1.0 + (K - resolved * net * std::sqrt(state.grid.h)) / large_K;
 }
 
 void add_fluid_cells(const Scene& scene, bool at_back, std::size_t added, State& state) {
@@ -283,12 +277,12 @@ void add_fluid_cells(const Scene& scene, bool at_back, std::size_t added, State&
   }
 }
 
-FluidStep advance_fluid(const Scene& scene, double dt, State& state, QuasistaticModel& model) {
+FluidStep advance_fluid(const Scene& scene, double dt, State& state, QuasistaticModel& model, bool on_the_way) {
   if (!state.has_fracture) {
     state.time += dt;
     return {};
   }
-  if (scene.fluid.law == Fluid::Law::reynolds) return couple(scene, dt, state, model);
+  if (scene.fluid.law == Fluid::Law::reynolds) return couple(scene, dt, on_the_way, state, model);
   if (scene.fluid.law == Fluid::Law::uniform) {
     if (dt > 0.0) state.fluid.inlet_Pa = inlet_pressure(scene.fluid, state.time + dt);
     rest_fluid(scene.fluid, state);

@@ -27,9 +27,10 @@ constexpr double shortest_coupled_step = 1e-6;
 /// Pressures at the end of a step dt (s), in state.fluid, at the fracture's points and, under law = "reynolds", in
 /// state.reynolds; state.time moves on. uniform: the inlet's. paper: the study's diffusion in steps that resolve it,
 /// with the openings midway, foreseen from the rates of the step before (state.fluid.w_rate) or by a trial step.
-/// reynolds: flow and rock in one system, over shortest_coupled_step at least. dt = 0: only what growth changed. Throws
+/// reynolds: flow and rock in one system, over shortest_coupled_step at least. dt = 0: only what growth changed.
+/// on_the_way: the fronts of the last growth take as long as it took to be at their tips, not just dt. Throws
 /// NumericalFailure as find_equilibrium() and diffuse() do.
-FluidStep advance_fluid(const Scene& scene, double dt, State& state, QuasistaticModel& model);
+FluidStep advance_fluid(const Scene& scene, double dt, State& state, QuasistaticModel& model, bool on_the_way = false);
 
 /// What a step of the study's law from `before` and its openings (m, one a point) at a time (s) owes to openings midway
 /// that were foreseen, after the equilibrium at its end: half of what the mean of the openings of its ends would have
@@ -44,9 +45,11 @@ void note_rates(std::span<const double> w_before, double dt, State& state);
 /// state.grown is emptied or the next growth.
 void start_fronts(double took, State& state);
 
-/// How near the tip of a rock without toughness is to growth (1: it grows): while its front goes on, how open the rock
-/// from one to two cells behind is against behind a front that is at the tip now; else by K. E_prime Pa.
-double toughless_margin(const Fluid& fluid, const State& state, double E_prime, const Tip& tip);
+/// How near the tip of a rock without toughness is to growth (1: it grows). It grows as soon as the fracture is open
+/// there: where K_I, and the K that each opening within two cells behind the tip stands for (w = 8 K/E' sqrt(x/(2
+/// pi))), exceed what a cell resolves of the net pressure's own. Fluid that has just wetted the last cells would let
+/// the tip run ahead of the open fracture otherwise. E_prime Pa.
+double toughless_margin(const State& state, double E_prime, const Tip& tip);
 
 /// The new cells of a fracture that has grown by `added` points at a tip, empty (law = "reynolds").
 void add_fluid_cells(const Scene& scene, bool at_back, std::size_t added, State& state);

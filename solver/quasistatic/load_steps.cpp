@@ -280,10 +280,10 @@ void grow_or_fail(const Scene& scene, const Rocks& rocks, State& state, Quasista
 // From `from` to the load a time dt later: run.margin is the margin there. Under law = "reynolds" there may be no
 // solution within the iterations allowed.
 FluidStep try_step(const Scene& scene, const Rocks& rocks, const LoadPoint& from, double dt, State& state,
-                   Quasistatic& run) {
+                   Quasistatic& run, bool on_the_way = false) {
   return_to(from, state);
   try {
-    FluidStep fluid = advance_fluid(scene, dt, state, run.model);
+    FluidStep fluid = advance_fluid(scene, dt, state, run.model, on_the_way);
     if (fluid.found) equilibrate(scene, rocks, state, run);
     return fluid;
   } catch (const NumericalFailure& failure) {  // perhaps only beyond the next event
@@ -391,6 +391,17 @@ bool locate_event(const Scene& scene, const Rocks& rocks, const LoadPoint& from,
   return last.found;
 }
 
+// What is written between two growths: fronts on their way. Tips stay as near to growth as with fronts that have come
+// to them, which events are sought with.
+void show_front(const Scene& scene, const Rocks& rocks, const LoadPoint& from, double dt, State& state,
+                Quasistatic& run) {
+  const double margin = run.margin;
+  const std::vector<Tip> tips = state.tips;
+  if (!try_step(scene, rocks, from, dt, state, run, true).found) try_step(scene, rocks, from, dt, state, run);
+  run.margin = margin;
+  state.tips = tips;
+}
+
 }  // namespace
 
 bool failure_due(const Quasistatic& run) {
@@ -453,6 +464,8 @@ void advance_quasistatic(const Scene& scene, const Rocks& rocks, double until, S
     state.grown = {};
     return advance_quasistatic(scene, rocks, until, state, run);
   }
+  if (state.grown.line.size() > 0 && run.margin < 1.0 && next_row(scene.fluid, from.time) > until)
+    show_front(scene, rocks, from, step.dt, state, run);
   if (foresees_openings(scene, state)) note_rates(w, state.time - from.time, state);
   accept(scene, from, Change::load, state, run);
   state.dt = next_step(scene, step);

@@ -24,6 +24,13 @@ Channel uniform_channel(std::size_t pieces, double length = L) {
   return channel;
 }
 
+// One step.
+void diffuse(const Channel& channel, double diffusivity, Fluid::TimeRule rule, double dt, double inlet_Pa,
+             std::vector<double>& P) {
+  strata::diffuse(
+      channel, diffusivity, rule, dt, 1, [inlet_Pa](int) { return inlet_Pa; }, P);
+}
+
 // Pressure after `steps` steps to time t from rest under the ramp.
 std::vector<double> ramp(const Channel& channel, Fluid::TimeRule rule, int steps, double t) {
   std::vector<double> P(channel.length.size() + 1, 0.0);
@@ -194,7 +201,7 @@ TEST_CASE("steps through a channel are those of full matrices") {
         M.row(static_cast<Eigen::Index>(inlet)).setZero();
         const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(n, n);
         std::vector<double> found(P.data(), P.data() + n);
-        diffuse(
+        strata::diffuse(
             channel, mobility, rule, dt, 3, [](int k) { return 1.0 + 0.5 * k; }, found);
         for (int k = 1; k <= 3; ++k) {
           Eigen::VectorXd right = (one - (1.0 - theta) * M) * P;

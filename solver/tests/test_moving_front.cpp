@@ -46,8 +46,30 @@ TEST_CASE("a new cell conducts as behind a moving front") {
   const double d = 18.0 * std::sqrt(3.0) * 1.2 * V / E_prime;
   const VectorXd by_w = front_conductances(oil, grown(oil, 1, true), true, E_prime, 0.0, 10.0);
   CHECK(by_w(1) == Approx(std::cbrt(d * d * A) / (1.2 * (9.0 - 3.0 * std::cbrt(2.0 / 3.0)))).epsilon(1e-3));
-  CHECK(MovingFront(oil, grown(oil, 1, true), true, E_prime, 0.0, 10.0).opening(0.5) ==
-        Approx(std::cbrt(d * 0.25 * 0.25)));
+}
+
+// Requires that of a front which is so far on its way to two new cells' end, at the speed that brings it there, no more
+// flows to it than fills (9 f - 1)/8 of what w = (d x^2)^(1/3) holds over their length, 3/5 d^(1/3) L^(5/3), and what
+// the rock has taken there, over the time since growth; with the sign of its way, at their first face alone; nothing
+// where it has hardly begun. Mutations that fail: half the way, sign, the cells' leak-off or the old ones', speed of
+// now.
+TEST_CASE("no more flows to a front than there is room for behind it") {
+  const Fluid oil = fluid_of(0.1);
+  const double L = 2.0 * A, d = 18.0 * std::sqrt(3.0) * 1.2 * (L / 5.0) / E_prime;
+  const double full = 0.6 * std::cbrt(d) * std::pow(L, 5.0 / 3.0);
+  for (const bool at_back : {true, false}) {
+    const auto most = [&](double time, const VectorXd& lost) {
+      VectorXd flow = VectorXd::Constant(3, 7.0);
+      limit_to_front(oil, grown(oil, 2, at_back), at_back, E_prime, 0.0, time, 11.0, lost, flow);
+      CHECK(flow(at_back ? 0 : 2) == 7.0);
+      CHECK(flow(at_back ? 2 : 0) == 7.0);
+      return (at_back ? 1.0 : -1.0) * flow(1);
+    };
+    const VectorXd lost = at_back ? VectorXd{{9.0, 9.0, 1e-6, 2e-6}} : VectorXd{{2e-6, 1e-6, 9.0, 9.0}};
+    CHECK(most(8.0, {}) == Approx((9.0 * 0.4 - 1.0) / 8.0 * full / 2.0).epsilon(1e-3));
+    CHECK(most(11.0, lost) == Approx((full + 3e-6) / 5.0).epsilon(1e-3));
+    CHECK(most(6.5, {}) == 0.0);
+  }
 }
 
 // Requires of several new cells that a face further from the tip lets pass more by the same opening, that the other end
