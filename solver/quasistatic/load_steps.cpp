@@ -397,7 +397,8 @@ void show_front(const Scene& scene, const Rocks& rocks, const LoadPoint& from, d
                 Quasistatic& run) {
   const double margin = run.margin;
   const std::vector<Tip> tips = state.tips;
-  if (!try_step(scene, rocks, from, dt, state, run, true).found) try_step(scene, rocks, from, dt, state, run);
+  const bool found = try_step(scene, rocks, from, dt, state, run, true).found;
+  if (!found || failure_due(run)) try_step(scene, rocks, from, dt, state, run);
   run.margin = margin;
   state.tips = tips;
 }
