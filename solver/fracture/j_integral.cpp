@@ -54,9 +54,9 @@ RingParticle ring_particle(const Elasticity& rock, const State& state, const Fra
   return of;
 }
 
-// The particles of all bins that count: at rest those where q is 1 all around do not.
-void weigh_particles(const Scene& scene, const Rocks& rocks, const State& state, TipRule& rule) {
-  const TipGeometry& at = rule.at;
+// Calls visit(RingParticle) for the particles of all bins that count: at rest those where q is 1 all around do not.
+template <class Visit>
+void weigh_particles(const Scene& scene, const Rocks& rocks, const State& state, const TipGeometry& at, Visit visit) {
   const bool at_rest = scene.numerics.mechanics == Numerics::Mechanics::quasistatic && !scene.body.acceleration_m_s2;
   const auto flat = [](const std::array<double, 9>& q, double value) { return std::ranges::count(q, value) == 9; };
   const Particles& p = state.particles;
@@ -67,14 +67,14 @@ void weigh_particles(const Scene& scene, const Rocks& rocks, const State& state,
     if (at_rest && std::ranges::all_of(*nodes, [&](const auto& q) { return flat(q, 1.0) || flat(q, 0.0); })) continue;
     for (const std::size_t q : bin) {
       const RingWeights weights = ring_weights(state.grid, *nodes, bin.i, bin.j, {p.x[q], p.y[q]});
-      rule.particles.push_back(ring_particle(rocks[p.rock[q]], state, at.frame, weights, b, q));
+      visit(ring_particle(rocks[p.rock[q]], state, at.frame, weights, b, q));
     }
   }
 }
 
-// The points of the fracture that rings may weigh.
-void weigh_faces(const State& state, bool at_back, TipRule& rule) {
-  const TipGeometry& at = rule.at;
+// Calls visit(RingFace) for the points of the fracture that rings may weigh.
+template <class Visit>
+void weigh_faces(const State& state, const TipGeometry& at, bool at_back, Visit visit) {
   const Grid& grid = state.grid;
   const Surface& fracture = state.fracture();
   for (std::size_t point = 0; point < fracture.points.size(); ++point) {
@@ -93,7 +93,7 @@ void weigh_faces(const State& state, bool at_back, TipRule& rule) {
     const double near = std::max(from_tip - 0.5 * s.A, 0.0), far = from_tip + 0.5 * s.A;
     face.I = mean_over_rings(0.0, [&](std::size_t k) { return face.q[k]; }) * 4.0 / at.rock.E_prime * 2.0 *
              (std::sqrt(far) - std::sqrt(near)) / std::sqrt(2.0 * std::numbers::pi);
-    rule.faces.push_back(face);
+    visit(face);
   }
 }
 
@@ -178,8 +178,8 @@ std::vector<TipRule> make_tip_rules(const Scene& scene, const Rocks& rocks, cons
   for (const Tip& tip : state.tips) {
     TipRule& rule = rules.emplace_back();
     rule.at = tip_geometry(scene, rocks, state, tip);
-    weigh_particles(scene, rocks, state, rule);
-    weigh_faces(state, tip.at_back, rule);
+    weigh_particles(scene, rocks, state, rule.at, [&](const RingParticle& of) { rule.particles.push_back(of); });
+    weigh_faces(state, rule.at, tip.at_back, [&](const RingFace& face) { rule.faces.push_back(face); });
   }
   return rules;
 }
@@ -195,8 +195,18 @@ void measure_tips(const Scene& scene, const Rocks& rocks, const std::vector<TipR
   }
 }
 
+// Without rules, which would take memory in each step.
 void measure_tips(const Scene& scene, const Rocks& rocks, State& state) {
-  measure_tips(scene, rocks, make_tip_rules(scene, rocks, state), state);
+  const std::vector<Vec2> r = rubbing_reactions(scene, state);
+  for (Tip& tip : state.tips) {
+    const TipGeometry at = tip_geometry(scene, rocks, state, tip);
+    TipSums sums;
+    weigh_particles(scene, rocks, state, at,
+                    [&](const RingParticle& of) { sum_particle(scene, rocks, state, at.frame.e_1, of, sums); });
+    weigh_faces(state, at, tip.at_back,
+                [&](const RingFace& face) { sum_face(state.fracture(), r, at.frame, face, sums); });
+    finish_tip(scene, at, state, sums, tip);
+  }
 }
 
 double kink_angle(double K_I, double K_II) {
