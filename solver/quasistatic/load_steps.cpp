@@ -465,7 +465,8 @@ void advance_quasistatic(const Scene& scene, const Rocks& rocks, double until, S
     state.grown = {};
     return advance_quasistatic(scene, rocks, until, state, run);
   }
-  if (state.grown.line.size() > 0 && run.margin < 1.0 && next_row(scene.fluid, from.time) > until)
+  const bool fed = !scene.fluid.rate_m2_s || inlet_rate(scene.fluid, from.time) > 0.0;  // as fast as before
+  if (fed && state.grown.line.size() > 0 && run.margin < 1.0 && next_row(scene.fluid, from.time) > until)
     show_front(scene, rocks, from, step.dt, state, run);
   if (foresees_openings(scene, state)) note_rates(w, state.time - from.time, state);
   accept(scene, from, Change::load, state, run);
