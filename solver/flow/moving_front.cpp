@@ -27,26 +27,48 @@ struct AddedCells {
   Index face(std::size_t j) const { return static_cast<Index>(std::min(cell(j), cell(j + 1))); }  // behind a cell
 };
 
-// What the rock behind a front is like that is at the tip at a time (s).
-struct MovingFront {
-  double c = 0.0;  // 8 K_Ic/(E' sqrt(2 pi)) (m^(1/2))
-  double d = 0.0;  // 2 3^(5/2) 12 mu V/E' (m)
-
-  MovingFront(const Fluid& fluid, const AddedCells& added, double E_prime, double K_Ic, double time) {
-    const double V = added.length / (time - added.line.wet_s[added.cell(0)]);
-    c = 8.0 * K_Ic / (E_prime * std::sqrt(2.0 * std::numbers::pi));
-    d = 18.0 * std::numbers::sqrt3 * 12.0 * fluid.viscosity_Pa_s * V / E_prime;
-  }
-  double opening(double u) const { return u * std::cbrt(c * c * c + d * u); }  // m, at u = sqrt(x)
-};
-
-// Of f(sqrt(x)) dx, dx = 2 u du, by three points of Gauss.
+// Integral of f from a to b by three points of Gauss,
 template <class Of>
-double integral(double from, double to, const Of& f) {
-  const double middle = 0.5 * (std::sqrt(from) + std::sqrt(to)), half = std::sqrt(to) - middle;
-  const auto at = [&](double off) { return 2.0 * (middle + off * half) * f(middle + off * half); };
-  return half / 9.0 * (5.0 * at(-std::sqrt(0.6)) + 8.0 * at(0.0) + 5.0 * at(std::sqrt(0.6)));
+double integral(double a, double b, const Of& f) {
+  const double middle = 0.5 * (a + b), off = std::sqrt(0.6) * 0.5 * (b - a);
+  return (b - a) / 18.0 * (5.0 * f(middle - off) + 8.0 * f(middle) + 5.0 * f(middle + off));
 }
+
+// and of f(sqrt(x)) dx, dx = 2 u du.
+template <class Of>
+double integral_over_x(double from, double to, const Of& f) {
+  return integral(std::sqrt(from), std::sqrt(to), [&](double u) { return 2.0 * u * f(u); });
+}
+
+// What the rock behind a front is like that is at the tip at a time (s): W (m^(1/2)) at u = sqrt(x) (m^(1/2)).
+struct MovingFront {
+  double c = 0.0, e = 0.0;  // m^(1/2)
+  double d = 0.0;           // m
+
+  MovingFront(const Fluid& fluid, const AddedCells& added, const TipRock& rock, double time) {
+    const double V = added.length / (time - added.line.wet_s[added.cell(0)]);
+    c = 8.0 * rock.K_Ic / (rock.E_prime * std::sqrt(2.0 * std::numbers::pi));
+    d = 18.0 * std::numbers::sqrt3 * 12.0 * fluid.viscosity_Pa_s * V / rock.E_prime;
+    e = 4.0 * rock.C_L / std::sqrt(V);
+  }
+  double slope(double W) const { return 3.0 * W * W * W / (W + e); }  // d du/dW,
+  double mean_slope(double W) const {                                 // and its mean from c to W
+    return integral(0.0, 1.0, [&](double t) { return slope(c + t * (W - c)); });
+  }
+  double shape(double u) const {
+    double W = std::cbrt(c * c * c + d * u);  // without leak-off; Newton's method passes the root once from below
+    for (int k = 0; k < 50 && e > 0.0; ++k) {
+      const double change = (d * u - (W - c) * mean_slope(W)) / slope(W);
+      W += change;
+      if (std::abs(change) <= 1e-12 * W) break;
+    }
+    return W;
+  }
+  double opening(double u) const { return u * shape(u); }  // m
+  double content(double from, double to) const {           // int w dx (m^2)
+    return integral_over_x(from, to, [this](double u) { return opening(u); });
+  }
+};
 
 }  // namespace
 
@@ -75,37 +97,38 @@ std::vector<double> wet_times(const ReynoldsLine& line, double time, bool at_fro
   return wet;
 }
 
-VectorXd front_conductances(const Fluid& fluid, const ReynoldsLine& line, bool at_back, double E_prime, double K_Ic,
+VectorXd front_conductances(const Fluid& fluid, const ReynoldsLine& line, bool at_back, const TipRock& rock,
                             double time) {
   const AddedCells added(line, at_back);
   VectorXd conductance = VectorXd::Zero(static_cast<Index>(line.size()) - 1);
   if (added.count == 0) return conductance;
-  const MovingFront front(fluid, added, E_prime, K_Ic, time);
+  const MovingFront front(fluid, added, rock, time);
   const double mu = 12.0 * fluid.viscosity_Pa_s;
   double x = 0.0, behind = 0.0;
   for (std::size_t j = 0; j < added.count; ++j) {
     const double A = added.length_of(j), middle = x + 0.5 * A;
-    const double own = integral(x, x + A, [&](double u) { return front.opening(u); });
+    const double own = front.content(x, x + A);
     x += A;
     behind += own;
-    double fall = integral(j == 0 ? x : middle, x + 0.5 * added.length_of(j + 1),
-                           [&](double u) { return std::pow(front.opening(u), -2); });
-    // P(x) - int P ds/(2 sqrt(x s)), s = 0 to x, over 12 mu V: int sqrt(s/x)/w^2 ds, in closed form.
-    const double a = front.opening(std::sqrt(x)) / std::sqrt(x), c = front.c;
-    if (j == 0) fall += 6.0 / (a * a + a * c + c * c);
-    conductance(added.face(j)) = (at_back ? 1.0 : -1.0) * behind * A / (own * mu * added.length * fall);
+    double fall = integral_over_x(j == 0 ? x : middle, x + 0.5 * added.length_of(j + 1), [&](double u) {
+      const double W = front.shape(u);
+      return (1.0 + front.e / W) / (u * u * W * W);
+    });
+    // P(x) - int P ds/(2 sqrt(x s)), s = 0 to x, over 12 mu V: int sqrt(s/x) (w + e sqrt(s))/w^3 ds, in closed form.
+    if (j == 0) fall += 6.0 / front.mean_slope(front.shape(std::sqrt(x)));
+    const double passed = behind + 2.0 / 3.0 * front.e * std::pow(x, 1.5);
+    conductance(added.face(j)) = (at_back ? 1.0 : -1.0) * passed * A / (own * mu * added.length * fall);
   }
   return conductance;
 }
 
-void limit_to_front(const Fluid& fluid, const ReynoldsLine& line, bool at_back, double E_prime, double K_Ic,
-                    double time, double there, const VectorXd& lost, VectorXd& most) {
+void limit_to_front(const Fluid& fluid, const ReynoldsLine& line, bool at_back, const TipRock& rock, double time,
+                    double there, const VectorXd& lost, VectorXd& most) {
   const AddedCells added(line, at_back);
   if (added.count == 0) return;
-  const MovingFront front(fluid, added, E_prime, K_Ic, there);
+  const MovingFront front(fluid, added, rock, there);
   const double since = time - line.wet_s[added.cell(0)], way = since / (there - line.wet_s[added.cell(0)]);
-  double room =
-      std::max(0.0, (9.0 * way - 1.0) / 8.0) * integral(0.0, added.length, [&](double u) { return front.opening(u); });
+  double room = std::max(0.0, (9.0 * way - 1.0) / 8.0) * front.content(0.0, added.length);
   for (std::size_t j = 0; j < added.count && lost.size() > 0; ++j) room += lost(static_cast<Index>(added.cell(j)));
   most(added.face(added.count - 1)) = (at_back ? 1.0 : -1.0) * room / since;
 }

@@ -1,8 +1,11 @@
 // The fluid's front, which goes through the cells that growth has added while the tip of the rock stands at their end.
 //
-// At a speed V, which is their length over the time since growth, the rock behind it opens by toughness and viscosity
-// together (Garagash & Detournay 2000; the sum of cubes: Dontsov & Peirce 2015), x behind the front:
-//   w^3 = (8 K_Ic/(E' sqrt(2 pi)))^3 x^(3/2) + 2 3^(5/2) (12 mu V/E') x^2,  q = V w,  dP/dx = 12 mu V/w^2
+// At a speed V, which is their length over the time since growth, the rock behind it opens by toughness, viscosity and
+// leak-off together (Garagash, Detournay & Adachi 2011, in the form of Dontsov & Peirce 2015), x = u^2 behind the
+// front:
+//   w = u W,  3 W^3/(W + e) dW = d du,  W(0) = c = 8 K_Ic/(E' sqrt(2 pi)),  d = 2 3^(5/2) 12 mu V/E',
+//   e = 4 C_L/sqrt(V),  q = V (w + e u),  dP/dx = 12 mu q/w^3
+// (W + e stands for their W + 0.991 e; without leak-off W^3 = c^3 + d u).
 #pragma once
 
 #include <Eigen/Core>
@@ -13,21 +16,26 @@
 
 namespace strata {
 
+// The rock at a tip: E/(1 - nu^2) (Pa), toughness (Pa sqrt(m)), leak-off of a face (m/s^(1/2)).
+struct TipRock {
+  double E_prime = 0.0, K_Ic = 0.0, C_L = 0.0;
+};
+
 /// What faces between cells conduct by the opening of the cell on the tip's side (m/(Pa s)), a value a face, below 0
 /// where that is the cell before; 0 where no front is near. The tip is at the line's last cell (at_back) or first, and
-/// the front is there at a time (s) after its last growth; E_prime (Pa), K_Ic (Pa sqrt(m)). While the front goes
-/// through new cells of together L, int_0^x w dx V/L passes a face at x on average. A cell stands for P at its middle,
-/// the last one for the even pressure with as much K_I.
-Eigen::VectorXd front_conductances(const Fluid& fluid, const ReynoldsLine& line, bool at_back, double E_prime,
-                                   double K_Ic, double time);
+/// the front is there at a time (s) after its last growth. While the front goes through new cells of together L,
+/// (int_0^x w dx + 2/3 e x^(3/2)) V/L passes a face at x on average: what stands and what has leaked beyond. A cell
+/// stands for P at its middle, the last one for the even pressure with as much K_I.
+Eigen::VectorXd front_conductances(const Fluid& fluid, const ReynoldsLine& line, bool at_back, const TipRock& rock,
+                                   double time);
 
 /// Sets the most that flows into the cells that a tip's last growth has added (m^2/s, from the first cell to the last)
 /// while the front, which is at the tip at a time `there` (s), is a share f of their length L on its way: what is lost
 /// of them (m^2) and what they hold. The rock ahead of the front holds them together, evenly over L: far from the tip
 /// as if it were at f L where they hold (9 f - 1)/8 of int_0^L w dx (by point forces on a half-infinite crack, w ~
 /// x^(1/2)).
-void limit_to_front(const Fluid& fluid, const ReynoldsLine& line, bool at_back, double E_prime, double K_Ic,
-                    double time, double there, const Eigen::VectorXd& lost, Eigen::VectorXd& most);
+void limit_to_front(const Fluid& fluid, const ReynoldsLine& line, bool at_back, const TipRock& rock, double time,
+                    double there, const Eigen::VectorXd& lost, Eigen::VectorXd& most);
 
 /// Pressure and filling of the cells that growth has added, still empty, as beside: from where a step that takes the
 /// front through them is sought. What they hold stays.

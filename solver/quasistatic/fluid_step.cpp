@@ -109,12 +109,11 @@ void add_fronts(const Scene& scene, const Rocks& rocks, double time, double ther
   of.most = Eigen::VectorXd::Constant(of.front.size(), std::nan(""));
   for (const Tip& tip : state.tips) {
     const auto& points = state.fracture().points;
-    const Elasticity& rock = rocks[rock_at(scene, (tip.at_back ? points.back() : points.front()).x)];
-    const double K_Ic = std::sqrt(rock.J_c * rock.E_prime);
+    const std::size_t r = rock_at(scene, (tip.at_back ? points.back() : points.front()).x);
+    const TipRock rock{rocks[r].E_prime, std::sqrt(rocks[r].J_c * rocks[r].E_prime), scene.rocks[r].leakoff_m_sqrt_s};
     const double at_tip = grew_last(state, tip) ? there : time;
-    of.front += front_conductances(scene.fluid, line, tip.at_back, rock.E_prime, K_Ic, at_tip);
-    if (at_tip > time)
-      limit_to_front(scene.fluid, line, tip.at_back, rock.E_prime, K_Ic, time, there, of.lost, of.most);
+    of.front += front_conductances(scene.fluid, line, tip.at_back, rock, at_tip);
+    if (at_tip > time) limit_to_front(scene.fluid, line, tip.at_back, rock, time, there, of.lost, of.most);
   }
 }
 

@@ -110,6 +110,7 @@ CASES = tuple(
     for name, variant, found_of, says in (
         ("leak_off", "", LEAKS, "leak-off of 1e-5 m/sqrt(s), toughness number 1.18: efficiency 0.41 at 500 s"),
         ("little_leak_off", "little", LEAKS, "leak-off of 1e-6 m/sqrt(s): efficiency 0.90"),
+        ("thick_oil", "thick", LEAKS, "20 times the viscosity and leak-off of 2e-5 m/sqrt(s), toughness number 0.56: efficiency 0.34 at 500 s"),
         ("no_leak_off", "none", NO_LEAKS, "the same without leak-off"),
     )
 )  # fmt: skip
