@@ -25,14 +25,12 @@ double net_at_inlet(const State& state) {
   return state.fluid.inlet_Pa - points[std::min(state.fluid.inlet, points.size() - 1)].closing_stress();
 }
 
-// The larger of a figure for the two sides.
+// A figure for the sides before and behind the inlet, 0 where there is none.
 template <class Figure>
-double of_sides(const State& state, const Figure& figure) {
+std::array<double, 2> of_sides(const State& state, const Figure& figure) {
   const std::size_t inlet = state.fluid.inlet, points = state.fracture().points.size();
-  double largest = 0.0;
-  if (inlet < points) note_largest(largest, figure(Side{state, inlet, points - inlet, true}));
-  if (inlet > 0) note_largest(largest, figure(Side{state, inlet - 1, inlet, false}));
-  return largest;
+  return {inlet > 0 ? figure(Side{state, inlet - 1, inlet, false}) : 0.0,
+          inlet < points ? figure(Side{state, inlet, points - inlet, true}) : 0.0};
 }
 
 double fall_along(const Side& side, double net) {
@@ -61,9 +59,12 @@ FlowStretch flow_stretch(const Scene& scene, const Side& side, std::size_t k) {
   }
   const std::vector<double>& w = side.state.reynolds.w;  // between the middles of two
   const double a = std::max(w[side.index(k)], roughness), b = std::max(w[side.index(k + 1)], roughness);
-  const double conducts = opening_between(std::max(a, floor), std::max(b, floor));
+  const std::vector<double>& wet = side.state.reynolds.wet_s;
+  const double last = wet[side.index(side.count - 1)];
+  const bool at_front = side.state.grown.line.size() > 0 && last > 0.0 && wet[side.index(k + 1)] == last;
+  const double conducts = opening_between(std::max(a, floor), std::max(b, floor)) / opening_between(a, b);
   const double weighs = scene.fluid.weight() * (side[k + 1].x.y() - side[k].x.y());
-  return {side[k].P - side[k + 1].P - weighs, side[k + 1].P, std::pow(conducts / opening_between(a, b), 3)};
+  return {side[k].P - side[k + 1].P - weighs, side[k + 1].P, at_front ? std::max(b, floor) / b : std::pow(conducts, 3)};
 }
 
 double missing_along(const Scene& scene, const Side& side) {
@@ -88,13 +89,14 @@ double missing_along(const Scene& scene, const Side& side) {
 
 double fall_in_a_cell(const State& state) {
   const double net = net_at_inlet(state);
-  return net > 0.0 ? of_sides(state, [&](const Side& side) { return fall_along(side, net); }) : 0.0;
+  if (!(net > 0.0)) return 0.0;
+  return std::ranges::max(of_sides(state, [&](const Side& side) { return fall_along(side, net); }));
 }
 
-double floor_share(const Scene& scene, const State& state) {
+std::array<double, 2> floor_share(const Scene& scene, const State& state) {
   const double net = net_at_inlet(state);
-  if (!(net > 0.0)) return 0.0;
-  return of_sides(state, [&](const Side& side) { return missing_along(scene, side); }) / net;
+  if (!(net > 0.0)) return {};
+  return of_sides(state, [&](const Side& side) { return missing_along(scene, side) / net; });
 }
 
 void watch_flow(const Scene& scene, State& state) {

@@ -1,6 +1,8 @@
 // Whether the cells resolve a flow and whether the floor of the opening decides about it, as the monitors keep it.
 #pragma once
 
+#include <array>
+
 #include "scene/scene.hpp"
 #include "state/state.hpp"
 
@@ -15,8 +17,10 @@ double fall_in_a_cell(const State& state);
 /// crack as much, over the inlet's net pressure: where openings w are below the floor w_f the same flow would lose
 /// DP ((w_f/w)^n - 1) more (n = 2 by the study's diffusion, 3 by lubrication; at most what leaves the cavitation
 /// pressure), and a pressure missing beyond x in a crack of length a is worth (2/pi) acos(x/a) of one missing
-/// everywhere (e.g. Tada, Paris & Irwin). Faces that touch are left out. Of two sides the larger. Throws nothing.
-double floor_share(const Scene& scene, const State& state);
+/// everywhere (e.g. Tada, Paris & Irwin). Faces that touch are left out; behind a moving front n is 1, since its
+/// asymptote conducts by the opening. A value for the side of the inlet before it, and one for that behind it (tips
+/// that are at_back): what one tip's new cells hold does not decide about the other. Throws nothing.
+std::array<double, 2> floor_share(const Scene& scene, const State& state);
 
 /// Notes both at the end of a step of the load. Where the inlet's pressure is given, what the flow lags behind is in
 /// the pressure of the next growth: the largest fall since the growth before counts. A given rate makes up for it: the

@@ -343,7 +343,7 @@ void note_growth(State& state, Tip& tip) {
   tip.last_growth_Pa = state.fluid.inlet_Pa;
   Monitors& monitors = state.monitors;
   note_largest(monitors.largest_flow_fall, monitors.flow_fall);
-  monitors.floor_share_sum += monitors.floor_share;
+  monitors.floor_share_sum += monitors.floor_share[tip.at_back ? 1 : 0];
   if (tip.near != Obstacle::none) {
     ++monitors.growths_apart;
   } else {

@@ -2,6 +2,7 @@
 // its equations say. output/suspect.hpp judges them.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -54,8 +55,8 @@ struct Monitors {
   double flow_fall_Pa = 0.0;       // largest fall of the pressure in a cell since then (by rate: the last)
   double flow_fall = 0.0;          // the same over the inlet's net pressure as it is now,
   double largest_flow_fall = 0.0;  // and the largest at growth
-  double floor_share = 0.0;        // what the pressure owes to the floor of the opening now,
-  double floor_share_sum = 0.0;    // and summed over growths
+  std::array<double, 2> floor_share = {};  // what the pressure owes to the floor of the opening now, by sides,
+  double floor_share_sum = 0.0;            // and summed over growths, of the side that grew
 };
 
 /// Takes up a value that is larger than the largest so far. One that is no number stays: no later one hides it.

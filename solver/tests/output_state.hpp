@@ -118,7 +118,7 @@ inline void fill_monitors(Numbers& number, Monitors& m) {
         &m.force_balance,     &m.largest_imbalance,  &m.delivered_m2,       &m.J_spread_sum,   &m.largest_J_spread,
         &m.contact_left,      &m.largest_contact_Pa, &m.largest_tension_Pa, &m.largest_strain, &m.largest_rotation,
         &m.largest_jump,      &m.net_at_start_Pa,    &m.largest_net_Pa,     &m.flow_fall_Pa,   &m.flow_fall,
-        &m.largest_flow_fall, &m.floor_share,        &m.floor_share_sum}) {
+        &m.largest_flow_fall, &m.floor_share[0],     &m.floor_share[1],     &m.floor_share_sum}) {
     *value = number.next();
   }
   m.mirror = 1;

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "output/suspect.hpp"
 #include "statics.hpp"
 
 using namespace strata;
@@ -56,4 +57,31 @@ TEST_CASE("bonded places carry the traction of a uniform stress") {
       }
     }
   }
+}
+
+// Requires of an interface that has failed in part to be marked by two cells over its failure_length_m, 4 m here: cells
+// of 1 m at the fracture mark nothing, coarser ones where it stops do within two lengths of the fracture, and not
+// beyond; nor does one that has failed whole. Mutations that fail: the cell at the fracture alone, the smallest cell,
+// the length of the fracture left out.
+TEST_CASE("what fails is judged by the cells where it stops") {
+  Scene scene = graded_block();
+  InterfaceLaw weak = weak_law(0.5e6, 0.5e6);
+  weak.failure_length_m = 4.0;
+  add_interface(scene, weak, 26.0);
+  scene.fracture->path_m = {{20.0, 6.0}, {20.0, 26.0}};
+  State state = initialise(scene, make_elasticities(scene));
+  const auto value = [&](double from, double to) {
+    for (SurfacePoint& s : state.surfaces.back().points) s.split = s.x.x() > from && s.x.x() < to;
+    for (const Watched& one : watched(scene, state))
+      if (one.monitor == "failure_length_unresolved") return one.value;
+    return 0.0;
+  };
+  CHECK(value(0.0, 60.0) == 0.0);
+  CHECK(value(19.0, 21.0) == Approx(0.5));
+  const double coarse = value(19.0, 50.0);
+  CHECK(coarse > 1.0);
+  CHECK(value(0.0, 50.0) == coarse);
+  scene.fracture->path_m = {{20.0, 24.0}, {20.0, 26.0}};
+  state = initialise(scene, make_elasticities(scene));
+  CHECK(value(19.0, 50.0) == Approx(0.5));
 }
