@@ -298,10 +298,11 @@ std::string what_stops(const Scene& scene, const State& state, const Tip& tip) {
     return fmt::format("an increment more would end within {} cells of an edge of the block", sliver_cells);
   const double fine_cells = scene.numerics.ring_cells + 1.0;  // its rings, and what functions there reach
   if (!state.grid.fine_around(at.x(), at.y(), fine_cells * h))
-    return fmt::format(
-        "within {} cells of coarser ones; make the block larger where they lie beyond it (domain.beyond_m), else move "
-        "numerics.fine_left_m, fine_right_m, fine_bottom_m or fine_top_m, or leave out far_cell_m",
-        fine_cells);
+    return fmt::format("within {} cells of coarser ones; {}", fine_cells,
+                       scene.numerics.far_cell_m
+                           ? "move numerics.fine_left_m, fine_right_m, fine_bottom_m or fine_top_m, or leave out "
+                             "far_cell_m"
+                           : "they begin where the block ends: make domain.width_m or height_m larger");
   return "";
 }
 
