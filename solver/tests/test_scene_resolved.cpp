@@ -194,7 +194,7 @@ TEST_CASE("Fractures need what their length asks for") {
   CHECK(jumps({{2000.0, 1995.0}, {2000.0, 2005.0}}) == Approx(6.0 * 50.0).epsilon(1e-6));  // 20 m up and 20 m down
   scene.stop.tip_y_m = 2013.0;
   CHECK(jumps({{2000.0, 2000.0}, {2006.0, 2008.0}}) == Approx(6.0 * 22.5).epsilon(1e-6));  // 5 m up leaning are 6.25 m
-  scene.stop = {.tip_y_m = {}, .inlet_Pa = 4e6, .time_s = {}};
+  scene.stop = {.tip_y_m = {}, .lower_tip_y_m = {}, .inlet_Pa = 4e6, .time_s = {}};
   CHECK(jumps({{3000.0, 3990.0}, {3010.0, 3990.0}}) == Approx(6.0 * 4000.0).epsilon(1e-6));  // to both sides
   scene.stop.time_s = 0.0;                                                                   // one equilibrium
   CHECK(jumps({{2000.0, 1995.0}, {2000.0, 2005.0}}) == Approx(60.0).epsilon(1e-6));
@@ -295,6 +295,6 @@ TEST_CASE("A run is expected to end at its time or at the inlet's last pressure"
   CHECK(expected_duration(scene).value() == Approx(2.0 / 0.35));
   scene.stop.time_s = 1.0;
   CHECK(expected_duration(scene).value() == 1.0);
-  scene.stop = {.tip_y_m = 40.0, .inlet_Pa = {}, .time_s = {}};
+  scene.stop = {.tip_y_m = 40.0, .lower_tip_y_m = {}, .inlet_Pa = {}, .time_s = {}};
   CHECK_FALSE(expected_duration(scene).has_value());  // nobody knows when the tip gets there
 }
