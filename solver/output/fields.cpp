@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numeric>
 #include <system_error>
 
@@ -91,11 +92,13 @@ void write_interface(const H5::Group& file, const std::string& interfaces, const
   hdf5::set_attribute(group, "at_m", nearest->at_m);
 }
 
-// Particles in the order of their ids.
+// Particles in the order of their ids, of which there is one each below next_id and some may be gone (to sort them
+// would take a twentieth of a run without inertia).
 std::vector<std::size_t> by_id(const Particles& particles) {
-  std::vector<std::size_t> order(particles.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::ranges::sort(order, {}, [&](std::size_t p) { return particles.id[p]; });
+  constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> order(static_cast<std::size_t>(particles.next_id), none);
+  for (std::size_t p = 0; p < particles.size(); ++p) order.at(static_cast<std::size_t>(particles.id[p])) = p;
+  std::erase(order, none);
   return order;
 }
 
