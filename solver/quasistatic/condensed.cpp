@@ -4,7 +4,8 @@
 #include <cstring>
 #include <map>
 #include <numeric>
-#include <tuple>
+#include <span>
+#include <utility>
 
 #include "state/stiffness.hpp"
 
@@ -55,85 +56,57 @@ void number_jumps(const State& state, const IntactBody& body, Condensed& out) {
         }
         out.jump_of_record[r][static_cast<std::size_t>(component)] = static_cast<int>(out.columns.size());
         auto column = std::make_shared<JumpColumn>();
-        column->node = node, column->component = component, column->particles = prints[r];
+        column->key = {node, component, prints[r]};
         out.columns.push_back(std::move(column));
       }
     }
   }
 }
 
-// Which unknown of `before` each of `now` is; -1: a new one.
-std::vector<Eigen::Index> origins(const Condensed& before, const Condensed& now) {
-  const auto key = [](const JumpColumn& c) { return std::make_tuple(c.node, c.component, c.particles); };
-  std::map<std::tuple<int, int, std::uint64_t>, Eigen::Index> known;
-  for (std::size_t k = 0; k < before.columns.size(); ++k)
-    known.emplace(key(*before.columns[k]), static_cast<Eigen::Index>(k));
-  std::vector<Eigen::Index> from(now.columns.size(), -1);
-  for (std::size_t k = 0; k < from.size(); ++k) {
-    const auto found = known.find(key(*now.columns[k]));
-    if (found != known.end()) from[k] = found->second;
+// Takes columns and entries over from `before`; tells of each unknown whether it is new. Their entries are 0 yet.
+std::vector<char> reuse_columns(const Condensed* before, Condensed& out) {
+  const auto n = std::ssize(out.columns);
+  out.S = Eigen::MatrixXd::Zero(n, n);
+  std::vector<char> fresh(out.columns.size(), 1);
+  if (before == nullptr) return fresh;
+  std::map<JumpKey, std::size_t> known;
+  for (std::size_t k = 0; k < before->columns.size(); ++k) known.emplace(before->columns[k]->key, k);
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> kept;  // now, and before
+  for (std::size_t k = 0; k < fresh.size(); ++k) {
+    const auto found = known.find(out.columns[k]->key);
+    if (found == known.end()) continue;
+    fresh[k] = 0;
+    out.columns[k] = before->columns[found->second];
+    kept.emplace_back(k, found->second);
   }
-  return from;
-}
-
-// Takes columns and entries over from `before`; returns the place of each new unknown among these, -1 for others.
-std::vector<int> reuse_columns(const Condensed* before, Condensed& out) {
-  const std::size_t n = out.columns.size();
-  out.S.resize(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
-  std::vector<int> fresh(n, -1);
-  if (before == nullptr) {
-    std::iota(fresh.begin(), fresh.end(), 0);
-    return fresh;
-  }
-  const std::vector<Eigen::Index> from = origins(*before, out);
-  std::vector<Eigen::Index> old;  // unknowns that were there before
-  int next = 0;
-  for (std::size_t k = 0; k < n; ++k) {
-    if (from[k] < 0) {
-      fresh[k] = next++;
-      continue;
-    }
-    out.columns[k] = before->columns[static_cast<std::size_t>(from[k])];
-    old.push_back(static_cast<Eigen::Index>(k));
-  }
-  for (const Eigen::Index column : old) {
-    const Eigen::Index column_before = from[static_cast<std::size_t>(column)];
-    for (const Eigen::Index row : old)
-      out.S(row, column) = before->S(from[static_cast<std::size_t>(row)], column_before);
+  for (const auto& [column, column_before] : kept) {
+    for (const auto& [row, row_before] : kept) out.S(row, column) = before->S(row_before, column_before);
   }
   return fresh;
 }
 
-// Columns of K_jj of new unknowns, one beside the other, and their rows, transposed: equal but for round-off.
-struct NewStiffness {
-  Eigen::MatrixXd columns, rows;
-};
-
 using Entries = std::vector<std::pair<int, double>>;
 
-// Adds what one particle contributes to the new columns and their entries of K_jj.
-void add_particle(const LocalStiffness& K, const Bin& bin, const IntactBody& body, const Condensed& condensed,
-                  const State& state, const std::vector<int>& fresh, NewStiffness& K_jj, std::vector<Entries>& G) {
+// Adds what one particle contributes to G of the new unknowns and to their K_jj, in the place of S.
+void add_particle(const LocalStiffness& K, const Bin& bin, const IntactBody& body, const State& state,
+                  const std::vector<char>& fresh, Condensed& out, std::vector<Entries>& G) {
   std::array<Unknown, 18> base, jump;
   for (int k = 0; k < 18; ++k) {
     const auto at = static_cast<std::size_t>(k);
     const int record = bin.record[at / 2];
     base[at] = unknown_of(body.masters(), state.copies.node_of_record[static_cast<std::size_t>(record)], k % 2);
-    jump[at] = jump_unknown(condensed, record, k % 2);
+    jump[at] = jump_unknown(out, record, k % 2);
   }
   for (int b = 0; b < 18; ++b) {
     const Unknown& column = jump[static_cast<std::size_t>(b)];
     if (column.index < 0) continue;
-    const int column_of = fresh[static_cast<std::size_t>(column.index)];
+    const bool is_new = fresh[static_cast<std::size_t>(column.index)] != 0;
     for (int a = 0; a < 18; ++a) {
       const Unknown &row = base[static_cast<std::size_t>(a)], &other = jump[static_cast<std::size_t>(a)];
-      if (column_of >= 0 && row.index >= 0 && K(a, b) != 0.0)
+      if (is_new && row.index >= 0 && K(a, b) != 0.0)
         G[static_cast<std::size_t>(column.index)].emplace_back(row.index, row.factor * column.factor * K(a, b));
-      if (other.index < 0) continue;
-      const int row_of = fresh[static_cast<std::size_t>(other.index)];
-      const double k = other.factor * column.factor * K(a, b);
-      if (column_of >= 0) K_jj.columns(other.index, column_of) += k;
-      if (row_of >= 0) K_jj.rows(column.index, row_of) += k;
+      if (other.index >= 0 && (is_new || fresh[static_cast<std::size_t>(other.index)] != 0))
+        out.S(other.index, column.index) += other.factor * column.factor * K(a, b);
     }
   }
 }
@@ -141,14 +114,14 @@ void add_particle(const LocalStiffness& K, const Bin& bin, const IntactBody& bod
 // Assembles G and K_jj of the new unknowns. Particles come cell by cell in the order of their ids, so that sums do not
 // depend on how copies group them into bins.
 std::vector<Entries> assemble_jumps(const Scene& scene, const Rocks& rocks, const State& state, const IntactBody& body,
-                                    const std::vector<int>& fresh, const Condensed& out, NewStiffness& K_jj) {
+                                    const std::vector<char>& fresh, Condensed& out) {
   std::vector<Entries> G(out.columns.size());
   const Particles& p = state.particles;
   const auto touches_new = [&](const Bin& bin) {
     for (const int record : bin.record) {
       for (int component = 0; component < 2; ++component) {
         const int index = jump_unknown(out, record, component).index;
-        if (index >= 0 && fresh[static_cast<std::size_t>(index)] >= 0) return true;
+        if (index >= 0 && fresh[static_cast<std::size_t>(index)] != 0) return true;
       }
     }
     return false;
@@ -176,7 +149,7 @@ std::vector<Entries> assemble_jumps(const Scene& scene, const Rocks& rocks, cons
       LocalStiffness K = LocalStiffness::Zero();
       const Gradients g = gradients_at(scene, state.grid, m.bin->i, m.bin->j, {p.x[m.q], p.y[m.q]}, p.half(m.q));
       add_stiffness(rocks[p.rock[m.q]], g, body.halved() ? 2.0 * p.V[m.q] : p.V[m.q], K);
-      add_particle(K, *m.bin, body, out, state, fresh, K_jj, G);
+      add_particle(K, *m.bin, body, state, fresh, out, G);
     }
   }
   return G;
@@ -195,61 +168,39 @@ SparseVector summed(Entries entries) {
   return out;
 }
 
-// S = K_jj - Y^T Y for the new unknowns.
-void condense_new(const IntactBody& body, const std::vector<int>& place, const NewStiffness& K_jj, Condensed& out) {
-  std::vector<std::size_t> fresh;
-  for (std::size_t k = 0; k < place.size(); ++k) {
-    if (place[k] >= 0) fresh.push_back(k);
-  }
-  SideBySide dense(body.factor().size());
-  for (std::size_t from = 0; from < fresh.size(); from += SideBySide::most) {
-    const std::size_t count = std::min(SideBySide::most, fresh.size() - from);
-    dense.clear();
-    for (std::size_t c = 0; c < count; ++c) {
-      const SparseVector& Y = out.columns[fresh[from + c]]->Y;
-      for (std::size_t e = 0; e < Y.index.size(); ++e) {
-        dense.add_rows(Y.index[e], Y.index[e] + 1);
-        dense[Y.index[e]][static_cast<Eigen::Index>(c)] = Y.value[e];
-      }
-    }
-    for (std::size_t b = 0; b < place.size(); ++b) {
-      if (place[b] >= 0 && b < fresh[from]) continue;  // done with b among the dense ones
-      const SparseVector& Y = out.columns[b]->Y;
-      SideBySide::Row product = SideBySide::Row::Zero();
-      for (std::size_t e = 0; e < Y.index.size(); ++e) {
-        if (dense.holds(Y.index[e])) product += Y.value[e] * dense[Y.index[e]];
-      }
-      for (std::size_t c = 0; c < count; ++c) {
-        const auto i = static_cast<Eigen::Index>(fresh[from + c]), j = static_cast<Eigen::Index>(b);
-        const auto f = static_cast<Eigen::Index>(from + c);
-        // K_jj is symmetric but for round-off, and which of two unknowns is new depends on what came before.
-        out.S(i, j) = out.S(j, i) =
-            0.5 * (K_jj.rows(j, f) + K_jj.columns(j, f)) - product[static_cast<Eigen::Index>(c)];
-      }
-    }
-  }
-}
-
-// Y of the new unknowns, and the rows that all of them load.
-void factor_columns(const IntactBody& body, const std::vector<int>& place, std::vector<Entries> G, Condensed& out) {
-  std::vector<SparseVector> fresh;
-  for (std::size_t k = 0; k < place.size(); ++k) {
-    if (place[k] >= 0) fresh.push_back(summed(std::move(G[k])));
-  }
-  std::vector<SparseVector> Y = body.factor().forward(fresh);
-  std::size_t next = 0;
+// G and Y of new unknowns, so many side by side, and their S = K_jj - Y^T Y against all whose Y is known.
+void condense_some(const IntactBody& body, std::span<const std::size_t> some, const std::vector<char>& fresh,
+                   std::vector<Entries>& entries, Condensed& out) {
+  const TreeFactor& factor = body.factor();
+  std::vector<SparseVector> G;
   std::vector<int> loaded;
-  for (std::size_t k = 0; k < place.size(); ++k) {
-    if (place[k] >= 0) {
-      auto column = std::make_shared<JumpColumn>(*out.columns[k]);
-      column->G = std::move(fresh[next]);
-      column->Y = std::move(Y[next++]);
-      out.columns[k] = std::move(column);
-    }
-    const std::vector<int>& rows = out.columns[k]->G.index;
-    loaded.insert(loaded.end(), rows.begin(), rows.end());
+  for (const std::size_t k : some) {
+    G.push_back(summed(std::move(entries[k])));
+    loaded.insert(loaded.end(), G.back().index.begin(), G.back().index.end());
   }
-  out.loaded = body.factor().branches(loaded);
+  TreeFactor::SideBySide y(factor, factor.branches(loaded));
+  for (std::size_t c = 0; c < some.size(); ++c) {
+    for (std::size_t e = 0; e < G[c].index.size(); ++e)
+      y[factor.row(G[c].index[e])][static_cast<Eigen::Index>(c)] = G[c].value[e];
+  }
+  factor.forward(y);
+  for (std::size_t c = 0; c < some.size(); ++c) {
+    auto column = std::make_shared<JumpColumn>(*out.columns[some[c]]);
+    column->Y = factor.on_branches(factor.branches(G[c].index), y, c);
+    column->G = std::move(G[c]);
+    out.columns[some[c]] = std::move(column);
+  }
+  for (std::size_t b = 0; b < out.columns.size(); ++b) {
+    const SparseVector& Y = out.columns[b]->Y;
+    TreeFactor::SideBySide::Row product = TreeFactor::SideBySide::Row::Zero();
+    for (std::size_t e = 0; e < Y.index.size(); ++e) product += Y.value[e] * y[Y.index[e]];
+    for (std::size_t c = 0; c < some.size(); ++c) {
+      if (fresh[b] != 0 && b > some[c]) continue;  // its turn comes
+      const auto i = static_cast<Eigen::Index>(some[c]), j = static_cast<Eigen::Index>(b);
+      // K_jj is symmetric but for round-off, and which of two unknowns is new depends on what came before.
+      out.S(i, j) = out.S(j, i) = 0.5 * (out.S(j, i) + out.S(i, j)) - product[static_cast<Eigen::Index>(c)];
+    }
+  }
 }
 
 bool holds_rigid_motion(const Scene& scene, bool halved) {
@@ -304,17 +255,30 @@ Condensed condense(const Scene& scene, const Rocks& rocks, const State& state, c
   Condensed out;
   out.masters = body.halved() ? mirrored(state, state.masters) : state.masters;
   number_jumps(state, body, out);
-  const std::vector<int> fresh = reuse_columns(before, out);
-  const auto n = out.size(),
-             n_fresh = static_cast<Eigen::Index>(std::ranges::count_if(fresh, [](int f) { return f >= 0; }));
-  NewStiffness K_jj{Eigen::MatrixXd::Zero(n, n_fresh), Eigen::MatrixXd::Zero(n, n_fresh)};
-  factor_columns(body, fresh, assemble_jumps(scene, rocks, state, body, fresh, out, K_jj), out);
-  condense_new(body, fresh, K_jj, out);
+  const std::vector<char> fresh = reuse_columns(before, out);
+  std::vector<std::size_t> made;  // the new unknowns
+  for (std::size_t k = 0; k < fresh.size(); ++k) {
+    if (fresh[k] != 0) made.push_back(k);
+  }
+  std::vector<Entries> entries = assemble_jumps(scene, rocks, state, body, fresh, out);
+  constexpr std::size_t most = TreeFactor::SideBySide::most;
+  for (std::size_t from = 0; from < made.size(); from += most) {
+    const auto some = std::span(made).subspan(from, std::min(most, made.size() - from));
+    condense_some(body, some, fresh, entries, out);
+  }
+  std::vector<int> loaded;
+  for (const auto& column : out.columns) loaded.insert(loaded.end(), column->G.index.begin(), column->G.index.end());
+  out.loaded = body.factor().branches(loaded);
   return out;
 }
 
-Asked ask_for(const Scene& scene, const State& state, const IntactBody& body, std::vector<int> records) {
+Asked ask_for(const Scene& scene, const State& state, const IntactBody& body, const std::vector<std::size_t>& bins) {
   if (!holds_rigid_motion(scene, body.halved())) return ask_for_all(state, body);
+  std::vector<int> records;
+  for (const std::size_t b : bins)
+    records.insert(records.end(), state.bins[b].record.begin(), state.bins[b].record.end());
+  std::ranges::sort(records);
+  records.erase(std::unique(records.begin(), records.end()), records.end());
   std::vector<int> unknowns;
   for (const int record : records) {
     const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
@@ -338,7 +302,7 @@ std::vector<Vec2> displacements(const Scene& scene, const State& state, const In
                                 const Condensed& condensed, const Eigen::VectorXd& j, const Asked& asked) {
   const TreeFactor& factor = body.factor();
   const auto& loaded = condensed.load.empty() ? condensed.loaded : factor.all();  // a body force loads them all
-  Eigen::VectorXd base = factor.zeros(loaded, asked.blocks);
+  Eigen::VectorXd base = Eigen::VectorXd::Zero(factor.size());
   for (int k = 0; k < condensed.load.intact.size(); ++k) base[factor.row(k)] = condensed.load.intact[k];
   for (std::size_t k = 0; k < condensed.columns.size(); ++k) {
     const SparseVector& G = condensed.columns[k]->G;
@@ -346,14 +310,15 @@ std::vector<Vec2> displacements(const Scene& scene, const State& state, const In
       base[factor.row(G.index[e])] -= G.value[e] * j[static_cast<Eigen::Index>(k)];
   }
   factor.solve(loaded, asked.blocks, base);
-  std::vector<Vec2> u(asked.records.size(), Vec2::Zero());
-  for (std::size_t r = 0; r < u.size(); ++r) {
-    const int record = asked.records[r], node = state.copies.node_of_record[static_cast<std::size_t>(record)];
+  std::vector<Vec2> u(static_cast<std::size_t>(state.copies.records()), Vec2::Zero());
+  for (const int record : asked.records) {
+    const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
+    Vec2& u_r = u[static_cast<std::size_t>(record)];
     for (int component = 0; component < 2; ++component) {
       const Unknown from = unknown_of(body.masters(), node, component),
                     jump = jump_unknown(condensed, record, component);
-      if (from.index >= 0) u[r][component] += from.factor * base[factor.row(from.index)];
-      if (jump.index >= 0) u[r][component] += jump.factor * j[jump.index];
+      if (from.index >= 0) u_r[component] += from.factor * base[factor.row(from.index)];
+      if (jump.index >= 0) u_r[component] += jump.factor * j[jump.index];
     }
   }
   remove_rigid_motion(scene, state, body.halved(), u);

@@ -9,11 +9,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <compare>
 #include <cstdint>
 #include <memory>
 #include <vector>
-
-#include <array>
 
 #include "quasistatic/intact_body.hpp"
 #include "state/elasticity.hpp"
@@ -24,10 +24,15 @@ namespace strata {
 
 // A jump unknown: a component of a copy of a node, told by the particles that belong to the copy. What depends on these
 // alone is kept while the fracture grows elsewhere.
-struct JumpColumn {
+struct JumpKey {
   int node = 0;
   int component = 0;
   std::uint64_t particles = 0;  // fingerprint of the set
+  auto operator<=>(const JumpKey&) const = default;
+};
+
+struct JumpColumn {
+  JumpKey key;
   SparseVector G;
   SparseVector Y;  // in rows of the factor
 };
@@ -66,15 +71,15 @@ struct Asked {
   TreeFactor::Branches blocks;
 };
 
-/// What it takes to find the displacements of some records. Where an edge leaves a rigid motion free all others take
-/// part in what is taken out.
-Asked ask_for(const Scene& scene, const State& state, const IntactBody& body, std::vector<int> records);
+/// What it takes to find the displacements of the records of some bins. Where an edge leaves a rigid motion free all
+/// others take part in what is taken out.
+Asked ask_for(const Scene& scene, const State& state, const IntactBody& body, const std::vector<std::size_t>& bins);
 
 /// All records.
 Asked ask_for_all(const State& state, const IntactBody& body);
 
-/// Displacements (m) of the records asked for, in their order, for the jumps j (m): u = K^-1 (f_u - G j), and the
-/// copies' jumps on top; rigid motion that no edge holds is taken out (zero mean displacement and rotation of the
+/// Displacements (m) of all records, 0 where they were not asked for, for the jumps j (m): u = K^-1 (f_u - G j), and
+/// the copies' jumps on top; rigid motion that no edge holds is taken out (zero mean displacement and rotation of the
 /// particles). The digits do not depend on what else is asked for.
 std::vector<Vec2> displacements(const Scene& scene, const State& state, const IntactBody& body,
                                 const Condensed& condensed, const Eigen::VectorXd& j, const Asked& asked);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "state/rebuild.hpp"
 #include "state/stiffness.hpp"
@@ -69,8 +68,7 @@ std::vector<Master> mirrored(const State& state, std::vector<Master> masters) {
   return masters;
 }
 
-IntactBody::IntactBody(const Scene& scene, const Rocks& rocks, const State& state, bool halved, std::vector<int> order)
-    : halved_(halved) {
+IntactBody::IntactBody(const Scene& scene, const Rocks& rocks, const State& state, bool halved) : halved_(halved) {
   State intact;
   intact.grid = state.grid;
   intact.particles = state.particles;
@@ -79,9 +77,8 @@ IntactBody::IntactBody(const Scene& scene, const Rocks& rocks, const State& stat
   rebuild_copies(scene, intact);
   masters_ = halved ? mirrored(intact, intact.masters) : intact.masters;
   hold_rigid_motion(scene, state.grid, halved, masters_);
-  factor_ =
-      TreeFactor(assemble_stiffness(scene, rocks, intact, masters_),
-                 "the stiffness of the intact block is singular: its edges leave a motion free", std::move(order));
+  factor_ = TreeFactor(assemble_stiffness(scene, rocks, intact, masters_),
+                       "the stiffness of the intact block is singular: its edges leave a motion free");
 }
 
 }  // namespace strata

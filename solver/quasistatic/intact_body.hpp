@@ -19,9 +19,8 @@ class IntactBody {
  public:
   /// Assembles and factors K from the state's particles with all surfaces closed; halved: with the mirror's ties, the
   /// energy of the left half counted twice. Rigid motion that no edge holds is held at corners: loads are in balance.
-  /// order: that of the factor of a body on the same grid with the same ties, or none. Throws NumericalFailure where
-  /// the factorisation fails.
-  IntactBody(const Scene& scene, const Rocks& rocks, const State& state, bool halved, std::vector<int> order = {});
+  /// Throws NumericalFailure where the factorisation fails.
+  IntactBody(const Scene& scene, const Rocks& rocks, const State& state, bool halved);
 
   /// K = L L^T in one value for each of the 2 x nodes unknowns (N/m, m); loads on held ones must be 0.
   const TreeFactor& factor() const { return factor_; }

@@ -25,11 +25,16 @@ constexpr double first_flow_step = 1e-3;  // s, after each event; steps then gro
 // is. Of flow and rock in one system a step is of shortest_coupled_step at least, whatever is tried.
 constexpr double shortest_trial = 1e-7;
 
-// Equilibrium at the state's pressures, its fields, and how near the next event is.
-void equilibrate(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run) {
+// Equilibrium at the state's pressures and its fields.
+void come_to_rest(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run) {
   run.equilibrium = find_equilibrium(scene, state.time, state, run.model);
   set_fields(scene, state, run.model, run.equilibrium);
   measure_tips(scene, rocks, run.rules, state);
+}
+
+// The same, and how near the next event is.
+void equilibrate(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run) {
+  come_to_rest(scene, rocks, state, run);
   if (!trials_hold(scene, state, run.trials)) run.trials = build_trials(scene, rocks, state, run.model);
   run.margin = margin_of(scene, rocks, state, run);
 }
@@ -214,9 +219,7 @@ void lengthen(const Scene& scene, std::vector<Growing>& growing, State& state) {
 // mean.
 void measure_release(const Scene& scene, const Rocks& rocks, double energy_before, const std::vector<Growing>& growing,
                      State& state, Quasistatic& run) {
-  run.equilibrium = find_equilibrium(scene, state.time, state, run.model);
-  set_fields(scene, state, run.model, run.equilibrium);
-  measure_tips(scene, rocks, run.rules, state);
+  come_to_rest(scene, rocks, state, run);
   const double energy = run.equilibrium.energy + dissipated_by_friction(run.model, run.equilibrium);
   double length = 0.0;
   for (const Growing& g : growing) length += g.increment;
@@ -293,11 +296,6 @@ FluidStep try_step(const Scene& scene, const Rocks& rocks, const LoadPoint& from
   }
 }
 
-// An error that goes by the third power of its step as if it went by the second, as the steps' control takes it.
-double error_of_second_order(double error) {
-  return std::cbrt(error * error);
-}
-
 bool flows(const Scene& scene, const State& state) {
   return scene.fluid.law != Fluid::Law::uniform && state.has_fracture;
 }
@@ -329,9 +327,9 @@ double step_from_growth(const Scene& scene, const Rocks& rocks, const LoadPoint&
 }
 
 // Takes the step of state.dt or, where nothing flows, of all the time that is left (s), halved until it is found, its
-// error is allowed and the margin does not change too much before an event; w: openings (m) at `from`.
-LoadStep find_step(const Scene& scene, const Rocks& rocks, const LoadPoint& from, const std::vector<double>& w,
-                   double left, State& state, Quasistatic& run) {
+// error is allowed and the margin does not change too much before an event.
+LoadStep find_step(const Scene& scene, const Rocks& rocks, const LoadPoint& from, double left, State& state,
+                   Quasistatic& run) {
   const bool flowing = flows(scene, state), foresees = foresees_openings(scene, state);
   const double margin = run.margin;
   double dt = flowing ? std::min(state.dt, left) : left;
@@ -346,9 +344,11 @@ LoadStep find_step(const Scene& scene, const Rocks& rocks, const LoadPoint& from
       if (dt < shortest_trial) throw_no_solution("in any step", from.time, fluid.reason);
       continue;
     }
-    if (foresees)
-      fluid.error =
-          error_of_second_order(lag_error(scene, from.fluid, w, from.time, state) / scene.numerics.flow_error);
+    if (foresees) {
+      const double third = lag_error(scene, from.fluid, openings_of(from.surfaces.front()), from.time, state) /
+                           scene.numerics.flow_error;
+      fluid.error = std::cbrt(third * third);  // as if it went by the second power of the step
+    }
     const double change = std::abs(run.margin - margin);
     const bool gentle = !flowing || run.margin >= 1.0 || change < 2.0 * scene.numerics.flow_change;
     if ((gentle && fluid.error < 4.0) || dt < shortest_trial) return {dt, change, fluid.error};
@@ -455,10 +455,9 @@ void advance_quasistatic(const Scene& scene, const Rocks& rocks, double until, S
   }
   const LoadPoint from = load_point(state);
   const double margin = run.margin;
-  const std::vector<double> w = foresees_openings(scene, state) ? openings_of(state.fracture()) : std::vector<double>{};
   if (next_row(scene.fluid, state.grown.time) <= from.time) state.grown = {};
   const double left = std::min(until, next_row(scene.fluid, from.time)) - from.time;
-  const LoadStep step = find_step(scene, rocks, from, w, left, state, run);
+  const LoadStep step = find_step(scene, rocks, from, left, state, run);
   if (run.margin > 1.0 + event_tolerance && !locate_event(scene, rocks, from, margin, step.dt, state, run)) {
     return_to(from, state);
     run.margin = margin;
@@ -468,7 +467,7 @@ void advance_quasistatic(const Scene& scene, const Rocks& rocks, double until, S
   const bool fed = !scene.fluid.rate_m2_s || inlet_rate(scene.fluid, from.time) > 0.0;  // as fast as before
   if (fed && state.grown.line.size() > 0 && run.margin < 1.0 && next_row(scene.fluid, from.time) > until)
     show_front(scene, rocks, from, step.dt, state, run);
-  if (foresees_openings(scene, state)) note_rates(w, state.time - from.time, state);
+  if (foresees_openings(scene, state)) note_rates(openings_of(from.surfaces.front()), state.time - from.time, state);
   accept(scene, from, Change::load, state, run);
   state.dt = next_step(scene, step);
 }

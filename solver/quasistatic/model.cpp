@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include "interfaces/surface_tractions.hpp"
@@ -17,43 +18,43 @@ namespace strata {
 
 namespace {
 
-// Fields of all particles.
-template <class Shape>
-void set_particles(const std::vector<Vec2>& u, State& state) {
+Gradients gradients_of_particle(const Scene& scene, const State& state, const Bin& bin, std::size_t q) {
+  const Particles& p = state.particles;
+  return gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
+}
+
+// Fields of the particles of some bins; `gradients`: of the nodes' functions at each of them.
+void set_particles(const std::vector<std::size_t>& bins, const std::vector<Gradients>& gradients,
+                   const std::vector<Vec2>& u, State& state) {
   Particles& p = state.particles;
-  for (const Bin& bin : state.bins) {
+  auto g = gradients.begin();
+  for (const std::size_t b : bins) {
+    const Bin& bin = state.bins[b];
+    std::array<Vec2, 9> u_i;
+    std::ranges::transform(bin.record, u_i.begin(), [&](int r) { return u[static_cast<std::size_t>(r)]; });
     for (const std::size_t q : bin) {
-      const Gradients g = gradients_of<Shape>(state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
       Vec2 u_p = Vec2::Zero(), d_x = Vec2::Zero(), d_y = Vec2::Zero();
-      for (std::size_t n = 0; n < 9; ++n) {
-        const Vec2& u_i = u[static_cast<std::size_t>(bin.record[n])];
-        u_p += g.N[n] * u_i, d_x += g.N_x[n] * u_i, d_y += g.N_y[n] * u_i;
-      }
+      for (std::size_t n = 0; n < 9; ++n) u_p += g->N[n] * u_i[n], d_x += g->N_x[n] * u_i[n], d_y += g->N_y[n] * u_i[n];
       p.u_x[q] = u_p.x(), p.u_y[q] = u_p.y();
       p.g_xx[q] = d_x.x(), p.g_xy[q] = d_y.x(), p.g_yx[q] = d_x.y(), p.g_yy[q] = d_y.y();
+      ++g;
     }
   }
 }
 
-void set_particles(const Scene& scene, const std::vector<Vec2>& u, State& state) {
-  with_shape(scene.numerics.shape, [&](auto shape) { set_particles<decltype(shape)>(u, state); });
+std::vector<Gradients> gradients_in(const Scene& scene, const State& state, const std::vector<std::size_t>& bins) {
+  std::vector<Gradients> gradients;
+  for (const std::size_t b : bins) {
+    for (const std::size_t q : state.bins[b])
+      gradients.push_back(gradients_of_particle(scene, state, state.bins[b], q));
+  }
+  return gradients;
 }
 
-// Displacement gradients of the particles that are watched.
-void set_watched(const QuasistaticModel& model, const std::vector<Vec2>& u, State& state) {
-  Particles& p = state.particles;
-  std::size_t at = 0;
-  for (std::size_t b = 0; b < model.watched.size(); ++b) {
-    const Bin& bin = state.bins[model.watched[b]];
-    std::array<Vec2, 9> u_i;
-    for (std::size_t n = 0; n < 9; ++n) u_i[n] = u[static_cast<std::size_t>(model.reached[b][n])];
-    for (const std::size_t q : bin) {
-      const std::array<double, 18>& N = model.slopes[at++];
-      Vec2 d_x = Vec2::Zero(), d_y = Vec2::Zero();
-      for (std::size_t n = 0; n < 9; ++n) d_x += N[n] * u_i[n], d_y += N[9 + n] * u_i[n];
-      p.g_xx[q] = d_x.x(), p.g_xy[q] = d_y.x(), p.g_yx[q] = d_x.y(), p.g_yy[q] = d_y.y();
-    }
-  }
+std::vector<std::size_t> all_bins(const State& state) {
+  std::vector<std::size_t> bins(state.bins.size());
+  std::iota(bins.begin(), bins.end(), 0U);
+  return bins;
 }
 
 // Whether J's widest ring around a tip weighs a bin: a node of it lies inside.
@@ -85,23 +86,6 @@ std::vector<std::size_t> watched_bins(const Scene& scene, const State& state, co
   return watched;
 }
 
-// Slopes of the nodes' functions at the particles of some bins.
-std::vector<std::array<double, 18>> slopes_at(const Scene& scene, const State& state,
-                                              const std::vector<std::size_t>& bins) {
-  std::vector<std::array<double, 18>> slopes;
-  const Particles& p = state.particles;
-  for (const std::size_t b : bins) {
-    const Bin& bin = state.bins[b];
-    for (const std::size_t q : bin) {
-      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
-      std::array<double, 18>& N = slopes.emplace_back();
-      std::copy(g.N_x.begin(), g.N_x.end(), N.begin());
-      std::copy(g.N_y.begin(), g.N_y.end(), N.begin() + 9);
-    }
-  }
-  return slopes;
-}
-
 // D of the vertices of all surfaces, one below the other.
 Eigen::SparseMatrix<double, Eigen::RowMajor> jumps_at_vertices(const State& state, const Condensed& condensed) {
   std::vector<Eigen::Triplet<double>> entries;
@@ -126,38 +110,10 @@ void weigh_copies(const Scene& scene, State& state) {
   for (const std::size_t b : state.cut_bins) {
     const Bin& bin = state.bins[b];
     for (const std::size_t q : bin) {
-      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
+      const Gradients g = gradients_of_particle(scene, state, bin, q);
       for (std::size_t n = 0; n < 9; ++n) state.sums[static_cast<std::size_t>(bin.record[n])].m += g.N[n] * p.m[q];
     }
   }
-}
-
-// The records that some bins reach.
-std::vector<int> records_of(const State& state, const std::vector<std::size_t>& bins) {
-  std::vector<char> reached(static_cast<std::size_t>(state.copies.records()), 0);
-  for (const std::size_t b : bins) {
-    for (const int record : state.bins[b].record) reached[static_cast<std::size_t>(record)] = 1;
-  }
-  std::vector<int> records;
-  for (std::size_t r = 0; r < reached.size(); ++r) {
-    if (reached[r] != 0) records.push_back(static_cast<int>(r));
-  }
-  return records;
-}
-
-// Where the displacements of the nodes of some bins are among those asked for.
-std::vector<std::array<int, 9>> reached_by(const State& state, const std::vector<std::size_t>& bins,
-                                           const Asked& asked) {
-  std::vector<int> place(static_cast<std::size_t>(state.copies.records()), -1);
-  for (std::size_t k = 0; k < asked.records.size(); ++k)
-    place[static_cast<std::size_t>(asked.records[k])] = static_cast<int>(k);
-  std::vector<std::array<int, 9>> reached;
-  reached.reserve(bins.size());
-  for (const std::size_t b : bins) {
-    std::array<int, 9>& at = reached.emplace_back();
-    std::ranges::transform(state.bins[b].record, at.begin(), [&](int r) { return place[static_cast<std::size_t>(r)]; });
-  }
-  return reached;
 }
 
 // Corners that stand in for edges that hold nothing would have to carry what a force pushes the whole block with.
@@ -201,7 +157,7 @@ void load_body(const Scene& scene, double time, const IntactBody& body, State& s
   load.jumps = Eigen::VectorXd::Zero(condensed.size());
   for (const Bin& bin : state.bins) {
     for (const std::size_t q : bin) {
-      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
+      const Gradients g = gradients_of_particle(scene, state, bin, q);
       for (std::size_t n = 0; n < 9; ++n) {
         const int node = state.copies.node_of_record[static_cast<std::size_t>(bin.record[n])];
         for (int component = 0; component < 2; ++component) {
@@ -234,14 +190,9 @@ double plastic_slip(const ContactPlace& place, const LawAnswer& r, const Vec2& w
 void update_model(const Scene& scene, const Rocks& rocks, State& state, QuasistaticModel& model, bool halve) {
   update_equations(scene, rocks, state, model, halve);
   model.bonds = find_bonds(scene, state);
-  if (scene.body.acceleration_m_s2) {  // its work needs all
-    model.asked = ask_for_all(state, *model.body);
-  } else {
-    model.watched = watched_bins(scene, state, model.bonds);
-    model.asked = ask_for(scene, state, *model.body, records_of(state, model.watched));
-    model.reached = reached_by(state, model.watched, model.asked);
-    model.slopes = slopes_at(scene, state, model.watched);
-  }
+  model.watched = scene.body.acceleration_m_s2 ? all_bins(state) : watched_bins(scene, state, model.bonds);
+  model.asked = ask_for(scene, state, *model.body, model.watched);
+  model.gradients = gradients_in(scene, state, model.watched);
   model.vertex_jumps = jumps_at_vertices(state, model.condensed);
 }
 
@@ -252,10 +203,8 @@ void update_equations(const Scene& scene, const Rocks& rocks, State& state, Quas
   const bool halved = halve && mirror_symmetric(scene);
   const bool same_body = model.body && model.body->points() == state.particles.next_id;  // a trial has some of them
   if (!same_body) {
-    std::vector<int> order;
-    if (model.body && model.body->halved() == halved) order = model.body->factor().order();
     model.body.reset();  // two are not to be held at a time
-    model.body = std::make_shared<const IntactBody>(scene, rocks, state, halved, std::move(order));
+    model.body = std::make_shared<const IntactBody>(scene, rocks, state, halved);
   }
   model.condensed = condense(scene, rocks, state, *model.body, same_body ? &model.condensed : nullptr);
   forget_solution(scene, rocks, state, model);
@@ -276,18 +225,16 @@ Equilibrium find_equilibrium(const Scene& scene, double time, State& state, Quas
 }
 
 void set_all_particles(const Scene& scene, State& state, const QuasistaticModel& model) {
-  const Asked all = ask_for_all(state, *model.body);
-  set_particles(scene, displacements(scene, state, *model.body, model.condensed, model.shown, all), state);
+  const std::vector<Vec2> u =
+      displacements(scene, state, *model.body, model.condensed, model.shown, ask_for_all(state, *model.body));
+  const std::vector<std::size_t> bins = all_bins(state);
+  set_particles(bins, gradients_in(scene, state, bins), u, state);
 }
 
 void set_fields(const Scene& scene, State& state, QuasistaticModel& model, const Equilibrium& equilibrium) {
   model.shown = equilibrium.j;
-  const std::vector<Vec2> u = displacements(scene, state, *model.body, model.condensed, model.shown, model.asked);
-  if (scene.body.acceleration_m_s2) {
-    set_particles(scene, u, state);
-  } else {
-    set_watched(model, u, state);
-  }
+  set_particles(model.watched, model.gradients,
+                displacements(scene, state, *model.body, model.condensed, model.shown, model.asked), state);
   for (std::size_t k = 0; k < model.places.size(); ++k) {
     const ContactPlace& place = model.places[k];
     const LawAnswer& r = equilibrium.answers[k];

@@ -3,12 +3,12 @@
 #pragma once
 
 #include <Eigen/SparseCore>
-#include <array>
 #include <memory>
 #include <vector>
 
 #include "interfaces/failure.hpp"
 #include "quasistatic/contact_equilibrium.hpp"
+#include "state/shape_functions.hpp"
 
 namespace strata {
 
@@ -19,12 +19,10 @@ struct QuasistaticModel {
   std::vector<ContactPlace> places;
   TangentFactor factor;
   Bonds bonds;
-  std::vector<std::size_t> watched;            // bins whose fields decide what happens next: around tips, beside bonded
-                                               // interfaces; none with a body force, under which all do
-  Asked asked;                                 // the records that these reach
-  std::vector<std::array<int, 9>> reached;     // where among these each of their bins' nodes is
-  std::vector<std::array<double, 18>> slopes;  // of the nine nodes' functions at each of their particles (1/m), those
-                                               // along x first
+  std::vector<std::size_t> watched;  // bins whose fields decide what happens next: around tips and beside bonded
+                                     // interfaces, all of them under a body force, whose work needs them
+  Asked asked;                       // the records that these reach
+  std::vector<Gradients> gradients;  // of the nodes' functions at each of their particles
   Eigen::SparseMatrix<double, Eigen::RowMajor> vertex_jumps;  // jumps at all vertices (x and y) by the jump unknowns
   Eigen::VectorXd j;                                          // the last solution, as a first guess
   Eigen::VectorXd shown;                                      // the solution whose fields the state was given

@@ -71,24 +71,19 @@ B TangentFactor::solve_scaled(const B& b) const {
   return symmetric_ ? B(cholesky_.solve(b)) : B(lu_.solve(b));
 }
 
-bool TangentFactor::stands_still() const {
-  return weakest([&](const Eigen::VectorXd& x) { return solve_scaled(x); }, scale_.size()) > smallest_eigenvalue;
-}
-
 bool TangentFactor::factorise(const Eigen::MatrixXd& T, const std::vector<ContactPlace>& places,
                               const std::vector<LawAnswer>& answers, bool stiffened) {
-  stiffened_ = stiffened;
   symmetric_ = std::none_of(answers.begin(), answers.end(), [](const LawAnswer& r) { return r.dt_dn != 0.0; });
-  first_ = answers;
+  first_ = stiffened ? std::vector<LawAnswer>{} : answers;
   known_.assign(places.size(), {-1, -1});
   Z_all_.resize(T.rows(), 0);
   V_.clear();
   scale_ = T.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   if (T.rows() == 0) return true;  // a fracture so short that it splits no node
   const Eigen::MatrixXd scaled = scale_.asDiagonal() * T * scale_.asDiagonal();
-  if (symmetric_) return cholesky_.compute(scaled).info() == Eigen::Success && stands_still();
-  lu_.compute(scaled);
-  return stands_still();
+  if (symmetric_ && cholesky_.compute(scaled).info() != Eigen::Success) return false;
+  if (!symmetric_) lu_.compute(scaled);
+  return weakest([&](const Eigen::VectorXd& x) { return solve_scaled(x); }, scale_.size()) > smallest_eigenvalue;
 }
 
 // The rows of reactions that are others now than in T_0.
@@ -136,7 +131,7 @@ Eigen::MatrixXd TangentFactor::change_of(const Eigen::MatrixXd& y) const {
 }
 
 bool TangentFactor::follow(const std::vector<ContactPlace>& places, const std::vector<LawAnswer>& answers) {
-  if (stiffened_ || scale_.size() == 0 || first_.size() != places.size()) return false;
+  if (scale_.size() == 0 || first_.size() != places.size()) return false;
   const std::vector<Change> differ = changes(places, answers);
   std::vector<Change> fresh;
   for (const Change& change : differ) {

@@ -84,17 +84,16 @@ class TangentFactor {
 
   template <class B>
   B solve_scaled(const B& b) const;
-  bool stands_still() const;
   Eigen::MatrixXd solve_first(const Eigen::MatrixXd& b) const;
   std::vector<Change> changes(const std::vector<ContactPlace>& places, const std::vector<LawAnswer>& answers) const;
   void solve_for(const std::vector<ContactPlace>& places, const std::vector<Change>& fresh);
   Eigen::MatrixXd change_of(const Eigen::MatrixXd& y) const;
 
-  bool symmetric_ = true, stiffened_ = false;
+  bool symmetric_ = true;
   Eigen::VectorXd scale_;
   Eigen::LLT<Eigen::MatrixXd> cholesky_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
-  std::vector<LawAnswer> first_;           // answers of the places in T_0
+  std::vector<LawAnswer> first_;           // answers of the places in T_0; none where nothing may follow it
   std::vector<std::array<int, 2>> known_;  // where a place's columns of Z stand in Z_all_; -1: not computed
   Eigen::MatrixXd Z_all_;
   std::vector<SparseRow> V_;                    // columns of V

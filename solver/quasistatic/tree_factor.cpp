@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <new>
 #include <numeric>
-#include <span>
+#include <utility>
 
 #include "state/types.hpp"
 
@@ -29,31 +29,14 @@ class OneThread {
 
 }  // namespace
 
-void SideBySide::clear() {
-  for (const int row : held_) place_[static_cast<std::size_t>(row)] = 0;
-  held_.clear();
-  values_.resize(1);
-}
-
-void SideBySide::add_rows(int first, int last) {
-  for (int row = first; row < last; ++row) {
-    if (place_[static_cast<std::size_t>(row)] != 0) continue;
-    place_[static_cast<std::size_t>(row)] = static_cast<std::uint32_t>(values_.size());
-    values_.emplace_back(Row::Zero());
-    held_.push_back(row);
-  }
-}
-
-TreeFactor::TreeFactor(const Eigen::SparseMatrix<double>& K, const char* singular, std::vector<int> order) {
+TreeFactor::TreeFactor(const Eigen::SparseMatrix<double>& K, const char* singular) {
   const OneThread guard;
   cholmod_common common{};
   cholmod_start(&common);
   common.print = 0;
   common.supernodal = CHOLMOD_SUPERNODAL;
   cholmod_sparse view = Eigen::viewAsCholmod(K.selfadjointView<Eigen::Lower>());
-  const bool ordered = order.size() == view.nrow;
-  if (ordered) common.nmethods = 1, common.method[0].ordering = CHOLMOD_GIVEN;
-  cholmod_factor* L = cholmod_analyze_p(&view, ordered ? order.data() : nullptr, nullptr, 0, &common);
+  cholmod_factor* L = cholmod_analyze(&view, &common);
   cholmod_factorize(&view, L, &common);
   const bool sound = common.status == CHOLMOD_OK;
   const bool out_of_memory = common.status == CHOLMOD_OUT_OF_MEMORY || common.status == CHOLMOD_TOO_LARGE;
@@ -61,9 +44,8 @@ TreeFactor::TreeFactor(const Eigen::SparseMatrix<double>& K, const char* singula
     const auto *super = static_cast<const int*>(L->super), *rows_at = static_cast<const int*>(L->pi),
                *values_at = static_cast<const int*>(L->px), *rows = static_cast<const int*>(L->s),
                *order = static_cast<const int*>(L->Perm);
-    unknown_.assign(order, order + L->n);
     place_.resize(L->n);
-    for (std::size_t k = 0; k < L->n; ++k) place_[static_cast<std::size_t>(unknown_[k])] = static_cast<int>(k);
+    for (std::size_t k = 0; k < L->n; ++k) place_[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
     block_of_row_.resize(L->n);
     std::size_t blocks = 0, most_rows = 0;
     for (std::size_t s = 0; s < L->nsuper; ++s) {
@@ -166,17 +148,6 @@ void TreeFactor::up(const Block& block, Eigen::VectorXd& y) const {
   }
 }
 
-Eigen::VectorXd TreeFactor::zeros(const Branches& loaded, const Branches& wanted) const {
-  Eigen::VectorXd y(size());
-  for (const Branches* branches : {&loaded, &wanted}) {
-    for (const int b : *branches) {
-      const Block& block = blocks_[static_cast<std::size_t>(b)];
-      y.segment(block.first, block.columns).setZero();
-    }
-  }
-  return y;
-}
-
 void TreeFactor::solve(const Branches& loaded, const Branches& wanted, Eigen::VectorXd& f) const {
   for (const int b : loaded) down(blocks_[static_cast<std::size_t>(b)], 0.0, f);
   for (auto b = wanted.rbegin(); b != wanted.rend(); ++b) up(blocks_[static_cast<std::size_t>(*b)], f);
@@ -190,34 +161,28 @@ Eigen::VectorXd TreeFactor::solve(const Eigen::VectorXd& f) const {
   return x;
 }
 
-std::vector<SparseVector> TreeFactor::forward(const std::vector<SparseVector>& g) const {
+TreeFactor::SideBySide::SideBySide(const TreeFactor& factor, Branches branches)
+    : branches_(std::move(branches)), place_(static_cast<std::size_t>(factor.size()), 0), values_(1, Row::Zero()) {
+  for (const int b : branches_) {
+    const Block& block = factor.blocks_[static_cast<std::size_t>(b)];
+    for (int k = block.first; k < block.first + block.columns; ++k) {
+      place_[static_cast<std::size_t>(k)] = static_cast<std::uint32_t>(values_.size());
+      values_.emplace_back(Row::Zero());
+    }
+  }
+}
+
+void TreeFactor::forward(SideBySide& g) const {
   const SideBySide::Row zero = SideBySide::Row::Zero();
-  std::vector<SparseVector> out(g.size());
-  SideBySide y(g.empty() ? 0 : size());
-  for (std::size_t from = 0; from < g.size(); from += SideBySide::most) {
-    const auto batch = std::span(g).subspan(from, std::min(SideBySide::most, g.size() - from));
-    std::vector<int> loaded;
-    for (const SparseVector& load : batch) loaded.insert(loaded.end(), load.index.begin(), load.index.end());
-    const Branches together = branches(loaded);
-    y.clear();
-    for (const int b : together) {
-      const Block& block = blocks_[static_cast<std::size_t>(b)];
-      y.add_rows(block.first, block.first + block.columns);
-    }
-    for (std::size_t c = 0; c < batch.size(); ++c) {
-      for (std::size_t e = 0; e < batch[c].index.size(); ++e)
-        y[row(batch[c].index[e])][static_cast<Eigen::Index>(c)] = batch[c].value[e];
-    }
-    for (const int b : together) down(blocks_[static_cast<std::size_t>(b)], zero, y);
-    for (std::size_t c = 0; c < batch.size(); ++c) {
-      for (const int b : branches(batch[c].index)) {
-        const Block& block = blocks_[static_cast<std::size_t>(b)];
-        for (int k = block.first; k < block.first + block.columns; ++k) {
-          out[from + c].index.push_back(k);
-          out[from + c].value.push_back(y[k][static_cast<Eigen::Index>(c)]);
-        }
-      }
-    }
+  for (const int b : g.branches()) down(blocks_[static_cast<std::size_t>(b)], zero, g);
+}
+
+SparseVector TreeFactor::on_branches(const Branches& branches, SideBySide& y, std::size_t which) const {
+  SparseVector out;
+  for (const int b : branches) {
+    const Block& block = blocks_[static_cast<std::size_t>(b)];
+    for (int k = block.first; k < block.first + block.columns; ++k)
+      out.index.push_back(k), out.value.push_back(y[k][static_cast<Eigen::Index>(which)]);
   }
   return out;
 }

@@ -21,33 +21,6 @@ struct SparseVector {
   std::vector<double> value;
 };
 
-// Up to 16 vectors side by side, a row of all of them next to each other, with room for the rows where one is not 0.
-class SideBySide {
- public:
-  static constexpr std::size_t most = 16;
-  using Row = Eigen::Array<double, most, 1>;
-
-  /// For vectors of so many rows, all of them 0. Throws nothing.
-  explicit SideBySide(int rows) : place_(static_cast<std::size_t>(rows), 0), values_(1, Row::Zero()) {}
-
-  /// Sets all vectors to 0, in the place of others. Throws nothing.
-  void clear();
-
-  /// Makes room for rows [first, last). Throws nothing.
-  void add_rows(int first, int last);
-
-  /// Whether a row has room. Throws nothing.
-  bool holds(int row) const { return place_[static_cast<std::size_t>(row)] != 0; }
-
-  /// A row; one without room must stay 0.
-  Row& operator[](int row) { return values_[place_[static_cast<std::size_t>(row)]]; }
-
- private:
-  std::vector<std::uint32_t> place_;  // of each row among the values; 0: the one of all without room
-  std::vector<int> held_;             // rows with room
-  std::vector<Row> values_;
-};
-
 class TreeFactor {
  public:
   /// Blocks of the factor, rising, with each block its parents up to the root.
@@ -55,10 +28,9 @@ class TreeFactor {
 
   TreeFactor() = default;
 
-  /// Factors a symmetric positive definite matrix of which the lower triangle counts (CHOLMOD, supernodal). order: that
-  /// of a factor of a matrix with entries in the same places, which need not be sought again, or none. Throws
+  /// Factors a symmetric positive definite matrix of which the lower triangle counts (CHOLMOD, supernodal). Throws
   /// NumericalFailure with `singular` as its text where a pivot is not positive.
-  TreeFactor(const Eigen::SparseMatrix<double>& K, const char* singular, std::vector<int> order = {});
+  TreeFactor(const Eigen::SparseMatrix<double>& K, const char* singular);
 
   /// The branches on which the given unknowns lie. Throws nothing.
   Branches branches(const std::vector<int>& unknowns) const;
@@ -66,24 +38,37 @@ class TreeFactor {
   /// All blocks.
   const Branches& all() const { return all_; }
 
-  /// The unknowns in the order of their rows.
-  const std::vector<int>& order() const { return unknown_; }
-
   /// The row of an unknown.
   int row(int unknown) const { return place_[static_cast<std::size_t>(unknown)]; }
 
-  /// A vector in rows of the factor, 0 on some branches and with no value yet elsewhere. Throws nothing.
-  Eigen::VectorXd zeros(const Branches& loaded, const Branches& wanted) const;
-
-  /// Puts x = K^-1 f in the place of f, both in rows of the factor: f is 0 off the branches `loaded` and given there
-  /// and on `wanted`; x is good on `wanted`. Units follow K and f. Throws nothing.
+  /// Puts x = K^-1 f in the place of f, both in rows of the factor: f is 0 off the branches `loaded`, x is good on
+  /// `wanted`. Units follow K and f. Throws nothing.
   void solve(const Branches& loaded, const Branches& wanted, Eigen::VectorXd& f) const;
 
   /// x = K^-1 f by unknowns, whole. Throws nothing.
   Eigen::VectorXd solve(const Eigen::VectorXd& f) const;
 
-  /// Y = L^-1 P g of each g in rows of the factor; the digits of one do not depend on the others. Throws nothing.
-  std::vector<SparseVector> forward(const std::vector<SparseVector>& g) const;
+  // Up to 16 vectors side by side in rows of the factor, with room for those on some branches; all others are 0.
+  class SideBySide {
+   public:
+    static constexpr std::size_t most = 16;
+    using Row = Eigen::Array<double, most, 1>;
+    SideBySide(const TreeFactor& factor, Branches branches);
+    Row& operator[](int row) { return values_[place_[static_cast<std::size_t>(row)]]; }
+    const Branches& branches() const { return branches_; }
+
+   private:
+    Branches branches_;
+    std::vector<std::uint32_t> place_;  // of each row among the values; 0: the one of all without room
+    std::vector<Row> values_;
+  };
+
+  /// Puts Y = L^-1 P g in the place of each g, given in rows of the factor; the digits of one do not depend on the
+  /// others. Throws nothing.
+  void forward(SideBySide& g) const;
+
+  /// One of them on some branches of its own. Throws nothing.
+  SparseVector on_branches(const Branches& branches, SideBySide& y, std::size_t which) const;
 
   int size() const { return static_cast<int>(place_.size()); }
 
@@ -106,8 +91,7 @@ class TreeFactor {
   template <class Row, class Rows>
   void down(const Block& block, const Row& zero, Rows& y) const;
 
-  std::vector<int> place_;    // row of an unknown
-  std::vector<int> unknown_;  // and back
+  std::vector<int> place_;  // row of an unknown
   std::vector<Block> blocks_;
   std::vector<int> block_of_row_;
   std::vector<int> row_;

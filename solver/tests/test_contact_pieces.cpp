@@ -1,4 +1,4 @@
-#include "quasistatic/contact_pieces.hpp"
+#include "quasistatic/contact_equilibrium.hpp"
 
 #include <catch2/catch.hpp>
 
