@@ -234,8 +234,6 @@ void set_all_particles(const Scene& scene, State& state, const QuasistaticModel&
     };
     set_particles(all_bins(state), gradients, u, state);
   });
-}, u,
-      state);
 }
 
 void set_fields(const Scene& scene, State& state, QuasistaticModel& model, const Equilibrium& equilibrium) {
