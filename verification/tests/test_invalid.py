@@ -46,7 +46,7 @@ def test_run_writes_nothing(name: str, place: Path, tmp_path: Path) -> None:
 def test_what_mistakes_are_made_in_is_sound(base: str, place: Path, tmp_path: Path) -> None:
     place.write_text(BASES[base], encoding="utf-8")
     done = strata(tmp_path, "check", place)
-    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert (done.returncode, done.stderr) == (0, "") and done.stdout.startswith(f"{place}: mechanics = ") and done.stdout.count("\n") == 1
 
 
 def test_a_mistake_is_put_in_its_place() -> None:
