@@ -44,12 +44,12 @@ Moved move_particles(const Scene& scene, const Rocks& rocks, State& state) {
   update_stencil_weights(scene, state);                                         // N_i(x_s) of D
   add_net_tractions(state);                                                     // f_i += D^T (P n - t_in_situ) A
   fold_to_masters(state, state.sums);                                           // symmetric and fixed edges
-  const GridEnergy grid = advance_momentum(scene.numerics.damping_1_s, state);  // v_i = mom_i/m_i + dt f_i/m_i
+  const NodeTotals grid = advance_momentum(scene.numerics.damping_1_s, state);  // v_i = mom_i/m_i + dt f_i/m_i
   const double friction = ledger.friction;
   solve_reactions(scene, rocks, state);  // contact, friction, springs at the step's end; w += dt D v
-  watch_made(grid.mapped, grid.swing - 0.5 * (ledger.friction - friction), state);
-  const GridEnergyAfter after = grid_energy(state);
-  take_damping(1.0 - scene.numerics.damping_1_s * state.dt, grid.mapped, after.product, ledger);
+  watch_made(grid.kinetic, 0.5 * (state.dt * grid.power - (ledger.friction - friction)), state);
+  const NodeTotals after = grid_energy(state);
+  take_damping(1.0 - scene.numerics.damping_1_s * state.dt, grid.kinetic, after.product, ledger);
   spread_to_tied(state);
   ledger.body_work += body_work(state);
   const Uptake uptake = prepare_transfer(scene, state);  // FLIP, PIC or XPIC
@@ -60,7 +60,7 @@ Moved move_particles(const Scene& scene, const Rocks& rocks, State& state) {
   state.time += state.dt;
   ++state.step;
   ledger.kinetic = particles.after;
-  ledger.transfer += (after.kinetic - grid.mapped) - (particles.after - particles.before);
+  ledger.transfer += (after.kinetic - grid.kinetic) - (particles.after - particles.before);
   ledger.integration += after.increment - particles.step_strain;
   note_energies(scene, particles.largest_speed2, state);
   require_stable(scene, rocks, state);

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cfloat>
 #include <cmath>
 
 #include "state/lanes.hpp"
@@ -10,43 +10,38 @@
 
 namespace strata {
 
-namespace {
-
-struct LaneSums {
-  Lane first{}, second{}, third{};
-  LaneSums& operator+=(const LaneSums& other) {
-    first += other.first, second += other.second, third += other.third;
-    return *this;
-  }
-};
-
-}  // namespace
-
-GridEnergy advance_momentum(double damping, State& state) {
+NodeTotals advance_momentum(double damping, State& state) {
   const double keep = 1.0 - damping * state.dt, dt = state.dt;
   const NodalSums& sums = state.sums;
   NodalMotion& motion = state.motion;
-  const auto energy = sum_over_records<LaneSums>(sums.size(), [&](auto lanes, std::size_t r, LaneSums& sum) {
-    const Lane zero{}, m = lanes.load(&sums.m[r]), per_m = m > 0.0 ? 1.0 / m : zero;
-    const Lane v_x = per_m * lanes.load(&sums.mom_x[r]), v_y = per_m * lanes.load(&sums.mom_y[r]);
-    const Lane dv_x = dt * per_m * lanes.load(&sums.f_x[r]), dv_y = dt * per_m * lanes.load(&sums.f_y[r]);
-    sum.first += m * (v_x * v_x + v_y * v_y), sum.second += m * (v_x * dv_x + v_y * dv_y);
-    lanes.store(&motion.dv_x[r], dv_x), lanes.store(&motion.dv_y[r], dv_y);
-    lanes.store(&motion.v_x[r], keep * v_x + dv_x), lanes.store(&motion.v_y[r], keep * v_y + dv_y);
+  return sum_over_parts<NodeTotals>(sums.size(), [&](const Part& part) {
+    double kinetic = 0.0, power = 0.0;
+#pragma omp simd reduction(+ : kinetic, power)
+    for (std::size_t r = part.first; r < part.last; ++r) {
+      const double m = sums.m[r], per_m = 1.0 / larger(m, DBL_MIN);  // without mass there is no momentum nor force
+      const double v_x = per_m * sums.mom_x[r], v_y = per_m * sums.mom_y[r];
+      const double dv_x = dt * per_m * sums.f_x[r], dv_y = dt * per_m * sums.f_y[r];
+      kinetic += 0.5 * m * (v_x * v_x + v_y * v_y), power += v_x * sums.f_x[r] + v_y * sums.f_y[r];
+      motion.dv_x[r] = dv_x, motion.dv_y[r] = dv_y;
+      motion.v_x[r] = keep * v_x + dv_x, motion.v_y[r] = keep * v_y + dv_y;
+    }
+    return NodeTotals{.kinetic = kinetic, .power = power};
   });
-  return {0.5 * sum_of_lanes(energy.first), 0.5 * sum_of_lanes(energy.second)};
 }
 
-GridEnergyAfter grid_energy(const State& state) {
+NodeTotals grid_energy(const State& state) {
   const NodalSums& sums = state.sums;
-  const NodalMotion& motion = state.motion;
-  const auto energy = sum_over_records<LaneSums>(sums.size(), [&](auto lanes, std::size_t r, LaneSums& sum) {
-    const Lane m = lanes.load(&sums.m[r]), v_x = lanes.load(&motion.v_x[r]), v_y = lanes.load(&motion.v_y[r]);
-    const Lane dv_x = lanes.load(&motion.dv_x[r]), dv_y = lanes.load(&motion.dv_y[r]);
-    sum.first += m * (v_x * v_x + v_y * v_y), sum.second += m * (dv_x * dv_x + dv_y * dv_y);
-    sum.third += lanes.load(&sums.mom_x[r]) * v_x + lanes.load(&sums.mom_y[r]) * v_y;
+  const NodalMotion& by = state.motion;
+  return sum_over_parts<NodeTotals>(sums.size(), [&](const Part& part) {
+    double kinetic = 0.0, increment = 0.0, product = 0.0;
+#pragma omp simd reduction(+ : kinetic, increment, product)
+    for (std::size_t r = part.first; r < part.last; ++r) {
+      const double half_m = 0.5 * sums.m[r], v_x = by.v_x[r], v_y = by.v_y[r];
+      kinetic += half_m * (v_x * v_x + v_y * v_y), product += sums.mom_x[r] * v_x + sums.mom_y[r] * v_y;
+      increment += half_m * (by.dv_x[r] * by.dv_x[r] + by.dv_y[r] * by.dv_y[r]);
+    }
+    return NodeTotals{.kinetic = kinetic, .increment = increment, .product = product};
   });
-  return {0.5 * sum_of_lanes(energy.first), 0.5 * sum_of_lanes(energy.second), sum_of_lanes(energy.third)};
 }
 
 void take_damping(double keep, double kinetic, double product, Ledger& ledger) {
@@ -81,7 +76,7 @@ Uptake prepare_transfer(const Scene& scene, State& state) {
   filter_velocity(scene, state);
   const NodalSums& filtered = state.filtered;
   state.take_x.resize(motion.size()), state.take_y.resize(motion.size());
-  for_each_part(motion.size(), [&](std::size_t /*part*/, const Part& part) {
+  for_each_part(motion.size(), [&](const Part& part) {
     for (std::size_t r = part.first; r < part.last; ++r) {
       const double per_m = filtered.m[r] > 0.0 ? 1.0 / filtered.m[r] : 0.0;
       state.take_x[r] = 2.0 * motion.v_x[r] - motion.dv_x[r] - per_m * filtered.mom_x[r];

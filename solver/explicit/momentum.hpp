@@ -1,7 +1,7 @@
 // The nodal part of an explicit step, between the two loops over particles.
 #pragma once
 
-#include <vector>
+#include <algorithm>
 
 #include "explicit/transfers.hpp"
 #include "state/elasticity.hpp"
@@ -9,26 +9,30 @@
 
 namespace strata {
 
-// Energies of the grid (J/m) at the start of a step: kinetic, as mapped from the particles, and sum m v . dv/2 of the
-// forces there (see watch_made()).
-struct GridEnergy {
-  double mapped = 0.0, swing = 0.0;
+// Sums over the nodes of a step, those of them that a stage forms.
+struct NodeTotals {
+  double kinetic = 0.0;    // sum m v^2/2 (J/m)
+  double increment = 0.0;  // sum m dv^2/2, dv what all forces added in the step (J/m)
+  double power = 0.0;      // sum m v . a (W/m)
+  double product = 0.0;    // sum m v . v, the velocities of the step's start and end (J/m)
+  double largest_speed2 = 0.0;
+
+  NodeTotals& operator+=(const NodeTotals& more) {
+    kinetic += more.kinetic, increment += more.increment, power += more.power, product += more.product;
+    largest_speed2 = std::max(largest_speed2, more.largest_speed2);
+    return *this;
+  }
 };
 
 /// Momentum balance at the masters: v_i = mom_i/m_i (1 - damping dt) + dt f_i/m_i, written to state.motion with the
 /// increment dt f_i/m_i beside it. Forces are those of the step's start, t; v stands for t + dt/2, and places are those
 /// of the central difference u(t + dt) - 2 u(t) + u(t - dt) = dt^2 f(t)/m, of second order in dt for any load that is
-/// taken at t. Ghosts must be folded before.
-GridEnergy advance_momentum(double damping, State& state);
+/// taken at t. Ghosts must be folded before. Returns kinetic energy and power of the velocities mom_i/m_i.
+NodeTotals advance_momentum(double damping, State& state);
 
-// Energies of the grid at the end of a step: kinetic, that of the step's increments alone, sum m dv^2/2, and the
-// product sum m v_start . v_end (J/m).
-struct GridEnergyAfter {
-  double kinetic = 0.0, increment = 0.0, product = 0.0;
-};
-
-/// These over masters, once reactions have been added to state.motion; momenta are those of the step's start.
-GridEnergyAfter grid_energy(const State& state);
+/// Kinetic energy, increment and product over masters, once reactions have been added to state.motion; momenta are
+/// those of the step's start.
+NodeTotals grid_energy(const State& state);
 
 /// Adds to the ledger what damping took in a step, its force damping m v_start along the mean of the velocities at the
 /// step's start and end: with keep = 1 - damping dt, (1 - keep) sum m v_start . (v_start + v_end)/2 (J/m). A free

@@ -32,76 +32,56 @@ void for_each_strip(const State& state, NodalSums* sums, Work work) {
   }
 }
 
-SweepArrays arrays_of(const Uptake& uptake, State& state) {
-  Particles& p = state.particles;
-  const NodalMotion& by = state.motion;
-  NodalSums& to = state.sums;
-  SweepArrays a{};
-  a.x = p.x.data(), a.y = p.y.data(), a.u_x = p.u_x.data(), a.u_y = p.u_y.data();
-  a.v_x = p.v_x.data(), a.v_y = p.v_y.data(), a.g_xx = p.g_xx.data(), a.g_xy = p.g_xy.data();
-  a.g_yx = p.g_yx.data(), a.g_yy = p.g_yy.data(), a.m = p.m.data(), a.V = p.V.data();
-  a.half_x = p.half_x.data(), a.half_y = p.half_y.data(), a.rock = p.rock.data();
-  std::ranges::copy(std::array{by.v_x.data(), by.v_y.data(), uptake.x->data(), uptake.y->data()}, a.motion);
-  std::ranges::copy(std::array{to.m.data(), to.mom_x.data(), to.mom_y.data(), to.f_x.data(), to.f_y.data()}, a.sums);
-  return a;
-}
-
-template <class Lanes>
-BlockSpans<Lanes> spans_of(const Lanes lanes, const SpanTable& x, const SpanTable& y, const Bin& bin) {
+// The spans of a block of bins, along y the same in all lanes.
+template <class L, class Real = typename L::Real>
+BothAxes<Span<Real>> spans_of(const State& state, const Bin& bin) {
+  const SpanTable &x = state.x_spans, &y = state.y_spans;
   const auto i = static_cast<std::size_t>(bin.i) + 1, j = static_cast<std::size_t>(bin.j) + 1;
-  const auto load = [&](const std::vector<double>& table) { return lanes.load(table.data() + i); };
-  return {{load(x.node), load(x.per_length), {load(x.share_before), load(x.share_after)}},
-          {y.node[j], y.per_length[j], {y.share_before[j], y.share_after[j]}}};
+  return {{L::load(&x.node[i]), L::load(&x.per_length[i]), {L::load(&x.share_before[i]), L::load(&x.share_after[i])}},
+          {Real{} + y.node[j], Real{} + y.per_length[j], {Real{} + y.share_before[j], Real{} + y.share_after[j]}}};
 }
 
-// Takes up a report with its energies times `share`.
-template <class Real>
-void add(const MotionReport<Real>& more, double share, ParticleReport& to) {
-  to.before += share * sum_of_lanes(more.before), to.after += share * sum_of_lanes(more.after);
-  to.step_strain += share * sum_of_lanes(more.step_strain);
-  to.largest_speed2 = std::max(to.largest_speed2, largest_lane(more.largest_speed2));
-  to.farthest_cells = std::max(to.farthest_cells, largest_lane(more.farthest_cells));
-}
-
-// A strip's bins, block by block; those that stand alone one by one.
-template <class Shape, bool Move, bool Gather>
-ParticleReport sweep_strip(const Rocks& rocks, const SweepStep& step, const State& state, const SweepArrays& arrays,
-                           const Strip& strip) {
-  MotionReport<Lane> of_blocks;
-  ParticleReport of_bins;
+// A strip's bins, block by block.
+template <class Shape>
+ParticleReport sweep_strip(const Sweep& sweep, const State& state, const Strip& strip) {
+  LaneReport lanes{};
   for (int b = strip.first; b < strip.last;) {
     const Bin& bin = state.bins[static_cast<std::size_t>(b)];
-    fetch(&bin, bins_ahead);
-    const auto sweep = [&](const auto lanes, auto& report) {
-      const auto at = spans_of(lanes, state.x_spans, state.y_spans, bin);
-      sweep_block<Shape, Move, Gather>(lanes, rocks, step, at, bin, arrays, report);
-    };
-    if (bin.stride == most_lanes) {
-      sweep(AllLanes{}, of_blocks);
-    } else if (bin.stride > 1) {
-      sweep(FirstLanes{bin.stride}, of_blocks);
-    } else {
-      sweep(OneLane{}, of_bins);
-    }
+    with_lanes(bin.stride, [&](auto of) {
+      using L = decltype(of);
+      sweep_block<Shape, L>(sweep, spans_of<L>(state, bin), bin, lanes);
+    });
     b += bin.stride;
   }
   ParticleReport report;
-  add(of_blocks, 0.5, report), add(of_bins, 0.5, report);
+  for (std::size_t l = 0; l < most_lanes; ++l) {
+    report += {0.5 * lanes.before[l], 0.5 * lanes.after[l], 0.5 * lanes.step_strain[l], lanes.largest_speed2[l],
+               lanes.farthest_cells[l]};
+  }
   return report;
 }
 
-template <bool Move, bool Gather>
-ParticleReport sweep(const Scene& scene, const Rocks& rocks, const Uptake& uptake, State& state) {
+ParticleReport sweep(const Scene& scene, const Rocks& rocks, const Uptake& uptake, bool moves, bool gathers,
+                     State& state) {
   state.reports.assign(state.strips.size(), {});
-  const SweepArrays arrays = arrays_of(uptake, state);
-  const SweepStep step{state.dt, uptake.keep};
+  const NodalMotion& by = state.motion;
+  NodalSums& to = state.sums;
+  const Sweep sweep{moves,
+                    gathers,
+                    state.dt,
+                    uptake.keep,
+                    rocks,
+                    state.particles,
+                    {by.v_x.data(), by.v_y.data(), uptake.x->data(), uptake.y->data()},
+                    {to.m.data(), to.mom_x.data(), to.mom_y.data(), to.f_x.data(), to.f_y.data()}};
   with_shape(scene.numerics.shape, [&](auto shape) {
-    for_each_strip(state, Gather ? &state.sums : nullptr, [&](std::size_t k) {
-      state.reports[k] = sweep_strip<decltype(shape), Move, Gather>(rocks, step, state, arrays, state.strips[k]);
+    for_each_strip(state, gathers ? &to : nullptr, [&](std::size_t k) {
+      state.reports[k] = sweep_strip<decltype(shape)>(sweep, state, state.strips[k]);
     });
   });
-  ParticleReport total;  // strip by strip: its digits do not depend on the number of threads
-  for (const ParticleReport& of_strip : state.reports) add(of_strip, 1.0, total);
+  state.gathered = moves && gathers;  // the caller of what gathers alone goes on from the sums
+  ParticleReport total;               // strip by strip: its digits do not depend on the number of threads
+  for (const ParticleReport& of_strip : state.reports) total += of_strip;
   return total;
 }
 
@@ -125,20 +105,15 @@ void for_each_stencil(const Scene& scene, NodalSums& sums, State& state, Visit v
 }  // namespace
 
 void particles_to_grid(const Scene& scene, const Rocks& rocks, State& state) {
-  const Uptake none{1.0, &state.motion.dv_x, &state.motion.dv_y};
-  sweep<false, true>(scene, rocks, none, state);
-  state.gathered = false;  // the caller goes on from them
+  sweep(scene, rocks, {1.0, &state.motion.dv_x, &state.motion.dv_y}, false, true, state);
 }
 
 ParticleReport grid_to_particles(const Scene& scene, const Rocks& rocks, const Uptake& uptake, State& state) {
-  state.gathered = false;
-  return sweep<true, false>(scene, rocks, uptake, state);
+  return sweep(scene, rocks, uptake, true, false, state);
 }
 
 ParticleReport sweep_particles(const Scene& scene, const Rocks& rocks, const Uptake& uptake, State& state) {
-  const ParticleReport report = sweep<true, true>(scene, rocks, uptake, state);
-  state.gathered = true;
-  return report;
+  return sweep(scene, rocks, uptake, true, true, state);
 }
 
 void add_body_force(const Scene& scene, State& state) {
@@ -152,7 +127,7 @@ void add_body_force(const Scene& scene, State& state) {
     }
   };
   for_each_stencil(scene, to, state, add_force);
-  for_each_part(to.size(), [&](std::size_t /*part*/, const Part& part) {
+  for_each_part(to.size(), [&](const Part& part) {
     for (std::size_t r = part.first; r < part.last; ++r) state.sums.f_x[r] += to.f_x[r], state.sums.f_y[r] += to.f_y[r];
   });
 }

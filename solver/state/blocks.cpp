@@ -1,6 +1,7 @@
 #include "state/blocks.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <compare>
 #include <numeric>
 
@@ -58,8 +59,8 @@ struct BlockBuilder {
     std::vector<Bin> rest;
     for (std::size_t b = 0; b < run.size();) {
       const Bin* at = run.data() + b;
-      int lanes = static_cast<int>(std::min<std::size_t>(most_lanes, run.size() - b));
-      while (shared(at, lanes) == 0) --lanes;
+      int lanes = static_cast<int>(std::bit_floor(std::min<std::size_t>(most_lanes, run.size() - b)));
+      while (shared(at, lanes) == 0) lanes /= 2;
       const int n = shared(at, lanes);
       add_block(at, lanes, n);
       for (int l = 0; l < lanes; ++l) {

@@ -2,13 +2,6 @@
 // back to it. What is written for a type Real of them reads the same where Real is double.
 #pragma once
 
-#if defined(__AVX512F__)
-#include <immintrin.h>
-#endif
-
-#include <algorithm>
-#include <cstddef>
-#include <type_traits>
 #include <utility>
 
 namespace strata {
@@ -22,111 +15,57 @@ constexpr int most_lanes = 4;
 constexpr int most_lanes = 2;
 #endif
 
-typedef double Lane __attribute__((vector_size(8 * most_lanes)));
-typedef double UnalignedLane __attribute__((vector_size(8 * most_lanes), aligned(8), may_alias));
+// W neighbours, a power of two.
+template <int W>
+struct Lanes {
+  using Real [[gnu::vector_size(8 * W)]] = double;
+  using Unaligned [[gnu::vector_size(8 * W), gnu::aligned(8), gnu::may_alias]] = double;
 
-// Lanes moved up by some, or down by -by; zeros where none comes from.
-template <int by, std::size_t... l>
-inline Lane moved_up(const Lane& value, std::index_sequence<l...>) {
-  constexpr auto from = [](int k) { return k >= 0 && k < most_lanes ? k : most_lanes; };
-  return __builtin_shufflevector(value, Lane{}, from(static_cast<int>(l) - by)...);
-}
-using EachLane = std::make_index_sequence<most_lanes>;
+  static Real load(const double* from) { return *reinterpret_cast<const Unaligned*>(from); }
+  static void store(double* to, const Real& value) { *reinterpret_cast<Unaligned*>(to) = value; }
 
-// All lanes.
-struct AllLanes {
-  using Real = Lane;
-
-  Lane load(const double* from) const { return *reinterpret_cast<const UnalignedLane*>(from); }
-  void store(double* to, const Lane& value) const { *reinterpret_cast<UnalignedLane*>(to) = value; }
-  Lane used(const Lane& value) const { return value; }
   // to[l] += first[l], to[l + 1] += second[l], to[l + 2] += third[l].
-  void add_shifted(double* to, const Lane& first, const Lane& second, const Lane& third) const {
-    store(to, load(to) + (first + moved_up<1>(second, EachLane{}) + moved_up<2>(third, EachLane{})));
-    const Lane out = moved_up<1 - most_lanes>(second, EachLane{}) + moved_up<2 - most_lanes>(third, EachLane{});
-    to[most_lanes] += out[0], to[most_lanes + 1] += out[1];
+  static void add_shifted(double* to, const Real& first, const Real& second, const Real& third) {
+    store(to, load(to) + (first + moved_up<1>(second) + moved_up<2>(third)));
+    const auto out = moved_up<1 - W>(second) + moved_up<2 - W>(third);
+    to[W] += out[0], to[W + 1] += out[1];
+  }
+
+ private:
+  // Lanes moved up by some, or down by -by; zeros where none comes from.
+  template <int by>
+  static Real moved_up(const Real& value) {
+    constexpr auto from = [](int k) { return k >= 0 && k < W ? k : W; };
+    return [&]<int... l>(std::integer_sequence<int, l...>) {
+      return __builtin_shufflevector(value, Real{}, from(l - by)...);
+    }(std::make_integer_sequence<int, W>{});
   }
 };
 
-// The first of them; others are 0 where they are loaded and are not stored.
-struct FirstLanes {
-  using Real = Lane;
-  int lanes;
-
-#if defined(__AVX512F__)
-  __mmask8 mask() const {
-    return static_cast<__mmask8>((1U << lanes) - 1U);
-  }
-  Lane load(const double* from) const {
-    return _mm512_maskz_loadu_pd(mask(), from);
-  }
-  void store(double* to, const Lane& value) const {
-    _mm512_mask_storeu_pd(to, mask(), value);
-  }
-  Lane used(const Lane& value) const {
-    return _mm512_maskz_mov_pd(mask(), value);
-  }
-#else
-  Lane load(const double* from) const {
-    Lane value{};
-    for (int l = 0; l < lanes; ++l) value[l] = from[l];
-    return value;
-  }
-  void store(double* to, const Lane& value) const {
-    for (int l = 0; l < lanes; ++l) to[l] = value[l];
-  }
-  Lane used(const Lane& value) const {
-    Lane kept{};
-    for (int l = 0; l < lanes; ++l) kept[l] = value[l];
-    return kept;
-  }
-#endif
-  void add_shifted(double* to, const Lane& first, const Lane& second, const Lane& third) const {
-    const FirstLanes reach{std::min(lanes + 2, most_lanes)};
-    const Lane in = used(first) + moved_up<1>(used(second), EachLane{}) + moved_up<2>(used(third), EachLane{});
-    reach.store(to, reach.load(to) + in);
-    if (lanes == most_lanes - 1) to[most_lanes] += third[lanes - 1];
-  }
-};
-
-// One lane: a number.
-struct OneLane {
+// One: a number.
+template <>
+struct Lanes<1> {
   using Real = double;
 
-  double load(const double* from) const { return *from; }
-  void store(double* to, double value) const { *to = value; }
-  double used(double value) const { return value; }
+  static double load(const double* from) { return *from; }
+  static void store(double* to, double value) { *to = value; }
+  static void add_shifted(double* to, double first, double second, double third) {
+    to[0] += first, to[1] += second, to[2] += third;
+  }
 };
 
-// Asks memory for the line of array[i]. A hint: an address that is nobody's does no harm. Inlined by force, as are its
-// callers: GCC leaves out calls of functions that do nothing else.
-template <class T>
-[[gnu::always_inline]] inline void fetch(const T* array, std::size_t i) {
-  __builtin_prefetch(array + i);
+/// Calls work(Lanes<W>{}) for W = `lanes`, a power of two up to W_most.
+template <int W_most = most_lanes, class Work>
+void with_lanes(int lanes, Work work) {
+  if constexpr (W_most > 1) {
+    if (lanes < W_most) return with_lanes<W_most / 2>(lanes, work);
+  }
+  work(Lanes<W_most>{});
 }
 
 template <class Real>
 Real larger(const Real& a, const Real& b) {
   return a > b ? a : b;
-}
-
-// The sum of all lanes, halves added to halves, and the largest of them.
-inline double sum_of_lanes(double value) {
-  return value;
-}
-inline double sum_of_lanes(Lane value) {
-  for (int half = most_lanes / 2; half > 0; half /= 2) {
-    for (int l = 0; l < half; ++l) value[l] += value[l + half];
-  }
-  return value[0];
-}
-inline double largest_lane(double value) {
-  return value;
-}
-inline double largest_lane(const Lane& value) {
-  double largest = value[0];
-  for (int l = 1; l < most_lanes; ++l) largest = std::max(largest, value[l]);
-  return largest;
 }
 
 }  // namespace strata

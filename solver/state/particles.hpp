@@ -2,6 +2,7 @@
 // displacement gradient that a particle carries; the in-situ stress comes on top of it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -35,6 +36,13 @@ struct Particles {
 template <class Real>
 struct MotionReport {
   Real before{}, after{}, step_strain{}, largest_speed2{}, farthest_cells{};
+
+  MotionReport& operator+=(const MotionReport& more) {
+    before += more.before, after += more.after, step_strain += more.step_strain;
+    largest_speed2 = std::max(largest_speed2, more.largest_speed2);
+    farthest_cells = std::max(farthest_cells, more.farthest_cells);
+    return *this;
+  }
 };
 using ParticleReport = MotionReport<double>;
 

@@ -12,7 +12,6 @@
 #include "state/blocks.hpp"
 #include "state/elasticity.hpp"
 #include "state/light_copies.hpp"
-#include "state/parts.hpp"
 
 namespace strata {
 
@@ -326,15 +325,6 @@ void make_masters(const Scene& scene, State& state) {
     const Master master = master_of(scene, state, record);  // may add the record it mirrors
     state.masters.push_back(master);
     if (master.record != record || master.x == 0.0 || master.y == 0.0) state.tied.push_back(record);
-  }
-  const auto master = [&](int record) { return state.masters[static_cast<std::size_t>(record)].record; };
-  std::stable_sort(state.tied.begin(), state.tied.end(), [&](int a, int b) { return master(a) < master(b); });
-  state.tied_of_part.assign(1, 0);
-  for (std::size_t part = 0; part < record_parts; ++part) {
-    std::size_t k = state.tied_of_part.back();
-    const auto last = static_cast<int>(part_of(state.masters.size(), part).last);
-    while (k < state.tied.size() && master(state.tied[k]) < last) ++k;
-    state.tied_of_part.push_back(k);
   }
 }
 

@@ -15,16 +15,20 @@
 
 namespace strata {
 
-struct Weights {
-  std::array<double, 3> N;
-  std::array<double, 3> dN;
-};
-
-// Weights of the nodes before and after; the one between has what is left of 1, and of 0 in dN.
+// Of the nodes before, between and after.
 template <class Real>
-struct OuterWeights {
-  Real N_before, N_after, dN_before, dN_after;
+struct AxisWeights {
+  std::array<Real, 3> N, dN;
 };
+using Weights = AxisWeights<double>;
+
+// Those of the nodes before and after and, in the middle's place, of all three: 1, and 0 in dN.
+template <class Real>
+AxisWeights<Real> outer_weights(const Real& N_before, const Real& N_after, const Real& dN_before,
+                                const Real& dN_after) {
+  const Real all = Real{} + 1.0;
+  return {{N_before, all, N_after}, {dN_before, Real{}, dN_after}};
+}
 
 // 1/(1 + s) of the spans before and after, of length s times the middle one: 1/2 where all are equal.
 template <class Real>
@@ -32,41 +36,29 @@ struct SpanShares {
   Real before, after;
 };
 
-// Half the size of a uGIMP particle along an axis and 1/(its size), in spans; other shapes are of points.
-template <class Real>
-struct ParticleSize {
-  Real half{}, per_size{};
-};
-
-// What the shapes of points, which have no size, share.
-struct OfPoints {
-  template <class Real, class Lanes, class PerLength>
-  static ParticleSize<Real> size(const Lanes& /*lanes*/, const double* /*half*/, const PerLength& /*per_length*/) {
-    return {};
-  }
-};
-
 // Quadratic B-spline (Steffen, Kirby & Berzins 2008). On knots t the recursion of de Boor (A Practical Guide to
 // Splines, 1978, chapter X) gives on [t_i, t_i+1]
 //   N_i-1 = (t_i+1 - x)^2/((t_i+1 - t_i-1)(t_i+1 - t_i)), N_i+1 = (x - t_i)^2/((t_i+2 - t_i)(t_i+1 - t_i)),
 //   N_i = 1 - N_i-1 - N_i+1;
 // sum_a xi_a N_a = x with the mean of its two inner knots as a function's xi_a (Greville), which is where nodes stand.
-struct QuadraticBspline : OfPoints {
+struct QuadraticBspline {
+  static constexpr bool has_size = false;  // functions of points
   template <class Real>
-  static OuterWeights<Real> outer(const Real& f, const SpanShares<Real>& share, const ParticleSize<Real>&) {
+  static AxisWeights<Real> outer(const Real& f, const SpanShares<Real>& share, const Real& /*half*/) {
     const Real to_after = 0.5 - f, to_before = 0.5 + f;
     const Real low = share.before * to_after, high = share.after * to_before;
-    return {low * to_after, high * to_before, -2.0 * low, 2.0 * high};
+    return outer_weights<Real>(low * to_after, high * to_before, -2.0 * low, 2.0 * high);
   }
 };
 
 // Hat functions of the two nodes of the cell. The nodes beside are half of both spans away.
-struct Linear : OfPoints {
+struct Linear {
+  static constexpr bool has_size = false;
   template <class Real>
-  static OuterWeights<Real> outer(const Real& f, const SpanShares<Real>& share, const ParticleSize<Real>&) {
+  static AxisWeights<Real> outer(const Real& f, const SpanShares<Real>& share, const Real& /*half*/) {
     const Real zero{}, d_before = 2.0 * share.before, d_after = 2.0 * share.after;
-    return {f < 0.0 ? -f * d_before : zero, f < 0.0 ? zero : f * d_after, f < 0.0 ? -d_before : zero,
-            f < 0.0 ? zero : d_after};
+    return outer_weights<Real>(f < 0.0 ? -f * d_before : zero, f < 0.0 ? zero : f * d_after, f < 0.0 ? -d_before : zero,
+                             f < 0.0 ? zero : d_after);
   }
 };
 
@@ -77,19 +69,15 @@ struct Linear : OfPoints {
 // zero: a particle that just touches a node must not give it a mass of round-off. As long as particles' rectangles fill
 // the block sum_p V_p grad N_ip is the integral of grad N_i, on graded cells too, wherever they have moved to.
 struct Ugimp {
+  static constexpr bool has_size = true;
   template <class Real>
-  static OuterWeights<Real> outer(const Real& f, const SpanShares<Real>& share, const ParticleSize<Real>& size) {
-    const Real zero{};
-    const Real before_A = larger<Real>(zero, size.half - f), before_B = larger<Real>(zero, -size.half - f);
-    const Real after_A = larger<Real>(zero, f + size.half), after_B = larger<Real>(zero, f - size.half);
-    const Real before = (2.0 * share.before) * ((before_A - before_B) * size.per_size);  // 2 share is 1/d
-    const Real after = (2.0 * share.after) * ((after_A - after_B) * size.per_size);
-    return {0.5 * before * (before_A + before_B), 0.5 * after * (after_A + after_B), -before, after};
-  }
-  template <class Real, class Lanes, class PerLength>
-  static ParticleSize<Real> size(const Lanes& lanes, const double* half, const PerLength& per_length) {
-    const Real spans = lanes.load(half) * per_length;
-    return {spans, lanes.used(0.5 / spans)};
+  static AxisWeights<Real> outer(const Real& f, const SpanShares<Real>& share, const Real& half) {
+    const Real zero{}, per_size = 0.5 / half;
+    const Real before_A = larger<Real>(zero, half - f), before_B = larger<Real>(zero, -half - f);
+    const Real after_A = larger<Real>(zero, f + half), after_B = larger<Real>(zero, f - half);
+    const Real before = (2.0 * share.before) * ((before_A - before_B) * per_size);  // 2 share is 1/d
+    const Real after = (2.0 * share.after) * ((after_A - after_B) * per_size);
+    return outer_weights<Real>(0.5 * before * (before_A + before_B), 0.5 * after * (after_A + after_B), -before, after);
   }
 };
 
@@ -97,10 +85,9 @@ struct Ugimp {
 /// size of a uGIMP particle in spans.
 template <class Shape>
 Weights graded_weights(double f, double before, double after, double half) {
-  const OuterWeights<double> w =
-      Shape::outer(f, SpanShares<double>{1.0 / (1.0 + before), 1.0 / (1.0 + after)}, {half, 0.5 / half});
-  return {{w.N_before, 1.0 - (w.N_before + w.N_after), w.N_after},
-          {w.dN_before, -(w.dN_before + w.dN_after), w.dN_after}};
+  Weights w = Shape::outer(f, SpanShares<double>{1.0 / (1.0 + before), 1.0 / (1.0 + after)}, half);
+  w.N[1] -= w.N[0] + w.N[2], w.dN[1] -= w.dN[0] + w.dN[2];
+  return w;
 }
 
 /// The same on three equal spans.

@@ -157,10 +157,7 @@ struct DerivedState {
   std::vector<std::size_t> cut_bins;  // of which a node is cut
   std::vector<Strip> strips;
   std::vector<Master> masters;  // of each record
-  // The records whose master is another one or has a factor 0, by masters, and where those of each part begin and the
-  // last end (see parts.hpp): a master's tied records are all in its part.
-  std::vector<int> tied;
-  std::vector<std::size_t> tied_of_part;
+  std::vector<int> tied;        // those whose master is another one or has a factor 0
   std::vector<std::vector<SurfaceStencil>> point_stencils, vertex_stencils;  // of each surface
   SpanTable x_spans, y_spans;
   Bonds bonds;             // of runs with inertia, see interfaces/failure.hpp

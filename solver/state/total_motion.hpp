@@ -4,13 +4,11 @@
 //   a_i = a_i at the base - (M^-1 K u)_i.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <memory>
 #include <vector>
 
 #include "scene/scene.hpp"
-#include "state/lanes.hpp"
 #include "state/spread_array.hpp"
 #include "state/types.hpp"
 
@@ -22,28 +20,21 @@ struct StencilEntry {
   double xx = 0.0, xy = 0.0, yx = 0.0, yy = 0.0;
 };
 
-// Records [first, last) that share the blocks [entry, entry + full) and, without xy and yx, the next `diagonal` ones.
+// The blocks [entry, entry + full) of a row and, without xy and yx, the next `diagonal` ones.
+struct StencilRow {
+  std::size_t entry = 0, full = 0, diagonal = 0;
+};
+
+// Records [first, last) that share a row.
 struct StencilRun {
-  int first = 0, last = 0, entry = 0, full = 0, diagonal = 0;
-};
-
-// Blocks of as many records in a row as there are lanes, from `offset` ahead on.
-struct alignas(64) StencilSegment {
-  std::array<double, most_lanes> xx{}, xy{}, yx{}, yy{};
-  int offset = 0;
-};
-
-// A record in no run, with the segments [first, last) of its row, which all records with the same row share.
-struct SingleRecord {
-  int record = 0, first = 0, last = 0;
+  std::size_t first = 0, last = 0, row = 0;
 };
 
 // -M^-1 K of the masters.
 struct StencilOperator {
   std::vector<StencilEntry> entries;
+  std::vector<StencilRow> rows;
   std::vector<StencilRun> runs;
-  std::vector<StencilSegment> segments;
-  std::vector<SingleRecord> singles;
 };
 
 // The force of the rock of a sample of bonded places (see BondSample): `base` + sum of T u + m a over masters.

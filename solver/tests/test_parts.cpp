@@ -47,32 +47,8 @@ TEST_CASE("parts are all records, each once, and begin at whole lanes") {
   }
 }
 
-// Requires each tied record to be in the part of its master. Mutation that fails: tied records in their own order.
-TEST_CASE("tied records are in the part of their master") {
-  const Run run(busy_block());
-  const State& state = run.state;
-  std::size_t count = 0;
-  for (std::size_t record = 0; record < state.masters.size(); ++record) {
-    const Master& master = state.masters[record];
-    if (master.record != static_cast<int>(record) || master.x == 0.0 || master.y == 0.0) ++count;
-  }
-  CHECK(count > 200);
-  REQUIRE(state.tied.size() == count);
-  REQUIRE(state.tied_of_part.size() == record_parts + 1);
-  CHECK(state.tied_of_part.front() == 0);
-  CHECK(state.tied_of_part.back() == count);
-  for (std::size_t k = 0; k < record_parts; ++k) {
-    const Part part = part_of(state.masters.size(), k);
-    for (std::size_t t = state.tied_of_part[k]; t < state.tied_of_part[k + 1]; ++t) {
-      const auto master = static_cast<std::size_t>(state.masters[static_cast<std::size_t>(state.tied[t])].record);
-      CHECK(master >= part.first);
-      CHECK(master < part.last);
-    }
-  }
-}
-
-// Mutations that fail: the last record of a run left out, a run's records among the single ones, too.
-TEST_CASE("runs and single records of the operator are all nodes, each once") {
+// Mutation that fails: the last record of a run left out.
+TEST_CASE("runs of the operator are all nodes, each once") {
   Scene scene = busy_block();
   scene.numerics.kinematics = Numerics::Kinematics::total;
   Run run(scene);
@@ -81,9 +57,8 @@ TEST_CASE("runs and single records of the operator are all nodes, each once") {
   const State& state = run.state;
   std::vector<int> written(state.masters.size(), 0);
   for (const StencilRun& of : op.runs) {
-    for (int r = of.first; r < of.last; ++r) ++written[static_cast<std::size_t>(r)];
+    for (std::size_t r = of.first; r < of.last; ++r) ++written[r];
   }
-  for (const SingleRecord& single : op.singles) ++written[static_cast<std::size_t>(single.record)];
   for (std::size_t r = 0; r < state.masters.size(); ++r) {
     const Master& master = state.masters[r];
     if (master.record != static_cast<int>(r) || !(state.total.m[r] > 0.0)) continue;

@@ -192,9 +192,9 @@ TEST_CASE("fast loops give what plain loops give") {
 }
 
 // Requires that nearly all particles are swept as lanes: beside the fracture, edges and an interface that has failed
-// too. Of a row of 81 bins lanes of two leave one over.
+// too. Of a row of 81 bins one is left over.
 TEST_CASE("particles are in lanes") {
-  constexpr double left_over = most_lanes == 2 ? 1.0 / 80.0 : 0.0;
+  constexpr double left_over = 1.0 / 80.0;
   Scene scene = block(80, 80);
   hold_edges(scene);
   CHECK(share_in_lanes(Run(scene).state) > 0.99 - left_over);

@@ -39,8 +39,8 @@ Vec2 interpolate(const Gradients& g, const Bin& bin, const std::vector<Vec2>& v)
 
 void fill_nodes(State& state) {
   TotalMotion& t = state.total;
-  const std::size_t n = state.masters.size() + most_lanes;  // vectors read beyond the last
-  for (auto* array : {&t.m, &t.base_x, &t.base_y, &t.v_x, &t.v_y, &t.u_x, &t.u_y}) array->assign(n, 0.0);
+  for (auto* array : {&t.m, &t.base_x, &t.base_y, &t.v_x, &t.v_y, &t.u_x, &t.u_y})
+    array->assign(state.masters.size(), 0.0);
   for (std::size_t r = 0; r < state.masters.size(); ++r) {
     const NodeSums& sum = state.sums[r];
     if (state.masters[r].record != static_cast<int>(r) || !(sum.m > 0.0)) continue;

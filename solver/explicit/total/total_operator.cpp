@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <unordered_map>
 
 #include "explicit/transfers.hpp"
@@ -15,21 +16,10 @@ namespace strata {
 
 namespace {
 
-constexpr int lanes = most_lanes;
-constexpr AllLanes all;
-constexpr int shortest_run = 8;  // records: below, a run needs more beside its sums than sharing them saves
+using L = Lanes<most_lanes>;
+using Lane = L::Real;
 
 // --- rows
-
-// A row of -M^-1 K: its blocks by ascending offset.
-using StencilRow = std::vector<StencilEntry>;
-
-// The rows of all masters. Records whose surroundings are the same (particles, weights and copies around them) share
-// one.
-struct StencilRows {
-  std::vector<StencilRow> rows;
-  std::vector<int> of_record;  // -1: no master of a mass
-};
 
 // Places within a cell are told apart by multiples of this (cells): far above the round-off of a coordinate, far below
 // what a kernel's results may differ by.
@@ -142,33 +132,10 @@ void describe_row(const State& state, const BinKinds& bins, const std::vector<In
   }
 }
 
-StencilEntry& entry_at(StencilRow& row, int offset) {
-  const auto at = std::lower_bound(row.begin(), row.end(), offset,
-                                   [](const StencilEntry& entry, int value) { return entry.offset < value; });
-  if (at != row.end() && at->offset == offset) return *at;
-  return *row.insert(at, {offset, 0.0, 0.0, 0.0, 0.0});
-}
-
-double largest_of(const StencilEntry& e) {
-  return std::max({std::abs(e.xx), std::abs(e.xy), std::abs(e.yx), std::abs(e.yy)});
-}
-
-// Coefficients that are round-off of sums that cancel.
-void drop_round_off(StencilRow& row) {
-  constexpr double nothing = 1e-15;
-  double most = 0.0;
-  for (const StencilEntry& entry : row) most = std::max(most, largest_of(entry));
-  for (StencilEntry& entry : row) {
-    for (double* value : {&entry.xx, &entry.xy, &entry.yx, &entry.yy}) {
-      if (std::abs(*value) <= nothing * most) *value = 0.0;
-    }
-  }
-  std::erase_if(row, [](const StencilEntry& entry) { return largest_of(entry) == 0.0; });
-}
-
-// Empty where the node has no mass.
-StencilRow make_row(const State& state, const BinKinds& bins, const std::vector<Incidence>& around, int record) {
-  StencilRow row;
+// A row of -M^-1 K: its blocks (1/s^2) by the offset of their record. None where the node has no mass.
+std::map<int, Eigen::Matrix2d> make_row(const State& state, const BinKinds& bins, const std::vector<Incidence>& around,
+                                        int record) {
+  std::map<int, Eigen::Matrix2d> row;
   double m = 0.0;
   for (const auto& [bin, node] : around) {
     const BinKind& local = bins.kinds[static_cast<std::size_t>(bins.of_bin[static_cast<std::size_t>(bin)])];
@@ -178,78 +145,47 @@ StencilRow make_row(const State& state, const BinKinds& bins, const std::vector<
       const auto block = local.K.block<2, 2>(2 * node, 2 * n);
       if (block.isZero(0.0)) continue;
       const Master& other = master_at(state, bin, n);
-      StencilEntry& entry = entry_at(row, other.record - record);
-      entry.xx -= own.x * other.x * block(0, 0), entry.xy -= own.x * other.y * block(0, 1);
-      entry.yx -= own.y * other.x * block(1, 0), entry.yy -= own.y * other.y * block(1, 1);
+      row.try_emplace(other.record - record, Eigen::Matrix2d::Zero()).first->second -=
+          Vec2{own.x, own.y}.asDiagonal() * block * Vec2{other.x, other.y}.asDiagonal();
     }
   }
   if (!(m > 0.0)) return {};
-  for (StencilEntry& entry : row) entry.xx /= m, entry.xy /= m, entry.yx /= m, entry.yy /= m;
-  drop_round_off(row);
+  for (auto& [offset, block] : row) block /= m;
   return row;
 }
 
-// Rows of -M^-1 K with K = sum_p V_p B^T C B (add_stiffness()) and lumped masses, rows and columns folded to masters.
-// Surroundings count as the same where they agree to 1.5e-11 of a cell.
-StencilRows make_stencil_rows(const Scene& scene, const Rocks& rocks, const State& state) {
-  const BinKinds bins = find_bin_kinds(scene, rocks, state);
-  const auto incidences = find_incidences(state);
-  StencilRows out;
-  out.of_record.assign(state.masters.size(), -1);
-  Kinds numbers;
-  Tokens tokens;
-  for (std::size_t r = 0; r < incidences.size(); ++r) {
-    if (incidences[r].empty()) continue;
-    const auto record = static_cast<int>(r);
-    describe_row(state, bins, incidences[r], record, tokens);
-    const auto [number, is_new] = numbers.try_emplace(tokens, static_cast<int>(numbers.size()));
-    if (is_new) out.rows.push_back(make_row(state, bins, incidences[r], record));
-    if (!out.rows[static_cast<std::size_t>(number->second)].empty()) out.of_record[r] = number->second;
-  }
-  return out;
-}
-
-// --- building
-
-StencilRun make_run(int first, int last, const StencilRow& row, std::vector<StencilEntry>& entries) {
-  StencilRun run{first, last, static_cast<int>(entries.size())};
+// Adds a row to an operator, without coefficients that are round-off of sums that cancel.
+void add_row(const std::map<int, Eigen::Matrix2d>& blocks, StencilOperator& op) {
+  constexpr double nothing = 1e-15;
+  double most = 0.0;
+  for (const auto& [offset, block] : blocks) most = std::max(most, block.cwiseAbs().maxCoeff());
+  const auto kept = [&](double value) { return std::abs(value) <= nothing * most ? 0.0 : value; };
+  StencilRow row{op.entries.size()};
   for (const bool diagonal : {false, true}) {
-    for (const StencilEntry& entry : row) {
-      if ((entry.xy == 0.0 && entry.yx == 0.0) != diagonal) continue;
-      entries.push_back(entry);
-      ++(diagonal ? run.diagonal : run.full);
+    for (const auto& [offset, block] : blocks) {
+      const Eigen::Matrix2d b = block.unaryExpr(kept);
+      if (b.isZero(0.0) || (b(0, 1) == 0.0 && b(1, 0) == 0.0) != diagonal) continue;
+      op.entries.push_back({offset, b(0, 0), b(0, 1), b(1, 0), b(1, 1)});
+      ++(diagonal ? row.diagonal : row.full);
     }
   }
-  return run;
-}
-
-void add_segments(const StencilRow& row, std::vector<StencilSegment>& segments) {
-  const std::size_t first = segments.size();
-  for (const StencilEntry& entry : row) {
-    if (segments.size() == first || entry.offset >= segments.back().offset + lanes) {
-      segments.emplace_back();
-      segments.back().offset = entry.offset;
-    }
-    StencilSegment& segment = segments.back();
-    const auto k = static_cast<std::size_t>(entry.offset - segment.offset);
-    segment.xx[k] = entry.xx, segment.xy[k] = entry.xy, segment.yx[k] = entry.yx, segment.yy[k] = entry.yy;
-  }
+  op.rows.push_back(row);
 }
 
 // --- applying
 
 // `count` vectors of records from `at` on.
 template <int count>
-void apply_block(const StencilEntry* entries, const StencilRun& run, std::size_t at, TotalMotion& t) {
-  constexpr std::ptrdiff_t W = lanes;
+void apply_block(const StencilOperator& op, const StencilRow& row, std::size_t at, TotalMotion& t) {
+  constexpr std::ptrdiff_t W = most_lanes;
   Lane x[count], y[count];
   for (std::ptrdiff_t k = 0; k < count; ++k)
-    x[k] = all.load(&t.base_x[at] + W * k), y[k] = all.load(&t.base_y[at] + W * k);
+    x[k] = L::load(&t.base_x[at] + W * k), y[k] = L::load(&t.base_y[at] + W * k);
   const double *u_x = t.u_x.data() + at, *u_y = t.u_y.data() + at;
-  const StencilEntry *e = entries, *const full = entries + run.full, *const end = full + run.diagonal;
+  const StencilEntry *e = &op.entries[row.entry], *const full = e + row.full, *const end = full + row.diagonal;
   for (; e != full; ++e) {
     for (std::ptrdiff_t k = 0; k < count; ++k) {
-      const Lane a = all.load(u_x + e->offset + W * k), b = all.load(u_y + e->offset + W * k);
+      const Lane a = L::load(u_x + e->offset + W * k), b = L::load(u_y + e->offset + W * k);
       x[k] += e->xx * a;
       y[k] += e->yx * a;
       x[k] += e->xy * b;
@@ -258,58 +194,46 @@ void apply_block(const StencilEntry* entries, const StencilRun& run, std::size_t
   }
   for (; e != end; ++e) {
     for (std::ptrdiff_t k = 0; k < count; ++k) {
-      x[k] += e->xx * all.load(u_x + e->offset + W * k);
-      y[k] += e->yy * all.load(u_y + e->offset + W * k);
+      x[k] += e->xx * L::load(u_x + e->offset + W * k);
+      y[k] += e->yy * L::load(u_y + e->offset + W * k);
     }
   }
-  for (std::ptrdiff_t k = 0; k < count; ++k) all.store(&t.a_x[at] + W * k, x[k]), all.store(&t.a_y[at] + W * k, y[k]);
+  for (std::ptrdiff_t k = 0; k < count; ++k) L::store(&t.a_x[at] + W * k, x[k]), L::store(&t.a_y[at] + W * k, y[k]);
 }
 
-void apply_run(const StencilOperator& op, const StencilRun& run, TotalMotion& t) {
-  const StencilEntry* entries = op.entries.data() + run.entry;
-  auto at = static_cast<std::size_t>(run.first);
-  const auto last = static_cast<std::size_t>(run.last);
-  constexpr std::size_t W = lanes, four = 4 * W;
-  for (; at + four <= last; at += four) apply_block<4>(entries, run, at, t);
-  // What is left in as few vectors as hold it; they begin before it where it does not fill them.
-  const std::size_t vectors = (last - at + lanes - 1) / lanes;
-  if (last - static_cast<std::size_t>(run.first) < vectors * lanes) {
-    for (; at + lanes <= last; at += lanes) apply_block<1>(entries, run, at, t);
-    if (at < last) apply_block<1>(entries, run, last - lanes, t);
-    return;
-  }
-  if (vectors == 4) apply_block<4>(entries, run, last - four, t);
-  if (vectors == 3) apply_block<3>(entries, run, last - 3 * W, t);
-  if (vectors == 2) apply_block<2>(entries, run, last - 2 * W, t);
-  if (vectors == 1) apply_block<1>(entries, run, last - lanes, t);
-}
-
-void apply_single(const StencilOperator& op, const SingleRecord& single, TotalMotion& t) {
-  const auto r = static_cast<std::size_t>(single.record);
+void apply_record(const StencilOperator& op, const StencilRow& row, std::size_t r, TotalMotion& t) {
   const double *u_x = t.u_x.data() + r, *u_y = t.u_y.data() + r;
-  Lane x{}, y{};
-  for (int s = single.first; s < single.last; ++s) {
-    const StencilSegment& segment = op.segments[static_cast<std::size_t>(s)];
-    const Lane a = all.load(u_x + segment.offset), b = all.load(u_y + segment.offset);
-    x += all.load(segment.xx.data()) * a;
-    y += all.load(segment.yx.data()) * a;
-    x += all.load(segment.xy.data()) * b;
-    y += all.load(segment.yy.data()) * b;
+  double x_of_x = t.base_x[r], x_of_y = 0.0, y_of_x = t.base_y[r], y_of_y = 0.0;
+  const StencilEntry* const first = &op.entries[row.entry];
+  for (const StencilEntry* e = first; e != first + row.full + row.diagonal; ++e) {
+    const double a = u_x[e->offset], b = u_y[e->offset];
+    x_of_x += e->xx * a, x_of_y += e->xy * b, y_of_x += e->yx * a, y_of_y += e->yy * b;
   }
-  t.a_x[r] = t.base_x[r] + sum_of_lanes(x);
-  t.a_y[r] = t.base_y[r] + sum_of_lanes(y);
+  t.a_x[r] = x_of_x + x_of_y, t.a_y[r] = y_of_x + y_of_y;
 }
 
-// A thread has the same runs and records in each step, so that nodes stay in its cache.
+// The last vectors of a run begin before what is left where it does not fill them.
+void apply_run(const StencilOperator& op, const StencilRun& run, TotalMotion& t) {
+  constexpr std::size_t one = most_lanes, four = 4 * one;
+  const StencilRow& row = op.rows[run.row];
+  const std::size_t n = run.last - run.first;
+  std::size_t at = run.first;
+  if (n < one) {
+    for (; at < run.last; ++at) apply_record(op, row, at, t);
+  } else if (n < four) {
+    for (; at + one <= run.last; at += one) apply_block<1>(op, row, at, t);
+    if (at < run.last) apply_block<1>(op, row, run.last - one, t);
+  } else {
+    for (; at + four <= run.last; at += four) apply_block<4>(op, row, at, t);
+    if (at < run.last) apply_block<4>(op, row, run.last - four, t);
+  }
+}
+
+// A thread has the same runs in each step, so that nodes stay in its cache.
 void apply_stencils(TotalMotion& t) {
   const StencilOperator& op = *t.op;
-#pragma omp parallel if (t.m.size() > worth_threads)
-  {
-#pragma omp for schedule(static) nowait
-    for (const StencilRun& run : op.runs) apply_run(op, run, t);
-#pragma omp for schedule(static)
-    for (const SingleRecord& single : op.singles) apply_single(op, single, t);
-  }
+#pragma omp parallel for schedule(static) if (t.m.size() > worth_threads)
+  for (const StencilRun& run : op.runs) apply_run(op, run, t);
 }
 
 // The same by particles: f_i = -sum_p V_p sigma(grad u) grad N_ip, folded to masters.
@@ -340,37 +264,26 @@ void apply_particles(const Scene& scene, const Rocks& rocks, State& state) {
   }
 }
 
-// Of lanes: see NodeTotals.
-struct LaneTotals {
-  Lane kinetic{}, increment{}, power{}, product{}, fastest{};
-  LaneTotals& operator+=(const LaneTotals& other) {
-    kinetic += other.kinetic, increment += other.increment, power += other.power, product += other.product;
-    fastest = larger(fastest, other.fastest);
-    return *this;
-  }
-};
-
 }  // namespace
 
+// Rows of -M^-1 K with K = sum_p V_p B^T C B (add_stiffness()) and lumped masses, rows and columns folded to masters.
+// Surroundings count as the same where they agree to 1.5e-11 of a cell.
 StencilOperator make_operator(const Scene& scene, const Rocks& rocks, const State& state) {
-  const StencilRows rows = make_stencil_rows(scene, rocks, state);
+  const BinKinds bins = find_bin_kinds(scene, rocks, state);
+  const auto incidences = find_incidences(state);
   StencilOperator op;
-  std::vector<int> segment{0};  // where those of each row begin and the last end
-  for (const StencilRow& row : rows.rows) {
-    add_segments(row, op.segments);
-    segment.push_back(static_cast<int>(op.segments.size()));
-  }
-  const std::vector<int>& of = rows.of_record;
-  for (std::size_t first = 0, last = 0; first < of.size(); first = last) {
-    for (last = first + 1; last < of.size() && of[last] == of[first];) ++last;
-    if (of[first] < 0) continue;
-    const auto row = static_cast<std::size_t>(of[first]);
-    const int from = static_cast<int>(first), to = static_cast<int>(last);
-    if (to - from >= shortest_run) {
-      op.runs.push_back(make_run(from, to, rows.rows[row], op.entries));
-    } else {
-      for (int record = from; record < to; ++record) op.singles.push_back({record, segment[row], segment[row + 1]});
-    }
+  Kinds numbers;
+  Tokens tokens;
+  for (std::size_t r = 0; r < incidences.size(); ++r) {
+    if (incidences[r].empty()) continue;
+    const auto record = static_cast<int>(r);
+    describe_row(state, bins, incidences[r], record, tokens);
+    const auto [number, is_new] = numbers.try_emplace(tokens, static_cast<int>(numbers.size()));
+    if (is_new) add_row(make_row(state, bins, incidences[r], record), op);
+    const auto row = static_cast<std::size_t>(number->second);
+    if (op.rows[row].full + op.rows[row].diagonal == 0) continue;
+    if (op.runs.empty() || op.runs.back().last != r || op.runs.back().row != row) op.runs.push_back({r, r, row});
+    op.runs.back().last = r + 1;
   }
   return op;
 }
@@ -378,31 +291,35 @@ StencilOperator make_operator(const Scene& scene, const Rocks& rocks, const Stat
 NodeTotals move_nodes(double keep, State& state) {
   TotalMotion& t = state.total;
   const double dt = state.dt;
-  const auto sum = sum_over_records<LaneTotals>(state.masters.size(), [&](auto lane, std::size_t s, LaneTotals& to) {
-    const Lane a_x = lane.load(&t.a_x[s]), a_y = lane.load(&t.a_y[s]), m = lane.load(&t.m[s]);
-    const Lane before_x = lane.load(&t.v_x[s]), before_y = lane.load(&t.v_y[s]);
-    const Lane v_x = keep * before_x + dt * a_x, v_y = keep * before_y + dt * a_y;
-    lane.store(&t.v_x[s], v_x), lane.store(&t.v_y[s], v_y);
-    lane.store(&t.u_x[s], lane.load(&t.u_x[s]) + dt * v_x), lane.store(&t.u_y[s], lane.load(&t.u_y[s]) + dt * v_y);
-    const Lane speed2 = v_x * v_x + v_y * v_y;
-    to.kinetic += m * speed2;
-    to.increment += m * (a_x * a_x + a_y * a_y);
-    to.power += m * (v_x * a_x + v_y * a_y);
-    to.product += m * (before_x * v_x + before_y * v_y);
-    to.fastest = larger(to.fastest, speed2);
+  return sum_over_parts<NodeTotals>(state.masters.size(), [&](const Part& part) {
+    double kinetic = 0.0, increment = 0.0, power = 0.0, product = 0.0, largest_speed2 = 0.0;
+#pragma omp simd reduction(+ : kinetic, increment, power, product) reduction(max : largest_speed2)
+    for (std::size_t r = part.first; r < part.last; ++r) {
+      const double a_x = t.a_x[r], a_y = t.a_y[r], m = t.m[r], before_x = t.v_x[r], before_y = t.v_y[r];
+      const double v_x = keep * before_x + dt * a_x, v_y = keep * before_y + dt * a_y;
+      t.v_x[r] = v_x, t.v_y[r] = v_y;
+      t.u_x[r] += dt * v_x, t.u_y[r] += dt * v_y;
+      const double speed2 = v_x * v_x + v_y * v_y;
+      kinetic += 0.5 * m * speed2;
+      increment += 0.5 * dt * dt * m * (a_x * a_x + a_y * a_y);
+      power += m * (v_x * a_x + v_y * a_y);
+      product += m * (before_x * v_x + before_y * v_y);
+      largest_speed2 = larger(largest_speed2, speed2);
+    }
+    return NodeTotals{kinetic, increment, power, product, largest_speed2};
   });
-  return {0.5 * sum_of_lanes(sum.kinetic), 0.5 * dt * dt * sum_of_lanes(sum.increment), sum_of_lanes(sum.power),
-          sum_of_lanes(sum.product), largest_lane(sum.fastest)};
 }
 
 double find_accelerations(const Scene& scene, const Rocks& rocks, State& state) {
   const bool fast = scene.numerics.kernels == Numerics::Kernels::fast;
   fast ? apply_stencils(state.total) : apply_particles(scene, rocks, state);
   const TotalMotion& t = state.total;
-  return sum_of_lanes(sum_over_records<Lane>(state.masters.size(), [&](auto lane, std::size_t s, Lane& power) {
-    const Lane v_a = lane.load(&t.v_x[s]) * lane.load(&t.a_x[s]) + lane.load(&t.v_y[s]) * lane.load(&t.a_y[s]);
-    power += lane.load(&t.m[s]) * v_a;
-  }));
+  return sum_over_parts<double>(state.masters.size(), [&](const Part& part) {
+    double power = 0.0;
+#pragma omp simd reduction(+ : power)
+    for (std::size_t r = part.first; r < part.last; ++r) power += t.m[r] * (t.v_x[r] * t.a_x[r] + t.v_y[r] * t.a_y[r]);
+    return power;
+  });
 }
 
 }  // namespace strata
