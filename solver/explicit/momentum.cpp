@@ -15,32 +15,29 @@ NodeTotals advance_momentum(double damping, State& state) {
   const NodalSums& sums = state.sums;
   NodalMotion& motion = state.motion;
   return sum_over_parts<NodeTotals>(sums.size(), [&](const Part& part) {
-    double kinetic = 0.0, power = 0.0;
-#pragma omp simd reduction(+ : kinetic, power)
-    for (std::size_t r = part.first; r < part.last; ++r) {
-      const double m = sums.m[r], per_m = 1.0 / larger(m, DBL_MIN);  // without mass there is no momentum nor force
-      const double v_x = per_m * sums.mom_x[r], v_y = per_m * sums.mom_y[r];
-      const double dv_x = dt * per_m * sums.f_x[r], dv_y = dt * per_m * sums.f_y[r];
-      kinetic += 0.5 * m * (v_x * v_x + v_y * v_y), power += v_x * sums.f_x[r] + v_y * sums.f_y[r];
-      motion.dv_x[r] = dv_x, motion.dv_y[r] = dv_y;
-      motion.v_x[r] = keep * v_x + dv_x, motion.v_y[r] = keep * v_y + dv_y;
-    }
-    return NodeTotals{.kinetic = kinetic, .power = power};
+    const auto m = part.of(sums.m), f_x = part.of(sums.f_x), f_y = part.of(sums.f_y);
+    auto v_x = part.of(motion.v_x), v_y = part.of(motion.v_y), dv_x = part.of(motion.dv_x), dv_y = part.of(motion.dv_y);
+    dv_x = 1.0 / m.max(DBL_MIN);  // for now: without mass there is no momentum nor force
+    v_x = dv_x * part.of(sums.mom_x), v_y = dv_x * part.of(sums.mom_y);
+    NodeTotals total;
+    total.kinetic = 0.5 * (m * (v_x * v_x + v_y * v_y)).sum();
+    total.power = (v_x * f_x + v_y * f_y).sum();
+    dv_y = dt * dv_x * f_y, dv_x = dt * dv_x * f_x;
+    v_x = keep * v_x + dv_x, v_y = keep * v_y + dv_y;
+    return total;
   });
 }
 
 NodeTotals grid_energy(const State& state) {
   const NodalSums& sums = state.sums;
-  const NodalMotion& by = state.motion;
+  const NodalMotion& motion = state.motion;
   return sum_over_parts<NodeTotals>(sums.size(), [&](const Part& part) {
-    double kinetic = 0.0, increment = 0.0, product = 0.0;
-#pragma omp simd reduction(+ : kinetic, increment, product)
-    for (std::size_t r = part.first; r < part.last; ++r) {
-      const double half_m = 0.5 * sums.m[r], v_x = by.v_x[r], v_y = by.v_y[r];
-      kinetic += half_m * (v_x * v_x + v_y * v_y), product += sums.mom_x[r] * v_x + sums.mom_y[r] * v_y;
-      increment += half_m * (by.dv_x[r] * by.dv_x[r] + by.dv_y[r] * by.dv_y[r]);
-    }
-    return NodeTotals{.kinetic = kinetic, .increment = increment, .product = product};
+    const auto m = part.of(sums.m), v_x = part.of(motion.v_x), v_y = part.of(motion.v_y);
+    NodeTotals total;
+    total.kinetic = 0.5 * (m * (v_x * v_x + v_y * v_y)).sum();
+    total.increment = 0.5 * (m * (part.of(motion.dv_x).square() + part.of(motion.dv_y).square())).sum();
+    total.product = (part.of(sums.mom_x) * v_x + part.of(sums.mom_y) * v_y).sum();
+    return total;
   });
 }
 

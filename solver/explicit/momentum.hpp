@@ -35,10 +35,9 @@ NodeTotals advance_momentum(double damping, State& state);
 NodeTotals grid_energy(const State& state);
 
 /// Adds to the ledger what damping took in a step, its force damping m v_start along the mean of the velocities at the
-/// step's start and end: with keep = 1 - damping dt, (1 - keep) sum m v_start . (v_start + v_end)/2 (J/m). A free
-/// oscillation of central differences that dies away gives all its energy to it, at any stable step. What this and the
-/// loss of kinetic energy by damping alone differ by goes to the step itself (Ledger::integration). kinetic: at the
-/// start; product: of grid_energy() (J/m). Throws nothing.
+/// step's start and end: with keep = 1 - damping dt, (1 - keep) sum m v_start . (v_start + v_end)/2 (J/m). What this
+/// and the loss of kinetic energy by damping alone differ by goes to the step itself (Ledger::integration). kinetic: at
+/// the start; product: of grid_energy() (J/m). Throws nothing.
 void take_damping(double keep, double kinetic, double product, Ledger& ledger);
 
 /// Gives tied records the motion of their masters.
@@ -53,8 +52,7 @@ double body_work(const State& state);
 Uptake prepare_transfer(const Scene& scene, State& state);
 
 /// Throws NumericalFailure where the motion has become unstable: where its kinetic energy is not finite, or more than
-/// 10 times all that loads have put in or drawn out and the block started with, and more than rounding makes, m (1e-10
-/// c_P)^2. A stable step keeps it below what was put in but for a factor 1/(1 - (omega dt/2)^2) of its fastest mode.
+/// 10 times all that loads have put in or drawn out and the block started with, and more than rounding makes.
 void require_stable(const Scene& scene, const Rocks& rocks, const State& state);
 
 /// Energy that the time step and the transfer have made, net (J/m), for the monitors. Velocities stand for the middle

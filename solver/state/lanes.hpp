@@ -38,7 +38,8 @@ struct Lanes {
     constexpr auto from = [](int k) { return k >= 0 && k < W ? k : W; };
     return [&]<int... l>(std::integer_sequence<int, l...>) {
       return __builtin_shufflevector(value, Real{}, from(l - by)...);
-    }(std::make_integer_sequence<int, W>{});
+    }
+    (std::make_integer_sequence<int, W>{});
   }
 };
 

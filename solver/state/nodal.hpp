@@ -2,7 +2,6 @@
 // is read and written as a whole through operator[].
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 
 #include "state/spread_array.hpp"
@@ -42,11 +41,6 @@ struct NodalSums {
   // n records of 0.
   void clear(std::size_t n) {
     for (auto* array : {&m, &mom_x, &mom_y, &f_x, &f_y}) array->assign(n, 0.0);
-  }
-
-  // 0 to the records [first, last).
-  void clear(std::size_t first, std::size_t last) {
-    for (auto* array : {&m, &mom_x, &mom_y, &f_x, &f_y}) std::fill(array->data() + first, array->data() + last, 0.0);
   }
 };
 

@@ -3,9 +3,11 @@
 // what it left in its cache it finds there.
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <type_traits>
 
 #include "state/state.hpp"
 
@@ -18,6 +20,13 @@ constexpr std::size_t worth_threads = 2048;
 
 struct Part {
   std::size_t first = 0, last = 0;  // records [first, last)
+
+  // Those records of an array.
+  template <class Array>
+  auto of(Array& array) const {
+    using Map = Eigen::Map<std::conditional_t<std::is_const_v<Array>, const Eigen::ArrayXd, Eigen::ArrayXd>>;
+    return Map(array.data() + first, static_cast<Eigen::Index>(last - first));
+  }
 };
 
 // The part-th of n records; all begin at whole lines of memory.

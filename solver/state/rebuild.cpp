@@ -297,24 +297,17 @@ void list_bins(const std::vector<SideWord>& reach, State& state) {
   }
 }
 
-// The key under which a record is kept at its node; false where the record is not in use.
-bool key_of(const Copies& copies, int record, SideWord& key) {
-  const int c = copies.cut_of_node[static_cast<std::size_t>(copies.node_of_record[static_cast<std::size_t>(record)])];
-  key = 0;
-  if (c < 0) return true;
-  const CutNode& cut = copies.cut[static_cast<std::size_t>(c)];
-  const auto at = std::find(cut.records.begin(), cut.records.end(), record);
-  if (at == cut.records.end()) return false;
-  key = cut.keys[static_cast<std::size_t>(at - cut.records.begin())];
-  return true;
-}
-
 Master master_of(const Scene& scene, State& state, int record) {
-  const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
-  SideWord key = 0;
-  if (!key_of(state.copies, record, key)) return {record};
+  Copies& copies = state.copies;
+  const int node = copies.node_of_record[static_cast<std::size_t>(record)];
   Master master = mirror_of(scene, state.grid, node);
-  master.record = master.record == node ? record : record_for(state.copies, master.record, key);
+  const int c = copies.cut_of_node[static_cast<std::size_t>(node)];
+  if (c < 0) return master;
+  const CutNode& cut = copies.cut[static_cast<std::size_t>(c)];
+  const auto at = std::ranges::find(cut.records, record);
+  if (at == cut.records.end()) return {record};  // not in use
+  const SideWord key = cut.keys[static_cast<std::size_t>(at - cut.records.begin())];
+  master.record = master.record == node ? record : record_for(copies, master.record, key);
   return master;
 }
 

@@ -58,7 +58,7 @@ struct Linear {
   static AxisWeights<Real> outer(const Real& f, const SpanShares<Real>& share, const Real& /*half*/) {
     const Real zero{}, d_before = 2.0 * share.before, d_after = 2.0 * share.after;
     return outer_weights<Real>(f < 0.0 ? -f * d_before : zero, f < 0.0 ? zero : f * d_after, f < 0.0 ? -d_before : zero,
-                             f < 0.0 ? zero : d_after);
+                               f < 0.0 ? zero : d_after);
   }
 };
 

@@ -41,8 +41,8 @@ struct StencilOperator {
 struct BondSensor {
   struct Entry {
     std::size_t master = 0;
-    double xx = 0.0, xy = 0.0, yx = 0.0, yy = 0.0;  // Pa
-    double m = 0.0;                                 // kg/m
+    Eigen::Matrix2d T = Eigen::Matrix2d::Zero();  // Pa
+    double m = 0.0;                               // kg/m
   };
   Vec2 base = Vec2::Zero();  // N/m
   std::vector<Entry> entries;

@@ -33,14 +33,14 @@ State after(const Scene& scene, int threads, int steps) {
 
 }  // namespace
 
-// Mutations that fail: a part that ends a vector earlier, parts that begin anywhere.
-TEST_CASE("parts are all records, each once, and begin at whole lanes") {
+// Mutations that fail: a part that ends a line earlier, parts that begin anywhere.
+TEST_CASE("parts are all records, each once, and begin at whole lines of memory") {
   for (const std::size_t n : {0U, 1U, 7U, 255U, 256U, 257U, 6561U, 100000U}) {
     std::size_t next = 0;
     for (std::size_t k = 0; k < record_parts; ++k) {
       const Part part = part_of(n, k);
       CHECK(part.first == next);
-      CHECK((part.first % most_lanes == 0 || part.first == n));
+      CHECK((part.first % (line_bytes / sizeof(double)) == 0 || part.first == n));
       next = part.last;
     }
     CHECK(next == n);

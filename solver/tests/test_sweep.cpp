@@ -7,7 +7,6 @@
 #include <new>
 #include <numeric>
 
-#include "explicit/sweep.hpp"
 #include "explicit/transfers.hpp"
 #include "random_scene.hpp"
 #include "state/blocks.hpp"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <unordered_map>
 
 #include "explicit/momentum.hpp"
 #include "explicit/reactions.hpp"
@@ -37,6 +36,21 @@ Vec2 interpolate(const Gradients& g, const Bin& bin, const std::vector<Vec2>& v)
   return sum;
 }
 
+// The mean of values by the masses that brought them.
+void add_mass(double m, const Vec2& value, const NodalSums::Record& sum) {
+  sum.m += m, sum.mom_x += m * value.x(), sum.mom_y += m * value.y();
+}
+Vec2 mean_of(const NodeSums& sum) {
+  return Vec2{sum.mom_x, sum.mom_y} / sum.m;
+}
+
+// Displacements in the place of velocities.
+NodalMotion as_motion(const std::vector<Vec2>& u) {
+  NodalMotion motion(u.size());
+  for (std::size_t r = 0; r < u.size(); ++r) motion[r] = NodeMotion{u[r].x(), u[r].y(), 0.0, 0.0};
+  return motion;
+}
+
 void fill_nodes(State& state) {
   TotalMotion& t = state.total;
   for (auto* array : {&t.m, &t.base_x, &t.base_y, &t.v_x, &t.v_y, &t.u_x, &t.u_y})
@@ -61,15 +75,12 @@ std::vector<Vec2> nodes_from_particles(const Scene& scene, const State& state, c
     sums.clear(v.size());
     for_each_particle(scene, state, bins, [&](const Bin& bin, std::size_t q, const Gradients& g) {
       const Vec2 lacks = Vec2{x[q], y[q]} - interpolate(g, bin, v);
-      for (std::size_t n = 0; n < 9; ++n) {
-        const auto record = sums[static_cast<std::size_t>(bin.record[n])];
-        const double m = g.N[n] * state.particles.m[q];
-        record.m += m, record.mom_x += m * lacks.x(), record.mom_y += m * lacks.y();
-      }
+      for (std::size_t n = 0; n < 9; ++n)
+        add_mass(g.N[n] * state.particles.m[q], lacks, sums[static_cast<std::size_t>(bin.record[n])]);
     });
     fold_to_masters(state, sums);
     for (std::size_t r = 0; r < v.size(); ++r) {
-      if (sums[r].m > 0.0) v[r] += Vec2{sums[r].mom_x, sums[r].mom_y} / sums[r].m;
+      if (sums.m[r] > 0.0) v[r] += mean_of(sums[r]);
     }
     for_each_tied(state, [&](std::size_t record, const Master& master) {
       const Vec2 from = v[static_cast<std::size_t>(master.record)];
@@ -98,14 +109,11 @@ void start_base(const Scene& scene, const Rocks& rocks, State& state) {
 void bring_up_to_date(const Scene& scene, State& state) {
   TotalMotion& t = state.total;
   if (!t.based) return;
-  NodalMotion since(state.masters.size());  // displacements in the place of velocities
-  std::vector<Vec2> u(since.size());
-  t.velocity.resize(since.size());
-  for (std::size_t r = 0; r < since.size(); ++r) {
-    u[r] = total_displacement(state, static_cast<int>(r));
-    since[r].v_x = u[r].x(), since[r].v_y = u[r].y();
-    t.velocity[r] = total_velocity(state, static_cast<int>(r));
-  }
+  std::vector<Vec2> u;
+  t.velocity.clear();
+  for (int record = 0; record < state.copies.records(); ++record)
+    u.push_back(total_displacement(state, record)), t.velocity.push_back(total_velocity(state, record));
+  const NodalMotion since = as_motion(u);
   Particles& p = state.particles;
   for_each_particle(scene, state, state.bins, [&](const Bin& bin, std::size_t q, const Gradients& g) {
     const Vec2 du = interpolate(g, bin, u), v = interpolate(g, bin, t.velocity);
@@ -149,15 +157,6 @@ void push_body(const Scene& scene, State& state) {
   }
 }
 
-namespace {
-
-struct Mean {
-  Vec2 momentum = Vec2::Zero();
-  double m = 0.0;
-};
-
-}  // namespace
-
 void carry_velocities(const Scene& scene, const RecordVelocities& before, State& state) {
   std::vector<Vec2>& v = state.total.velocity;
   v.clear();
@@ -169,20 +168,19 @@ void carry_velocities(const Scene& scene, const RecordVelocities& before, State&
   std::vector<Bin> near;
   std::ranges::copy_if(state.bins, std::back_inserter(near),
                        [&](const Bin& bin) { return std::ranges::any_of(bin.record, was_cut); });
-  std::unordered_map<int, Mean> means;
+  NodalSums sums(v.size());
   for_each_particle(scene, state, near, [&](const Bin& bin, std::size_t q, const Gradients& g) {
     for (std::size_t n = 0; n < 9; ++n) {
       const int record = bin.record[n];
       if (!was_cut(record)) continue;
       const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
       const int old = record_of(before.copies, node, state.particles.sides[q]);
-      const double m = state.particles.m[q] * g.N[n];
-      Mean& mean = means[record];
-      mean.momentum += m * before.v[static_cast<std::size_t>(old >= 0 ? old : node)], mean.m += m;
+      add_mass(state.particles.m[q] * g.N[n], before.v[static_cast<std::size_t>(old >= 0 ? old : node)],
+               sums[static_cast<std::size_t>(record)]);
     }
   });
-  for (const auto& [record, mean] : means) {
-    if (mean.m > 0.0) v[static_cast<std::size_t>(record)] = mean.momentum / mean.m;
+  for (std::size_t r = 0; r < v.size(); ++r) {
+    if (sums.m[r] > 0.0) v[r] = mean_of(sums[r]);
   }
 }
 
@@ -218,11 +216,9 @@ std::vector<BondSensor> make_bond_sensors(const Scene& scene, const Rocks& rocks
       const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
       for (std::size_t k = 0; k < 9; ++k) {
         const Master& master = state.masters[static_cast<std::size_t>(bin.record[k])];
-        const Vec2 by_x = stress_of(rock, g.N_x[k], g.N_y[k], 0.0, 0.0).on(weight);
-        const Vec2 by_y = stress_of(rock, 0.0, 0.0, g.N_x[k], g.N_y[k]).on(weight);
-        BondSensor::Entry& entry = entry_at(sensor, master);
-        entry.xx += master.x * by_x.x(), entry.yx += master.x * by_x.y();
-        entry.xy += master.y * by_y.x(), entry.yy += master.y * by_y.y();
+        Eigen::Matrix2d& T = entry_at(sensor, master).T;
+        T.col(0) += master.x * stress_of(rock, g.N_x[k], g.N_y[k], 0.0, 0.0).on(weight);
+        T.col(1) += master.y * stress_of(rock, 0.0, 0.0, g.N_x[k], g.N_y[k]).on(weight);
       }
     }
     for (const BondSample::Mass& mass : sample.inertia)
@@ -240,10 +236,7 @@ void forces_of_nodes(const State& state, std::vector<Vec2>& forces) {
   forces.clear();
   for (const BondSensor& sensor : t.bonds) {
     Vec2& force = forces.emplace_back(sensor.base);
-    for (const BondSensor::Entry& e : sensor.entries) {
-      force.x() += e.xx * t.u_x[e.master] + e.xy * t.u_y[e.master] + e.m * t.a_x[e.master];
-      force.y() += e.yx * t.u_x[e.master] + e.yy * t.u_y[e.master] + e.m * t.a_y[e.master];
-    }
+    for (const auto& [r, T, m] : sensor.entries) force += T * Vec2{t.u_x[r], t.u_y[r]} + m * Vec2{t.a_x[r], t.a_y[r]};
   }
 }
 
@@ -281,9 +274,7 @@ void open_new_points(const Scene& scene, const Rocks& rocks, State& state) {
   // 0.07 % by 24.
   constexpr int passes = 24;
   const Particles& p = state.particles;
-  const std::vector<Vec2> u = nodes_from_particles(scene, state, bins_around(state), p.u_x, p.u_y, passes);
-  NodalMotion field(u.size());  // displacements in the place of velocities
-  for (std::size_t r = 0; r < u.size(); ++r) field[r] = NodeMotion{u[r].x(), u[r].y(), 0.0, 0.0};
+  const NodalMotion field = as_motion(nodes_from_particles(scene, state, bins_around(state), p.u_x, p.u_y, passes));
   particles_to_grid(scene, rocks, state);  // masses
   update_stencil_weights(scene, state);
   const auto open = [&](std::vector<SurfacePoint>& points, const std::vector<SurfaceStencil>& stencils) {

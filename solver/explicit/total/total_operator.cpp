@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <string>
 #include <unordered_map>
 
 #include "explicit/transfers.hpp"
@@ -25,18 +26,13 @@ using Lane = L::Real;
 // what a kernel's results may differ by.
 constexpr double same_place = 1.0 / (1LL << 36);
 
-using Tokens = std::vector<std::int64_t>;
+// What a thing is made of, as bytes, and numbers of things by it.
+using Tokens = std::string;
+using Kinds = std::unordered_map<Tokens, int>;
 
-struct TokenHash {
-  std::size_t operator()(const Tokens& tokens) const {
-    std::uint64_t hash = 0xcbf29ce484222325U;  // FNV-1a by words
-    for (const std::int64_t token : tokens) hash = (hash ^ static_cast<std::uint64_t>(token)) * 0x100000001b3U;
-    return static_cast<std::size_t>(hash ^ (hash >> 29));
-  }
-};
-
-// Numbers of things by what they are made of.
-using Kinds = std::unordered_map<Tokens, int, TokenHash>;
+void note(std::int64_t token, Tokens& tokens) {
+  tokens.append(reinterpret_cast<const char*>(&token), sizeof(token));
+}
 
 // What the particles of a bin do to the nine nodes around it.
 struct BinKind {
@@ -53,14 +49,14 @@ void describe_bin(const State& state, const Bin& bin, Tokens& tokens) {
   const Particles& p = state.particles;
   tokens.clear();
   for (const int k : {-1, 0, 1}) {
-    tokens.push_back(g.x_knots.empty() ? 0 : in_steps(g.span_x(bin.i + k) / g.h));
-    tokens.push_back(g.y_knots.empty() ? 0 : in_steps(g.span_y(bin.j + k) / g.h));
+    note(g.x_knots.empty() ? 0 : in_steps(g.span_x(bin.i + k) / g.h), tokens);
+    note(g.y_knots.empty() ? 0 : in_steps(g.span_y(bin.j + k) / g.h), tokens);
   }
   for (const std::size_t q : bin) {
-    tokens.push_back(in_steps((p.x[q] - g.x(bin.i)) / g.h));
-    tokens.push_back(in_steps((p.y[q] - g.y(bin.j)) / g.h));
-    tokens.push_back(in_steps(p.V[q] / (g.h * g.h)));
-    tokens.push_back(p.rock[q]);
+    note(in_steps((p.x[q] - g.x(bin.i)) / g.h), tokens);
+    note(in_steps((p.y[q] - g.y(bin.j)) / g.h), tokens);
+    note(in_steps(p.V[q] / (g.h * g.h)), tokens);
+    note(p.rock[q], tokens);
   }
 }
 
@@ -123,11 +119,11 @@ void describe_row(const State& state, const BinKinds& bins, const std::vector<In
   const auto code_of = [](const Master& m) { return 3 * static_cast<int>(m.x) + static_cast<int>(m.y) + 4; };
   tokens.clear();
   for (const auto& [bin, node] : around) {
-    tokens.push_back(bins.of_bin[static_cast<std::size_t>(bin)]);
-    tokens.push_back(16 * node + code_of(master_at(state, bin, node)));
+    note(bins.of_bin[static_cast<std::size_t>(bin)], tokens);
+    note(16 * node + code_of(master_at(state, bin, node)), tokens);
     for (int n = 0; n < 9; ++n) {
       const Master& other = master_at(state, bin, n);
-      tokens.push_back(16 * (other.record - record) + code_of(other));
+      note(16 * (other.record - record) + code_of(other), tokens);
     }
   }
 }
@@ -214,18 +210,21 @@ void apply_record(const StencilOperator& op, const StencilRow& row, std::size_t 
 
 // The last vectors of a run begin before what is left where it does not fill them.
 void apply_run(const StencilOperator& op, const StencilRun& run, TotalMotion& t) {
-  constexpr std::size_t one = most_lanes, four = 4 * one;
+  constexpr std::size_t one = most_lanes, two = 2 * one, four = 4 * one;
   const StencilRow& row = op.rows[run.row];
   const std::size_t n = run.last - run.first;
   std::size_t at = run.first;
+  for (; at + four <= run.last; at += four) apply_block<4>(op, row, at, t);
+  const std::size_t left = run.last - at;
   if (n < one) {
     for (; at < run.last; ++at) apply_record(op, row, at, t);
   } else if (n < four) {
     for (; at + one <= run.last; at += one) apply_block<1>(op, row, at, t);
     if (at < run.last) apply_block<1>(op, row, run.last - one, t);
-  } else {
-    for (; at + four <= run.last; at += four) apply_block<4>(op, row, at, t);
-    if (at < run.last) apply_block<4>(op, row, run.last - four, t);
+  } else if (left > two) {
+    apply_block<4>(op, row, run.last - four, t);
+  } else if (left > 0) {
+    apply_block<2>(op, row, run.last - two, t);
   }
 }
 
@@ -292,21 +291,17 @@ NodeTotals move_nodes(double keep, State& state) {
   TotalMotion& t = state.total;
   const double dt = state.dt;
   return sum_over_parts<NodeTotals>(state.masters.size(), [&](const Part& part) {
-    double kinetic = 0.0, increment = 0.0, power = 0.0, product = 0.0, largest_speed2 = 0.0;
-#pragma omp simd reduction(+ : kinetic, increment, power, product) reduction(max : largest_speed2)
-    for (std::size_t r = part.first; r < part.last; ++r) {
-      const double a_x = t.a_x[r], a_y = t.a_y[r], m = t.m[r], before_x = t.v_x[r], before_y = t.v_y[r];
-      const double v_x = keep * before_x + dt * a_x, v_y = keep * before_y + dt * a_y;
-      t.v_x[r] = v_x, t.v_y[r] = v_y;
-      t.u_x[r] += dt * v_x, t.u_y[r] += dt * v_y;
-      const double speed2 = v_x * v_x + v_y * v_y;
-      kinetic += 0.5 * m * speed2;
-      increment += 0.5 * dt * dt * m * (a_x * a_x + a_y * a_y);
-      power += m * (v_x * a_x + v_y * a_y);
-      product += m * (before_x * v_x + before_y * v_y);
-      largest_speed2 = larger(largest_speed2, speed2);
-    }
-    return NodeTotals{kinetic, increment, power, product, largest_speed2};
+    const auto m = part.of(t.m), a_x = part.of(t.a_x), a_y = part.of(t.a_y);
+    auto v_x = part.of(t.v_x), v_y = part.of(t.v_y);
+    NodeTotals total;
+    total.product = (m * (v_x * (keep * v_x + dt * a_x) + v_y * (keep * v_y + dt * a_y))).sum();
+    v_x = keep * v_x + dt * a_x, v_y = keep * v_y + dt * a_y;
+    part.of(t.u_x) += dt * v_x, part.of(t.u_y) += dt * v_y;
+    total.kinetic = 0.5 * (m * (v_x * v_x + v_y * v_y)).sum();
+    total.increment = 0.5 * dt * dt * (m * (a_x * a_x + a_y * a_y)).sum();
+    total.power = (m * (v_x * a_x + v_y * a_y)).sum();
+    total.largest_speed2 = (v_x * v_x + v_y * v_y).maxCoeff();
+    return total;
   });
 }
 
@@ -315,10 +310,7 @@ double find_accelerations(const Scene& scene, const Rocks& rocks, State& state) 
   fast ? apply_stencils(state.total) : apply_particles(scene, rocks, state);
   const TotalMotion& t = state.total;
   return sum_over_parts<double>(state.masters.size(), [&](const Part& part) {
-    double power = 0.0;
-#pragma omp simd reduction(+ : power)
-    for (std::size_t r = part.first; r < part.last; ++r) power += t.m[r] * (t.v_x[r] * t.a_x[r] + t.v_y[r] * t.a_y[r]);
-    return power;
+    return (part.of(t.m) * (part.of(t.v_x) * part.of(t.a_x) + part.of(t.v_y) * part.of(t.a_y))).sum();
   });
 }
 
