@@ -4,11 +4,13 @@
 //   a_i = a_i at the base - (M^-1 K u)_i.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <vector>
 
 #include "scene/scene.hpp"
+#include "state/lanes.hpp"
 #include "state/spread_array.hpp"
 #include "state/types.hpp"
 
@@ -20,9 +22,15 @@ struct StencilEntry {
   double xx = 0.0, xy = 0.0, yx = 0.0, yy = 0.0;
 };
 
-// The blocks [entry, entry + full) of a row and, without xy and yx, the next `diagonal` ones.
+// Blocks of as many records in a row as there are lanes, from `offset` ahead on.
+struct alignas(64) StencilSegment {
+  std::array<double, most_lanes> xx{}, xy{}, yx{}, yy{};
+  int offset = 0;
+};
+
+// The blocks [entry, entry + full) of a row and, without xy and yx, the next `diagonal` ones; the same as segments.
 struct StencilRow {
-  std::size_t entry = 0, full = 0, diagonal = 0;
+  std::size_t entry = 0, full = 0, diagonal = 0, segment = 0, segments = 0;
 };
 
 // Records [first, last) that share a row.
@@ -33,6 +41,7 @@ struct StencilRun {
 // -M^-1 K of the masters.
 struct StencilOperator {
   std::vector<StencilEntry> entries;
+  std::vector<StencilSegment> segments;
   std::vector<StencilRow> rows;
   std::vector<StencilRun> runs;
 };

@@ -54,7 +54,7 @@ NodalMotion as_motion(const std::vector<Vec2>& u) {
 void fill_nodes(State& state) {
   TotalMotion& t = state.total;
   for (auto* array : {&t.m, &t.base_x, &t.base_y, &t.v_x, &t.v_y, &t.u_x, &t.u_y})
-    array->assign(state.masters.size(), 0.0);
+    array->assign(state.masters.size() + most_lanes, 0.0);  // vectors read beyond the last
   for (std::size_t r = 0; r < state.masters.size(); ++r) {
     const NodeSums& sum = state.sums[r];
     if (state.masters[r].record != static_cast<int>(r) || !(sum.m > 0.0)) continue;

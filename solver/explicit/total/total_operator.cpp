@@ -156,7 +156,7 @@ void add_row(const std::map<int, Eigen::Matrix2d>& blocks, StencilOperator& op) 
   double most = 0.0;
   for (const auto& [offset, block] : blocks) most = std::max(most, block.cwiseAbs().maxCoeff());
   const auto kept = [&](double value) { return std::abs(value) <= nothing * most ? 0.0 : value; };
-  StencilRow row{op.entries.size()};
+  StencilRow row{.entry = op.entries.size(), .segment = op.segments.size()};
   for (const bool diagonal : {false, true}) {
     for (const auto& [offset, block] : blocks) {
       const Eigen::Matrix2d b = block.unaryExpr(kept);
@@ -164,6 +164,15 @@ void add_row(const std::map<int, Eigen::Matrix2d>& blocks, StencilOperator& op) 
       op.entries.push_back({offset, b(0, 0), b(0, 1), b(1, 0), b(1, 1)});
       ++(diagonal ? row.diagonal : row.full);
     }
+  }
+  for (const auto& [offset, block] : blocks) {
+    const Eigen::Matrix2d b = block.unaryExpr(kept);
+    if (b.isZero(0.0)) continue;
+    if (row.segments == 0 || offset >= op.segments.back().offset + most_lanes)
+      op.segments.emplace_back().offset = offset, ++row.segments;
+    StencilSegment& s = op.segments.back();
+    const auto k = static_cast<std::size_t>(offset - s.offset);
+    s.xx[k] = b(0, 0), s.xy[k] = b(0, 1), s.yx[k] = b(1, 0), s.yy[k] = b(1, 1);
   }
   op.rows.push_back(row);
 }
@@ -197,15 +206,20 @@ void apply_block(const StencilOperator& op, const StencilRow& row, std::size_t a
   for (std::ptrdiff_t k = 0; k < count; ++k) L::store(&t.a_x[at] + W * k, x[k]), L::store(&t.a_y[at] + W * k, y[k]);
 }
 
+// One record, by the vectors of its row.
 void apply_record(const StencilOperator& op, const StencilRow& row, std::size_t r, TotalMotion& t) {
   const double *u_x = t.u_x.data() + r, *u_y = t.u_y.data() + r;
-  double x_of_x = t.base_x[r], x_of_y = 0.0, y_of_x = t.base_y[r], y_of_y = 0.0;
-  const StencilEntry* const first = &op.entries[row.entry];
-  for (const StencilEntry* e = first; e != first + row.full + row.diagonal; ++e) {
-    const double a = u_x[e->offset], b = u_y[e->offset];
-    x_of_x += e->xx * a, x_of_y += e->xy * b, y_of_x += e->yx * a, y_of_y += e->yy * b;
+  Lane x{}, y{};
+  for (std::size_t k = row.segment; k < row.segment + row.segments; ++k) {
+    const StencilSegment& s = op.segments[k];
+    const Lane a = L::load(u_x + s.offset), b = L::load(u_y + s.offset);
+    x += L::load(s.xx.data()) * a;
+    y += L::load(s.yx.data()) * a;
+    x += L::load(s.xy.data()) * b;
+    y += L::load(s.yy.data()) * b;
   }
-  t.a_x[r] = x_of_x + x_of_y, t.a_y[r] = y_of_x + y_of_y;
+  t.a_x[r] = t.base_x[r], t.a_y[r] = t.base_y[r];
+  for (int l = 0; l < most_lanes; ++l) t.a_x[r] += x[l], t.a_y[r] += y[l];
 }
 
 // The last vectors of a run begin before what is left where it does not fill them.
