@@ -167,7 +167,7 @@ template <std::size_t b, class Real>
     const Real by_N[5] = {N * g.m, N * g.mom_x, N * g.mom_y, dN * g.s_xy_y, dN * g.s_yy};
     const Real by_dN[2] = {N * g.s_xx, N * g.s_xy_x};
     for (std::size_t of = 0; of < (b == 1 ? 3 : 5); ++of) {
-      for (std::size_t a = 0; a < 3; ++a) row[of][a] += g.w.x.N[a] * by_N[of];
+      for (std::size_t a = 0; a < 3; ++a) row[of][a] += a == 1 ? by_N[of] : g.w.x.N[a] * by_N[of];
     }
     for (std::size_t of = 0; of < 2; ++of)
       row[3 + of][0] += g.w.x.dN[0] * by_dN[of], row[3 + of][2] += g.w.x.dN[2] * by_dN[of];

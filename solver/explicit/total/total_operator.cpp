@@ -206,6 +206,14 @@ void apply_block(const StencilOperator& op, const StencilRow& row, std::size_t a
   for (std::ptrdiff_t k = 0; k < count; ++k) L::store(&t.a_x[at] + W * k, x[k]), L::store(&t.a_y[at] + W * k, y[k]);
 }
 
+// Halves added to halves.
+double sum_of_lanes(Lane value) {
+  for (int half = most_lanes / 2; half > 0; half /= 2) {
+    for (int l = 0; l < half; ++l) value[l] += value[l + half];
+  }
+  return value[0];
+}
+
 // One record, by the vectors of its row.
 void apply_record(const StencilOperator& op, const StencilRow& row, std::size_t r, TotalMotion& t) {
   const double *u_x = t.u_x.data() + r, *u_y = t.u_y.data() + r;
@@ -218,8 +226,8 @@ void apply_record(const StencilOperator& op, const StencilRow& row, std::size_t 
     x += L::load(s.xy.data()) * b;
     y += L::load(s.yy.data()) * b;
   }
-  t.a_x[r] = t.base_x[r], t.a_y[r] = t.base_y[r];
-  for (int l = 0; l < most_lanes; ++l) t.a_x[r] += x[l], t.a_y[r] += y[l];
+  t.a_x[r] = t.base_x[r] + sum_of_lanes(x);
+  t.a_y[r] = t.base_y[r] + sum_of_lanes(y);
 }
 
 // The last vectors of a run begin before what is left where it does not fill them.
