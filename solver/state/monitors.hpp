@@ -51,10 +51,10 @@ struct Monitors {
   double largest_net_Pa = 0.0;    // how far its pressure anywhere in the fracture has, at rows
 
   // Of the flow at growth: see flow/flow_monitors.hpp.
-  std::int64_t flow_growths = 0;   // all growth when it was last looked at
-  double flow_fall_Pa = 0.0;       // largest fall of the pressure in a cell since then (by rate: the last)
-  double flow_fall = 0.0;          // the same over the inlet's net pressure as it is now,
-  double largest_flow_fall = 0.0;  // and the largest at growth
+  std::int64_t flow_growths = 0;           // all growth when it was last looked at
+  double flow_fall_Pa = 0.0;               // largest fall of the pressure in a cell since then (by rate: the last)
+  double flow_fall = 0.0;                  // the same over the inlet's net pressure as it is now,
+  double largest_flow_fall = 0.0;          // and the largest at growth
   std::array<double, 2> floor_share = {};  // what the pressure owes to the floor of the opening now, by sides,
   double floor_share_sum = 0.0;            // and summed over growths, of the side that grew
 };

@@ -182,29 +182,6 @@ TEST_CASE("a file is written in one piece or not at all") {
                     Catch::Contains("a.json.tmp: cannot be written"));
 }
 
-TEST_CASE("the fraction done is that of the stop nearest by") {
-  Scene scene = made_scene();
-  State state = made_state();
-  state.time = 2.5;
-  state.fluid.inlet_Pa = 17e6;
-  CHECK(fraction_done(scene, state) == Approx(0.25));
-  scene.stop.inlet_Pa = 18e6;  // from 16
-  CHECK(fraction_done(scene, state) == Approx(0.5));
-  scene.stop.tip_y_m = 2.5;  // from 2
-  CHECK(fraction_done(scene, state) == Approx(0.5));
-  state.fracture().vertices[2].x.y() = 2.4;
-  CHECK(fraction_done(scene, state) == Approx(0.8));
-  state.time = 11.0;
-  CHECK(fraction_done(scene, state) == 1.0);
-  scene.stop = {.tip_y_m = {}, .lower_tip_y_m = {}, .inlet_Pa = {}, .time_s = 0.0};
-  CHECK(fraction_done(scene, state) == 1.0);
-  scene.stop = {.tip_y_m = {}, .lower_tip_y_m = -2.0, .inlet_Pa = {}, .time_s = {}};  // from 0
-  state.tips.push_back(state.tips[0]);
-  state.tips[1].at_back = false;
-  state.fracture().vertices[0].x.y() = -0.5;
-  CHECK(fraction_done(scene, state) == Approx(0.25));
-}
-
 TEST_CASE("progress is told in words that a reader knows") {
   State state = made_state();
   state.time = 0.25;

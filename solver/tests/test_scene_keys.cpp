@@ -109,7 +109,8 @@ TEST_CASE("An unknown key names the nearest one, or the table it belongs in, or 
   CHECK(unknown_key_message("domain.courant") ==
         "unknown key domain.courant. Did you mean numerics.courant? [domain] has width_m, height_m, beyond_m, bottom, "
         "sides, top.");
-  CHECK(unknown_key_message("stop.never") == "unknown key stop.never. [stop] has tip_y_m, lower_tip_y_m, inlet_Pa, time_s.");
+  CHECK(unknown_key_message("stop.never") ==
+        "unknown key stop.never. [stop] has tip_y_m, lower_tip_y_m, inlet_Pa, time_s.");
 }
 
 TEST_CASE("A number's text reads back as the same number and is a float in TOML") {
