@@ -214,10 +214,12 @@ double memory_need(const Scene& scene) {
 }
 
 std::string announce(const Scene& scene) {
-  return fmt::format("mechanics = {}, {}{}; {:.2g} points, {:.2g} GB by estimate", word_of(scene.numerics.mechanics),
+  const bool held = scene.fracture && scene.domain.sides == Edge::fixed && scene.domain.beyond_m == 0.0;
+  return fmt::format("mechanics = {}, {}{}{}; {:.2g} points, {:.2g} GB by estimate", word_of(scene.numerics.mechanics),
                      scene.fracture ? "fluid.law = " + word_of(scene.fluid.law) : "no fracture",
                      scene.domain.bottom == Edge::symmetry ? ", y = 0 is a mirror (domain.bottom)" : "",
-                     points_of(scene), 1e-9 * memory_need(scene));
+                     held ? ", sides are held (domain.beyond_m goes on)" : "", points_of(scene),
+                     1e-9 * memory_need(scene));
 }
 
 std::optional<std::string> too_large(const Scene& scene, double available) {
