@@ -210,9 +210,10 @@ constexpr Key keys[] = {
            "Inlet pressure at time 0, and of the initial fracture.", "Fluid pressure is positive in compression."),
     number("fluid.inlet.rate_Pa_s", at<&Scene::fluid, &Fluid::rate_Pa_s>, "Pa/s", finite,
            "Rise of the inlet pressure."),
-    number("fluid.inlet.rate_m2_s", at<&Scene::fluid, &Fluid::rate_m2_s>, "m^2/s", positive,
-           "Fluid fed into the whole fracture per metre out of plane, instead of a pressure; with symmetry at the "
-           "bottom the modelled half gets half of it."),
+    number(
+        "fluid.inlet.rate_m2_s", at<&Scene::fluid, &Fluid::rate_m2_s>, "m^2/s", positive,
+        "Fluid fed into the middle of the whole fracture per metre out of plane, instead of a pressure; with symmetry "
+        "at the bottom the modelled half gets half of it, at its foot."),
     list("fluid.inlet.table", at<&Scene::fluid, &Fluid::table>,
          "Instead of these: rows [time_s, value], from time 0 on; linear between rows, the last value is held.",
          "Write [[0, value], [time_s, value]].", "s"),
