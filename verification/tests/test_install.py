@@ -125,9 +125,10 @@ def test_completion_works_in_zsh(tree: Path, shell: Path) -> None:
     """The same in zsh, and a folder, behind which its contents may follow; what was completed resolves to both settings."""
     rc = f"PATH={shlex.quote(str(tree / 'bin'))}:$PATH; fpath=({shlex.quote(str(tree / 'share/zsh/vendor-completions'))} $fpath); autoload -Uz compinit; compinit -u -D; PS1='$ '"
     (shell / "rc.zsh").write_text(rc)
-    on_terminal(["zsh", "-f", "-i"], shell, [
+    shown = on_terminal(["zsh", "-f", "-i"], shell, [
         (". ./rc.zsh\n", "$ "), ("strata res", "res"), ("o\t", "olve"), ("mi\t", "mine.toml"), ("--set numerics.mech\t", "anics="), ("q\t", "uasistatic"), ("--var\t", "iant"),
         ("s\t", "tronger"), ("| grep -cE 'sqrt_m = 2000000|= \"quasistatic\"'\n", "2\r\n"), ("strata resume d\t", "one/"), ("\x15exit\n", "exit")], TERM="dumb")  # fmt: skip
+    assert shown.index("anics=") < shown.index("uasistatic") < shown.index("tronger") < shown.index("2\r\n") < shown.index("one/")
 
 
 def test_another_project_finds_the_library(tree: Path, tmp_path: Path) -> None:
