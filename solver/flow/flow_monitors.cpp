@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "flow/moving_front.hpp"
 #include "flow/reynolds_flow.hpp"
 
 namespace strata {
@@ -59,9 +60,8 @@ FlowStretch flow_stretch(const Scene& scene, const Side& side, std::size_t k) {
   }
   const std::vector<double>& w = side.state.reynolds.w;  // between the middles of two
   const double a = std::max(w[side.index(k)], roughness), b = std::max(w[side.index(k + 1)], roughness);
-  const std::vector<double>& wet = side.state.reynolds.wet_s;
-  const double last = wet[side.index(side.count - 1)];
-  const bool at_front = side.state.grown.line.size() > 0 && last > 0.0 && wet[side.index(k + 1)] == last;
+  const bool at_front =
+      side.state.grown.line.size() > 0 && is_new(side.state.reynolds, side.onwards, side.index(k + 1));
   const double conducts = opening_between(std::max(a, floor), std::max(b, floor)) / opening_between(a, b);
   const double weighs = scene.fluid.weight() * (side[k + 1].x.y() - side[k].x.y());
   return {side[k].P - side[k + 1].P - weighs, side[k + 1].P, at_front ? std::max(b, floor) / b : std::pow(conducts, 3)};

@@ -72,6 +72,11 @@ struct MovingFront {
 
 }  // namespace
 
+bool is_new(const ReynoldsLine& line, bool at_back, std::size_t cell) {
+  const AddedCells added(line, at_back);
+  return at_back ? cell + added.count >= line.size() : cell < added.count;
+}
+
 void guess_new_cells(ReynoldsLine& line) {
   for (const bool at_back : {false, true}) {
     const AddedCells added(line, at_back);

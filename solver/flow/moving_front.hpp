@@ -37,6 +37,9 @@ Eigen::VectorXd front_conductances(const Fluid& fluid, const ReynoldsLine& line,
 void limit_to_front(const Fluid& fluid, const ReynoldsLine& line, bool at_back, const TipRock& rock, double time,
                     double there, const Eigen::VectorXd& lost, Eigen::VectorXd& most);
 
+/// Whether a cell is one of those that a tip's last growth has added.
+bool is_new(const ReynoldsLine& line, bool at_back, std::size_t cell);
+
 /// Pressure and filling of the cells that growth has added, still empty, as beside: from where a step that takes the
 /// front through them is sought. What they hold stays.
 void guess_new_cells(ReynoldsLine& line);

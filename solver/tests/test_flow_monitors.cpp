@@ -22,6 +22,7 @@ struct Bench {
     state.fluid.inlet_Pa = 5e6;
     state.fluid.P.assign(points.size() + 1, 5e6);
     state.reynolds.w.assign(points.size(), 1e-3);
+    state.reynolds.length.assign(points.size(), 0.5);
     state.reynolds.wet_s.assign(points.size(), 0.0);
     for (SurfacePoint& s : points) s.P = 5e6, s.w = 1e-3 * s.n;
   }
