@@ -210,7 +210,7 @@ double memory_need(const Scene& scene) {
   const double solved = mirror_symmetric(scene) && !inertia ? 0.5 : 1.0;  // of the block
   const double n = 2.0 * (solved * cells_along(scene, 0) + 1.0) * (cells_along(scene, 1) + 1.0);
   const double jumps = 6.0 * solved * parted_cells(scene);
-  return moving + (may_turn(scene) ? 2000.0 : 1000.0) * points + 820.0 * n * std::log2(n) + 28.0 * jumps * jumps;
+  return moving + 800.0 * points + 500.0 * n * std::log2(n) + 56.0 * jumps * jumps;
 }
 
 std::string announce(const Scene& scene) {

@@ -49,13 +49,13 @@ std::optional<double> expected_duration(const Scene& scene);
 /// Points of a scene as it starts: with inertia, before cells ahead of a path that may turn are divided.
 double points_of(const Scene& scene);
 
-/// Estimated memory of a run at its peak (bytes): 19 MB for the process (16 to 17 in runs of some hundred points, and
-/// room for output); with inertia 1250 for each point (the copy of the state that a failing run falls back on and a
-/// checkpoint included). Where equilibria are solved 1000 for each point (trials of growth hold states), twice as many
-/// where paths turn; 820 log2(n) for each of n unknowns, two a node of what is solved (a factor by nested dissection
-/// fills up as n log n, George 1973); and 28 for each pair of the six jumps of a cell across the fracture at its end
-/// and interfaces that are apart from the start (dense matrices). Against the peaks of all 151 runs of the experiments
-/// at 1 m cells: 0.9 to 4.3 times, 1.5 in the median; most in explicit runs of Experiment 5, which weigh no growth.
+/// Estimated memory of a run at its peak (bytes): 21 MB for the process; with inertia 1250 for each point (the copy of
+/// the state that a failing run falls back on and a checkpoint included). Where equilibria are solved 800 for each
+/// point (trials of growth hold states), 500 log2(n) for each of n unknowns, two a node of what is solved (a factor by
+/// nested dissection fills up as n log n, George 1973), and 56 for each pair of the six jumps of a cell across the
+/// fracture at its end and interfaces that are apart from the start (dense matrices). Against the peaks of 57
+/// quasi-static runs of 30 to 890 MB, experiments at 1, 0.5 and 0.25 m cells and the gallery among them: 0.9 to 1.8
+/// times, 1.4 in the median.
 double memory_need(const Scene& scene);
 
 /// A line on what a scene asks for, with what one that leaves keys out is easily taken to be otherwise, and what it

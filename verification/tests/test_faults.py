@@ -203,17 +203,21 @@ def test_runs_that_are_killed_end_as_those_that_are_not() -> None:
         assert tally.kills >= 2 and tally.identical == tally.trials > 0 and tally.problems == []
 
 
-@pytest.mark.parametrize("name, changed", [("explicit total", ()), ("explicit updated", ()), ("quasi-static paper", ("stop.tip_y_m=12",))])
-def test_memory_is_estimated_a_little_above_what_a_run_takes(tmp_path: Path, name: str, changed: tuple[str, ...]) -> None:
-    """At 1 m cells, checkpoints written: within 30 % above the peak, never below."""
-    brief = ("stop.time_s=0.12", "fracture.crossing=J") if name.startswith("explicit") else ()  # too short for equilibria to decide about growth
+@pytest.mark.parametrize("name", ["explicit total", "explicit updated", "quasi-static paper"])
+def test_memory_is_estimated_a_little_above_what_a_run_takes(tmp_path: Path, name: str) -> None:
+    """At 1 m cells, checkpoints written: never below the peak, within 30 % above it with inertia and 80 % without (see memory_need).
+
+    Mutations that fail: half and twice the estimate.
+    """
+    inertia = name.startswith("explicit")
+    brief = ("stop.time_s=0.12", "fracture.crossing=J") if inertia else ()  # too short for equilibria to decide about growth
     own = KILLED[name]
-    short = Job(own.scene, own.variant, own.out, (*own.settings, "numerics.cell_m=1", "fracture.increment_m=1", *changed, *brief))
+    short = Job(own.scene, own.variant, own.out, (*own.settings, "numerics.cell_m=1", "fracture.increment_m=1", *brief))
     done = strata(tmp_path, *(word for word in run_words(short, tmp_path / "X", 0.0)[1:] if word != "--quiet"))
     assert done.returncode == 0, done.stderr
     estimate_MB = 1e3 * float(re.search(r"([\d.e+-]+) GB", done.stderr).group(1))  # type: ignore[union-attr]
     peak_MB = summary_of(tmp_path / "X")["peak_memory_MB"]
-    assert 1.0 < estimate_MB / peak_MB < 1.3
+    assert 1.0 < estimate_MB / peak_MB < (1.3 if inertia else 1.8)
 
 
 def test_two_hundred_kills_and_every_run_the_same() -> None:
