@@ -77,16 +77,6 @@ bool is_new(const ReynoldsLine& line, bool at_back, std::size_t cell) {
   return at_back ? cell + added.count >= line.size() : cell < added.count;
 }
 
-void guess_new_cells(ReynoldsLine& line) {
-  for (const bool at_back : {false, true}) {
-    const AddedCells added(line, at_back);
-    for (std::size_t j = 0; j < added.count; ++j) {
-      line.P[added.cell(j)] = line.P[added.cell(added.count)];
-      line.phi[added.cell(j)] = line.phi[added.cell(added.count)];
-    }
-  }
-}
-
 std::vector<double> wet_times(const ReynoldsLine& line, double time, bool at_front, bool at_back) {
   std::vector<double> wet = line.wet_s;
   for (const bool back : {false, true}) {

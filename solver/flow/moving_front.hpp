@@ -40,10 +40,6 @@ void limit_to_front(const Fluid& fluid, const ReynoldsLine& line, bool at_back, 
 /// Whether a cell is one of those that a tip's last growth has added.
 bool is_new(const ReynoldsLine& line, bool at_back, std::size_t cell);
 
-/// Pressure and filling of the cells that growth has added, still empty, as beside: from where a step that takes the
-/// front through them is sought. What they hold stays.
-void guess_new_cells(ReynoldsLine& line);
-
 /// When the front came by the middle of each cell (s): through the cells of a tip's last growth it goes evenly from
 /// their start to a time (s) at which it is at the tip; for the tips at the first and at the last cell that are asked
 /// for.

@@ -240,6 +240,7 @@ Balance evaluate(const Step& step, const Trial& trial) {
   const Index n = trial.P.size();
   Balance b;
   b.rock = step.rock(trial.P);
+  if (b.rock.least.size() == 0) b.rock.least = VectorXd::Constant(n, step.fluid.cavitation_Pa);
   b.held = b.inflow = VectorXd::Zero(n);
   b.by_P = b.by_w = Eigen::MatrixX3d::Zero(n, 3);
   b.by_phi = Eigen::MatrixX2d::Zero(n, 2);
@@ -283,14 +284,14 @@ MatrixXd jacobian(const Step& step, const Trial& trial, const Balance& b) {
 }
 
 // The trial a fraction of the way along dx; a cell whose bound is passed stops there and frees its other unknown.
-Trial moved(const Fluid& fluid, const Trial& from, const VectorXd& dx, double fraction) {
+Trial moved(const VectorXd& least, const Trial& from, const VectorXd& dx, double fraction) {
   Trial to = from;
   for (Index k = 0; k < dx.size(); ++k) {
     char& full = to.full[static_cast<std::size_t>(k)];
     if (full) {
       to.P(k) += fraction * dx(k);
-      if (to.P(k) >= fluid.cavitation_Pa) continue;
-      to.P(k) = fluid.cavitation_Pa;
+      if (to.P(k) >= least(k)) continue;
+      to.P(k) = least(k);
       full = 0;
     } else {
       to.phi(k) = std::max(0.0, to.phi(k) + fraction * dx(k));
@@ -343,7 +344,7 @@ std::optional<Iterate> search(const Step& step, const Iterate& from, const Vecto
   std::optional<Iterate> best;
   double fraction = trusted_fraction(step, from.trial, dx);
   for (int halving = 0; halving < 6; ++halving, fraction *= 0.5) {
-    Iterate next{moved(step.fluid, from.trial, dx, fraction), {}};
+    Iterate next{moved(from.b.rock.least, from.trial, dx, fraction), {}};
     next.b = evaluate(step, next.trial);
     if (!next.b.finite()) continue;
     const double merit = next.b.merit();
@@ -454,11 +455,11 @@ void grow(ReynoldsLine& line, const Fluid& fluid, bool at_back, double length, d
 StepReport step_reynolds(const Fluid& fluid, const Inlet& inlet, double dt, const RockModel& rock, ReynoldsLine& line,
                          FluidBalance& balance, const ReynoldsOptions& options) {
   const Step step{fluid, inlet, dt, rock, line, options};
-  Iterate at{before(line), {}};
+  Iterate at{options.filled_first ? filled(line) : before(line), {}};
   StepReport report = iterate(step, options.max_iterations / 5, at);
   if (!report.converged) {
     const int iterations = report.iterations;
-    at.trial = filled(line);
+    at.trial = options.filled_first ? before(line) : filled(line);
     report = iterate(step, options.max_iterations, at);
     report.iterations += iterations;
   }

@@ -35,6 +35,7 @@ struct RockResponse {
   Eigen::VectorXd lost = {};   // by both faces of each cell until the step's end (m^2), or nothing where none leak
   Eigen::VectorXd front = {};  // front_conductances(), or none
   Eigen::VectorXd most = {};   // that flows to a front, signed, or no number: see limit_to_front()
+  Eigen::VectorXd least = {};  // P of cells that run empty (Pa), or none: P_c
   Eigen::VectorXd rise = {};   // rho g times each cell's height above the inlet (Pa), or nothing: without weight
 };
 using RockModel = std::function<RockResponse(const Eigen::VectorXd& P)>;  // P absolute, one a point (Pa)
@@ -69,8 +70,9 @@ struct StepReport {
 };
 
 struct ReynoldsOptions {
-  int max_iterations = 100;  // a fifth as many first, then as many again from another start
-  double tolerance = 1e-12;  // of a cell's imbalance, relative to the fluid in the fracture; not below round-off
+  int max_iterations = 100;   // a fifth as many first, then as many again from another start
+  bool filled_first = false;  // the start that is tried first: every cell full, or what was before the step
+  double tolerance = 1e-12;   // of a cell's imbalance, relative to the fluid in the fracture; not below round-off
 };
 
 /// A fracture full of fluid at P (Pa) throughout, or less by its weight over the cells' rise above the inlet, rho g y

@@ -126,6 +126,39 @@ Eigen::VectorXd rise_of_cells(const Scene& scene, const State& state) {
   return rise;
 }
 
+// The pressure at the inlet's height (Pa) with which a fracture that is fed at a rate starts: a thousandth below the
+// least closing stress, so that contact holds every face. At it all are between open and closed, and Newton's method
+// may go round in circles. Rough faces hold as much less than they would at it.
+double pressure_at_rest(const State& state, const Eigen::VectorXd& rise) {
+  constexpr double held = 1e-3;
+  double P = HUGE_VAL;
+  const auto& points = state.fracture().points;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const double closing = points[k].closing_stress();
+    P = std::min(P, closing - held * std::abs(closing) + rise[static_cast<Eigen::Index>(k)]);
+  }
+  return P;
+}
+
+// P of cells that run empty (Pa), by a time (s). While a fracture in rock that takes up fluid is fed at a rate, its
+// initial cells keep the pressure that they were closed at until the tip on their side grows: the front goes through
+// faces that just touch. Faces that all of the closing stress presses together would let nothing in but by the floor,
+// which is less than the rock takes up.
+Eigen::VectorXd least_pressures(const Scene& scene, double time, const Eigen::VectorXd& rise, const State& state) {
+  const ReynoldsLine& line = state.reynolds;
+  Eigen::VectorXd least = Eigen::VectorXd::Constant(rise.size(), scene.fluid.cavitation_Pa);
+  if (line.size() == 0 || !scene.leaks() || !scene.fluid.rate_m2_s || inlet_rate(scene.fluid, time) <= 0.0)
+    return least;
+  const auto inlet = static_cast<Eigen::Index>(line.inlet);
+  const Eigen::VectorXd at_rest = (pressure_at_rest(state, rise) - rise.array()).cwiseMax(scene.fluid.cavitation_Pa);
+  for (const Tip& tip : state.tips) {
+    if (tip.last_growth_s >= 0.0) continue;
+    if (tip.at_back) least.tail(rise.size() - inlet) = at_rest.tail(rise.size() - inlet);
+    if (!tip.at_back) least.head(inlet) = at_rest.head(inlet);
+  }
+  return least;
+}
+
 // The rock at a time (s) as the flow sees it: openings and their change with the pressures, in equilibrium with all
 // surfaces; fronts of the last growth are at their tips at a time `there`.
 RockModel rock_of(const Scene& scene, double time, double there, State& state, QuasistaticModel& model) {
@@ -140,6 +173,7 @@ RockModel rock_of(const Scene& scene, double time, double there, State& state, Q
   if (model.dw_dP_of != model.factor.pieces) model.dw_dP.resize(0, 0);
   fixed.lost = lost_by(scene, time, there, state);
   fixed.rise = rise_of_cells(scene, state);
+  fixed.least = least_pressures(scene, time, fixed.rise, state);
   add_fronts(scene, rocks, time, there, state, fixed);
   return [&scene, time, &state, &model, fixed](const Eigen::VectorXd& P) {
     set_point_pressures(P, state);
@@ -185,8 +219,9 @@ FluidStep couple(const Scene& scene, double dt, bool on_the_way, State& state, Q
   GrownFluid from = grown ? state.grown : GrownFluid{state.time, 0.0, state.reynolds, state.balance};
   const bool known = from.took < from.time;  // what the first growth took says nothing of the next
   const double there = on_the_way && known ? std::max(end, from.time + from.took) : end;
-  const StepReport report = step_reynolds(scene.fluid, inlet_over(scene, state, from.time, end), end - from.time,
-                                          rock_of(scene, end, there, state, model), from.line, from.balance);
+  const StepReport report =
+      step_reynolds(scene.fluid, inlet_over(scene, state, from.time, end), end - from.time,
+                    rock_of(scene, end, there, state, model), from.line, from.balance, {.filled_first = grown});
   if (!report.converged) return {false, 0.0, report.reason};
   state.time = end;
   state.reynolds = std::move(from.line);
@@ -205,19 +240,9 @@ FluidStep couple(const Scene& scene, double dt, bool on_the_way, State& state, Q
 
 void fill_fracture(const Scene& scene, State& state, QuasistaticModel& model) {
   if (!state.has_fracture || scene.fluid.law != Fluid::Law::reynolds) return;
-  auto& points = state.fracture().points;
-  double P = scene.fluid.start_Pa;
-  // A thousandth below the least closing stress, so that contact holds every face: at it all are between open and
-  // closed, and Newton's method may go round in circles. Rough faces hold as much less than they would at it.
-  constexpr double held = 1e-3;
+  const auto& points = state.fracture().points;
   const Eigen::VectorXd rise = rise_of_cells(scene, state);
-  if (scene.fluid.rate_m2_s) {
-    P = HUGE_VAL;
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      const double closing = points[k].closing_stress();
-      P = std::min(P, closing - held * std::abs(closing) + rise[static_cast<Eigen::Index>(k)]);
-    }
-  }
+  const double P = scene.fluid.rate_m2_s ? pressure_at_rest(state, rise) : scene.fluid.start_Pa;
   const RockResponse rock = rock_of(scene, state.time, state.time, state, model)((P - rise.array()).matrix());
   std::vector<double> length;
   for (const SurfacePoint& s : points) length.push_back(s.A);
@@ -248,7 +273,6 @@ void note_rates(std::span<const double> w_before, double dt, State& state) {
 
 void start_fronts(double took, State& state) {
   state.grown = {state.time, took, state.reynolds, state.balance};
-  guess_new_cells(state.grown.line);
 }
 
 double toughless_margin(const State& state, double E_prime, const Tip& tip) {

@@ -133,20 +133,3 @@ TEST_CASE("the front goes evenly through new cells") {
   CHECK(wet_times(grown(oil, 2, false), 10.0, true, true) == std::vector<double>{9.0, 7.0, 0.0, 0.0});
   CHECK(wet_times(grown(oil, 2, false), 10.0, false, true) == std::vector<double>{6.0, 6.0, 0.0, 0.0});
 }
-
-// Requires that new cells start as the one beside them is, with what they hold, which is nothing. Mutations that fail:
-// pressure or filling left as they are, taken from the other end, or content with them.
-TEST_CASE("new cells are sought from what is beside") {
-  const Fluid oil = fluid_of(0.1);
-  for (const bool at_back : {true, false}) {
-    ReynoldsLine line = grown(oil, 2, at_back);
-    const std::size_t beside = at_back ? 1 : 2, first = at_back ? 2 : 0;
-    line.P[beside] = 3e6, line.phi[beside] = 0.5;
-    guess_new_cells(line);
-    for (const std::size_t k : {first, first + 1}) {
-      CHECK(line.P[k] == 3e6);
-      CHECK(line.phi[k] == 0.5);
-      CHECK(line.content[k] == 0.0);
-    }
-  }
-}
