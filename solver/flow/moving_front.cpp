@@ -11,18 +11,24 @@ using Eigen::VectorXd;
 
 namespace {
 
-// The cells that a tip's last growth has added, counted from the tip on; none where it has not grown.
+// The cells that a tip's last growth has added, or those that the front came to last on its way through the initial
+// fracture, counted from the front on; none before either.
 struct AddedCells {
   const ReynoldsLine& line;
   bool at_back;
-  std::size_t count = 0;
+  std::size_t dry, count = 0;
   double length = 0.0;  // m
 
-  AddedCells(const ReynoldsLine& of, bool back) : line(of), at_back(back) {
+  AddedCells(const ReynoldsLine& of, bool back) : line(of), at_back(back), dry(of.dry_cells(back)) {
     const double wet = line.wet_s[cell(0)];
     for (; wet > 0.0 && line.wet_s[cell(count)] == wet; ++count) length += length_of(count);
   }
-  std::size_t cell(std::size_t j) const { return at_back ? line.size() - 1 - j : j; }
+  // The cells that an initial fracture which is dry beyond starts with.
+  void take_first() {
+    const std::size_t side = (at_back ? line.size() - line.inlet : line.inlet) - dry;
+    for (; count < side; ++count) length += length_of(count);
+  }
+  std::size_t cell(std::size_t j) const { return at_back ? line.size() - 1 - dry - j : dry + j; }
   double length_of(std::size_t j) const { return line.length[cell(j)]; }
   Index face(std::size_t j) const { return static_cast<Index>(std::min(cell(j), cell(j + 1))); }  // behind a cell
 };
@@ -72,9 +78,24 @@ struct MovingFront {
 
 }  // namespace
 
+double front_filling(const Fluid& fluid, const ReynoldsLine& line, bool at_back, const TipRock& rock, double time) {
+  AddedCells added(line, at_back);
+  if (added.count == 0) added.take_first();
+  if (time <= line.wet_s[added.cell(0)]) return 0.0;
+  double held = 0.0;
+  for (std::size_t j = 0; j < added.count; ++j) held += line.w[added.cell(j)] * added.length_of(j);
+  return held / MovingFront(fluid, added, rock, time).content(0.0, added.length);
+}
+
+double last_wet(const ReynoldsLine& line, bool at_back) {
+  const AddedCells added(line, at_back);
+  return line.wet_s[added.cell(0)];
+}
+
 bool is_new(const ReynoldsLine& line, bool at_back, std::size_t cell) {
   const AddedCells added(line, at_back);
-  return at_back ? cell + added.count >= line.size() : cell < added.count;
+  const std::size_t j = at_back ? line.size() - 1 - cell : cell;
+  return j >= added.dry && j < added.dry + added.count;
 }
 
 std::vector<double> wet_times(const ReynoldsLine& line, double time, bool at_front, bool at_back) {

@@ -37,6 +37,14 @@ Eigen::VectorXd front_conductances(const Fluid& fluid, const ReynoldsLine& line,
 void limit_to_front(const Fluid& fluid, const ReynoldsLine& line, bool at_back, const TipRock& rock, double time,
                     double there, const Eigen::VectorXd& lost, Eigen::VectorXd& most);
 
+/// What the cells hold that the front came to last, over what they hold when it is at their end at a time (s),
+/// int_0^L w dx at the speed V with which it has then gone through them: 1 when it is there.
+double front_filling(const Fluid& fluid, const ReynoldsLine& line, bool at_back, const TipRock& rock, double time);
+
+/// When the front at an end came to the start of the cells that it is in (s): growth, or the way through the initial
+/// fracture.
+double last_wet(const ReynoldsLine& line, bool at_back);
+
 /// Whether a cell is one of those that a tip's last growth has added.
 bool is_new(const ReynoldsLine& line, bool at_back, std::size_t cell);
 

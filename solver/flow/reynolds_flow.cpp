@@ -152,6 +152,7 @@ void add_flow(Balance& b, Index to, const Dual& flow, Index l, Index r) {
 // part gives that part of what it would give if it were full.
 void add_faces(const Step& step, const Trial& trial, Balance& b) {
   for (Index k = 0; k + 1 < trial.P.size(); ++k) {
+    if (step.line.is_dry(static_cast<std::size_t>(k)) || step.line.is_dry(static_cast<std::size_t>(k) + 1)) continue;
     const Place l = place(step, trial, b, k, true), r = place(step, trial, b, k + 1, false);
     const Dual c = across(step, b.rock, l, r, k);
     const double rise = r.rise - l.rise;
@@ -240,7 +241,6 @@ Balance evaluate(const Step& step, const Trial& trial) {
   const Index n = trial.P.size();
   Balance b;
   b.rock = step.rock(trial.P);
-  if (b.rock.least.size() == 0) b.rock.least = VectorXd::Constant(n, step.fluid.cavitation_Pa);
   b.held = b.inflow = VectorXd::Zero(n);
   b.by_P = b.by_w = Eigen::MatrixX3d::Zero(n, 3);
   b.by_phi = Eigen::MatrixX2d::Zero(n, 2);
@@ -284,14 +284,14 @@ MatrixXd jacobian(const Step& step, const Trial& trial, const Balance& b) {
 }
 
 // The trial a fraction of the way along dx; a cell whose bound is passed stops there and frees its other unknown.
-Trial moved(const VectorXd& least, const Trial& from, const VectorXd& dx, double fraction) {
+Trial moved(const Fluid& fluid, const Trial& from, const VectorXd& dx, double fraction) {
   Trial to = from;
   for (Index k = 0; k < dx.size(); ++k) {
     char& full = to.full[static_cast<std::size_t>(k)];
     if (full) {
       to.P(k) += fraction * dx(k);
-      if (to.P(k) >= least(k)) continue;
-      to.P(k) = least(k);
+      if (to.P(k) >= fluid.cavitation_Pa) continue;
+      to.P(k) = fluid.cavitation_Pa;
       full = 0;
     } else {
       to.phi(k) = std::max(0.0, to.phi(k) + fraction * dx(k));
@@ -344,7 +344,7 @@ std::optional<Iterate> search(const Step& step, const Iterate& from, const Vecto
   std::optional<Iterate> best;
   double fraction = trusted_fraction(step, from.trial, dx);
   for (int halving = 0; halving < 6; ++halving, fraction *= 0.5) {
-    Iterate next{moved(from.b.rock.least, from.trial, dx, fraction), {}};
+    Iterate next{moved(step.fluid, from.trial, dx, fraction), {}};
     next.b = evaluate(step, next.trial);
     if (!next.b.finite()) continue;
     const double merit = next.b.merit();
@@ -388,9 +388,12 @@ Trial before(const ReynoldsLine& line) {
 // it opens them, and least when it has filled it: between the two the flow has a hump over which no descent leads.
 Trial filled(const ReynoldsLine& line) {
   Trial trial = before(line);
-  trial.P.setConstant(trial.P.maxCoeff());
-  trial.phi.setOnes();
-  trial.full.assign(line.size(), 1);
+  const double highest = trial.P.maxCoeff();
+  for (std::size_t k = 0; k < line.size(); ++k) {
+    if (line.is_dry(k)) continue;
+    trial.P(static_cast<Index>(k)) = highest, trial.phi(static_cast<Index>(k)) = 1.0;
+    trial.full[k] = 1;
+  }
   return trial;
 }
 
@@ -438,6 +441,14 @@ ReynoldsLine full_line(const Fluid& fluid, const std::vector<double>& length, st
   }
   balance.stored = balance.stored_at_start;
   return line;
+}
+
+void leave_dry(const Fluid& fluid, std::size_t cell, ReynoldsLine& line, FluidBalance& balance) {
+  balance.stored_at_start -= line.content[cell];
+  balance.stored = balance.stored_at_start;
+  line.P[cell] = fluid.cavitation_Pa;
+  line.phi[cell] = line.content[cell] = 0.0;
+  line.wet_s[cell] = std::numeric_limits<double>::infinity();
 }
 
 void grow(ReynoldsLine& line, const Fluid& fluid, bool at_back, double length, double time) {

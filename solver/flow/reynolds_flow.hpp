@@ -35,7 +35,6 @@ struct RockResponse {
   Eigen::VectorXd lost = {};   // by both faces of each cell until the step's end (m^2), or nothing where none leak
   Eigen::VectorXd front = {};  // front_conductances(), or none
   Eigen::VectorXd most = {};   // that flows to a front, signed, or no number: see limit_to_front()
-  Eigen::VectorXd least = {};  // P of cells that run empty (Pa), or none: P_c
   Eigen::VectorXd rise = {};   // rho g times each cell's height above the inlet (Pa), or nothing: without weight
 };
 using RockModel = std::function<RockResponse(const Eigen::VectorXd& P)>;  // P absolute, one a point (Pa)
@@ -80,6 +79,9 @@ struct ReynoldsOptions {
 /// `balance` to nothing injected.
 ReynoldsLine full_line(const Fluid& fluid, const std::vector<double>& length, std::size_t inlet, double P,
                        const Eigen::VectorXd& w, FluidBalance& balance, const Eigen::VectorXd& rise = {});
+
+/// Takes the fluid out of a cell that has not been wet yet: nothing flows to it until wet_s is finite.
+void leave_dry(const Fluid& fluid, std::size_t cell, ReynoldsLine& line, FluidBalance& balance);
 
 /// Adds an empty cell (phi = 0, P = P_c) of the given length (m), wet from `time` (s) on, after the last one (at_back)
 /// or before the first, where the inlet's vertex moves up by one.

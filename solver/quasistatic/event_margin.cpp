@@ -36,6 +36,7 @@ void weigh_partings(const Scene& scene, State& state, Quasistatic& run) {
 
 double tip_margin(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run, std::size_t k) {
   Tip& tip = state.tips[k];
+  if (state.reynolds.dry_cells(tip.at_back) > 0) return front_margin(scene, rocks, state, tip);
   tip.criterion = criterion_of(scene, state, tip);  // a trial may have had no equilibrium at another load
   const Elasticity& rock = rocks[rock_ahead(scene, state, tip)];
   if (weighs_energy(tip)) {

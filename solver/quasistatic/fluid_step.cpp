@@ -7,6 +7,7 @@
 #include "flow/moving_front.hpp"
 #include "flow/paper_flow.hpp"
 #include "flow/reynolds_flow.hpp"
+#include "fracture/growth.hpp"
 #include "scene/inlet.hpp"
 #include "state/elasticity.hpp"
 
@@ -94,9 +95,19 @@ Eigen::VectorXd lost_by(const Scene& scene, double time, double there, const Sta
   return lost;
 }
 
-// Whether a tip grew when the steps of the flow last began; what is just after growth takes a step of its own.
-bool grew_last(const State& state, const Tip& tip) {
-  return state.grown.time - tip.last_growth_s < 2.0 * shortest_coupled_step;
+// Whether a tip's front went on when the steps of the flow last began; what is just after that takes a step of its own.
+bool went_on(const State& state, const Tip& tip) {
+  return state.grown.time - last_wet(state.reynolds, tip.at_back) < 2.0 * shortest_coupled_step;
+}
+
+// The rock at the fracture's end on a tip's side, without toughness while the initial fracture is dry ahead of the
+// front.
+TipRock rock_at_front(const Scene& scene, const Rocks& rocks, const State& state, const Tip& tip) {
+  const auto& points = state.fracture().points;
+  const std::size_t r = rock_at(scene, (tip.at_back ? points.back() : points.front()).x);
+  const bool closed_ahead = state.reynolds.dry_cells(tip.at_back) > 0;
+  const double K_Ic = closed_ahead ? 0.0 : std::sqrt(rocks[r].J_c * rocks[r].E_prime);
+  return {rocks[r].E_prime, K_Ic, scene.rocks[r].leakoff_m_sqrt_s};
 }
 
 // What conducts near the fronts of tips that go on at a time (s) and, where those of the last growth are at their tips
@@ -108,10 +119,8 @@ void add_fronts(const Scene& scene, const Rocks& rocks, double time, double ther
   of.front = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(line.size()) - 1);
   of.most = Eigen::VectorXd::Constant(of.front.size(), std::nan(""));
   for (const Tip& tip : state.tips) {
-    const auto& points = state.fracture().points;
-    const std::size_t r = rock_at(scene, (tip.at_back ? points.back() : points.front()).x);
-    const TipRock rock{rocks[r].E_prime, std::sqrt(rocks[r].J_c * rocks[r].E_prime), scene.rocks[r].leakoff_m_sqrt_s};
-    const double at_tip = grew_last(state, tip) ? there : time;
+    const TipRock rock = rock_at_front(scene, rocks, state, tip);
+    const double at_tip = went_on(state, tip) ? there : time;
     of.front += front_conductances(scene.fluid, line, tip.at_back, rock, at_tip);
     if (at_tip > time) limit_to_front(scene.fluid, line, tip.at_back, rock, time, there, of.lost, of.most);
   }
@@ -124,39 +133,6 @@ Eigen::VectorXd rise_of_cells(const Scene& scene, const State& state) {
   for (std::size_t k = 0; k < points.size(); ++k)
     rise[static_cast<Eigen::Index>(k)] = scene.fluid.weight() * (points[k].x.y() - vertices[state.fluid.inlet].x.y());
   return rise;
-}
-
-// The pressure at the inlet's height (Pa) with which a fracture that is fed at a rate starts: a thousandth below the
-// least closing stress, so that contact holds every face. At it all are between open and closed, and Newton's method
-// may go round in circles. Rough faces hold as much less than they would at it.
-double pressure_at_rest(const State& state, const Eigen::VectorXd& rise) {
-  constexpr double held = 1e-3;
-  double P = HUGE_VAL;
-  const auto& points = state.fracture().points;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const double closing = points[k].closing_stress();
-    P = std::min(P, closing - held * std::abs(closing) + rise[static_cast<Eigen::Index>(k)]);
-  }
-  return P;
-}
-
-// P of cells that run empty (Pa), by a time (s). While a fracture in rock that takes up fluid is fed at a rate, its
-// initial cells keep the pressure that they were closed at until the tip on their side grows: the front goes through
-// faces that just touch. Faces that all of the closing stress presses together would let nothing in but by the floor,
-// which is less than the rock takes up.
-Eigen::VectorXd least_pressures(const Scene& scene, double time, const Eigen::VectorXd& rise, const State& state) {
-  const ReynoldsLine& line = state.reynolds;
-  Eigen::VectorXd least = Eigen::VectorXd::Constant(rise.size(), scene.fluid.cavitation_Pa);
-  if (line.size() == 0 || !scene.leaks() || !scene.fluid.rate_m2_s || inlet_rate(scene.fluid, time) <= 0.0)
-    return least;
-  const auto inlet = static_cast<Eigen::Index>(line.inlet);
-  const Eigen::VectorXd at_rest = (pressure_at_rest(state, rise) - rise.array()).cwiseMax(scene.fluid.cavitation_Pa);
-  for (const Tip& tip : state.tips) {
-    if (tip.last_growth_s >= 0.0) continue;
-    if (tip.at_back) least.tail(rise.size() - inlet) = at_rest.tail(rise.size() - inlet);
-    if (!tip.at_back) least.head(inlet) = at_rest.head(inlet);
-  }
-  return least;
 }
 
 // The rock at a time (s) as the flow sees it: openings and their change with the pressures, in equilibrium with all
@@ -173,7 +149,6 @@ RockModel rock_of(const Scene& scene, double time, double there, State& state, Q
   if (model.dw_dP_of != model.factor.pieces) model.dw_dP.resize(0, 0);
   fixed.lost = lost_by(scene, time, there, state);
   fixed.rise = rise_of_cells(scene, state);
-  fixed.least = least_pressures(scene, time, fixed.rise, state);
   add_fronts(scene, rocks, time, there, state, fixed);
   return [&scene, time, &state, &model, fixed](const Eigen::VectorXd& P) {
     set_point_pressures(P, state);
@@ -241,14 +216,35 @@ FluidStep couple(const Scene& scene, double dt, bool on_the_way, State& state, Q
 void fill_fracture(const Scene& scene, State& state, QuasistaticModel& model) {
   if (!state.has_fracture || scene.fluid.law != Fluid::Law::reynolds) return;
   const auto& points = state.fracture().points;
+  double P = scene.fluid.start_Pa;
+  // A thousandth below the least closing stress, so that contact holds every face: at it all are between open and
+  // closed, and Newton's method may go round in circles. Rough faces hold as much less than they would at it.
+  constexpr double held = 1e-3;
   const Eigen::VectorXd rise = rise_of_cells(scene, state);
-  const double P = scene.fluid.rate_m2_s ? pressure_at_rest(state, rise) : scene.fluid.start_Pa;
+  if (scene.fluid.rate_m2_s) {
+    P = HUGE_VAL;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const double closing = points[k].closing_stress();
+      P = std::min(P, closing - held * std::abs(closing) + rise[static_cast<Eigen::Index>(k)]);
+    }
+  }
   const RockResponse rock = rock_of(scene, state.time, state.time, state, model)((P - rise.array()).matrix());
   std::vector<double> length;
   for (const SurfacePoint& s : points) length.push_back(s.A);
   state.reynolds = full_line(scene.fluid, length, state.fluid.inlet, P, rock.w, state.balance, rise);
   state.fluid.inlet_Pa = P;
   rest_fluid(scene.fluid, state);
+  if (!scene.fluid.rate_m2_s || scene.fracture->growth == Fracture::Growth::none) return;
+  for (const Tip& tip : state.tips) {
+    const std::size_t inlet = state.fluid.inlet, side = tip.at_back ? points.size() - inlet : inlet;
+    double wet = 0.0;
+    for (std::size_t j = 0; j < side; ++j) {
+      const std::size_t k = tip.at_back ? inlet + j : inlet - 1 - j;
+      if (wet > (1.0 - 1e-9) * increment_of(scene, tip)) leave_dry(scene.fluid, k, state.reynolds, state.balance);
+      wet += length[k];
+    }
+    wet_cells(scene, tip.at_back, 0.0, state);
+  }
 }
 
 double lag_error(const Scene& scene, const FluidLine& before, std::span<const double> w_before, double time,
@@ -288,6 +284,28 @@ double toughless_margin(const State& state, double E_prime, const Tip& tip) {
   const double net = state.fluid.inlet_Pa - last.closing_stress();
   if (net <= 0.0) return 0.0;
   return 1.0 + (K - resolved * net * std::sqrt(state.grid.h)) / large_K;
+}
+
+void wet_cells(const Scene& scene, bool at_back, double increment, State& state) {
+  ReynoldsLine& line = state.reynolds;
+  line.wet_s = wet_times(line, state.time, !at_back, at_back);
+  line.rates_known = false;
+  double length = 0.0;
+  std::size_t dry = line.dry_cells(at_back);
+  const auto nearest = [&] { return at_back ? line.size() - dry : dry - 1; };
+  for (; dry > 0 && length < (1.0 - 1e-9) * increment; --dry) {
+    line.wet_s[nearest()] = state.time;
+    line.P[nearest()] = scene.fluid.cavitation_Pa;
+    length += line.length[nearest()];
+  }
+  // The point ahead opens with the front's own cell, whose displacements are linear. In truth its faces touch and carry
+  // what is missing: it is held at its closing stress, or else it would be drawn together by all of that.
+  if (dry > 0) line.P[nearest()] = state.fracture().points[nearest()].closing_stress();
+}
+
+double front_margin(const Scene& scene, const Rocks& rocks, const State& state, const Tip& tip) {
+  const TipRock rock = rock_at_front(scene, rocks, state, tip);
+  return front_filling(scene.fluid, state.reynolds, tip.at_back, rock, state.time);
 }
 
 void add_fluid_cells(const Scene& scene, bool at_back, std::size_t added, State& state) {

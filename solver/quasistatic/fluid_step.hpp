@@ -10,7 +10,9 @@
 namespace strata {
 
 /// Fills the fracture at the start: at the inlet's start pressure or, where a rate drives the flow, at its closing
-/// stress. `model` must be up to date. Throws NumericalFailure as find_equilibrium() does.
+/// stress; where it grows it is then dry but for an increment on either side of the inlet, and the fluid's front goes
+/// on through it as behind a tip without toughness. `model` must be up to date. Throws NumericalFailure as
+/// find_equilibrium() does.
 void fill_fracture(const Scene& scene, State& state, QuasistaticModel& model);
 
 // What a step of the fluid says: whether it was found, and its error against what is allowed (1: just so).
@@ -44,6 +46,13 @@ void note_rates(std::span<const double> w_before, double dt, State& state);
 /// From a growth on, which took a time (s): steps of the flow begin here, with fronts in the new cells, until
 /// state.grown is emptied or the next growth.
 void start_fronts(double took, State& state);
+
+/// Lets the front of the fluid into as much (m) of the initial fracture's dry cells ahead of it at an end.
+void wet_cells(const Scene& scene, bool at_back, double increment, State& state);
+
+/// How near the fluid's front in an initial fracture that is dry ahead of it is to going on (1: it does): see
+/// front_filling().
+double front_margin(const Scene& scene, const Rocks& rocks, const State& state, const Tip& tip);
 
 /// How near the tip of a rock without toughness is to growth (1: it grows). It grows as soon as the fracture is open
 /// there: where K_I, and the K that each opening within two cells behind the tip stands for (w = 8 K/E' sqrt(x/(2

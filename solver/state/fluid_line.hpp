@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace strata {
@@ -22,13 +23,20 @@ struct ReynoldsLine {
   std::vector<double> content;  // theta w A: volume of the fluid at the cavitation pressure (m^2)
   std::vector<double> w;        // opening at the end of the last step (m)
   std::vector<double> w_rate;   // over the last step (m/s), for the estimate of its error
-  std::vector<double> wet_s;    // when the tip came by (s)
+  std::vector<double> wet_s;    // when the tip came by (s), infinite in initial cells that the fluid has not come to
   std::vector<double> leaked;   // what both faces have lost to the rock since then (m^2)
   bool rates_known = false;     // false before the first step and after growth
   std::size_t inlet = 0;        // vertex at which the fluid enters
   double inlet_Pa = 0.0;        // pressure there
 
   std::size_t size() const { return length.size(); }
+  bool is_dry(std::size_t cell) const { return wet_s[cell] > std::numeric_limits<double>::max(); }
+  /// Cells at an end that are dry.
+  std::size_t dry_cells(bool at_back) const {
+    std::size_t n = 0;
+    while (n < size() && is_dry(at_back ? size() - 1 - n : n)) ++n;
+    return n;
+  }
 };
 
 // Fluid counted in and found there, as volume at the cavitation pressure (m^2).

@@ -62,30 +62,6 @@ TEST_CASE("full cells lose what the rock takes, and the inlet replaces it") {
   }
 }
 
-// Requires of cells that run empty that they stay at the least pressure that the rock says, and of what they lose that
-// it is as at the cavitation pressure: each holds phi = held/(w A + loss) of fluid that is by P/M denser, P as before
-// the step for the loss. Mutations that fail: the cavitation pressure for it, the highest of the cells for all.
-TEST_CASE("cells that run empty stay at their least pressure") {
-  const Fluid fluid = thin_fluid();
-  const VectorXd w = VectorXd::Constant(4, 1e-4), lost = VectorXd::Constant(4, 1e-5);
-  const VectorXd least = VectorXd::LinSpaced(4, 2e5, 5e5);
-  const RockModel rock = [&](const VectorXd& P) {
-    RockResponse response = walls(w, lost)(P);
-    response.least = least;
-    return response;
-  };
-  FluidBalance balance;
-  ReynoldsLine line = full_line(fluid, std::vector<double>(4, 0.5), 0, 5e5, w, balance);
-  REQUIRE(step_reynolds(fluid, {Inlet::Drive::rate, 0.0}, 1e-9, rock, line, balance).converged);
-  for (Index k = 0; k < 4; ++k) {
-    const double before = 1.0 + 5e5 / fluid.bulk_modulus_Pa, now = 1.0 + least(k) / fluid.bulk_modulus_Pa;
-    const double phi = before * 0.5e-4 / (now * 0.5e-4 + before * 1e-5);
-    CHECK(line.P[static_cast<std::size_t>(k)] == Approx(least(k)).epsilon(1e-12));
-    CHECK(line.phi[static_cast<std::size_t>(k)] == Approx(phi).epsilon(1e-5));
-  }
-  CHECK(std::abs(balance.closure()) < 1e-12);
-}
-
 // Requires of a channel that is shut in that the fluid goes down to the cavitation pressure and then leaves the cells
 // in part: phi = held/(w A + loss), since the part that is wet loses; nothing is negative or made. Once fed again,
 // cells that are full have lost all that the rock takes. Mutations that fail: the loss of a cell in part full taken

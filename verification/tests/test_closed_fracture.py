@@ -48,13 +48,15 @@ def test_closed_faces_that_hardly_conduct_part_by_the_fluid(tmp_path: Path) -> N
 
 
 def test_a_rate_into_a_closed_fracture_without_a_floor(tmp_path: Path) -> None:
-    """The pressure of a fracture without toughness in the same rock (viscosity vertex) at 1 s; it was 2.8e12 Pa at 1 ms."""
-    rate = ("fluid.minimum_opening_m=0", "fluid.inlet={rate_m2_s=1e-4}", "output.fields_every_s=1")
-    exact = value("kgd_viscosity", "inlet_pressure_Pa", time_s=1.0, viscosity_Pa_s=1e-3, rate_m2_s=1e-4, youngs_modulus_Pa=10e9, poisson_ratio=0.2)
+    """The pressure of a fracture without toughness in the same rock (viscosity vertex) while the front goes through it; it was 2.8e12 Pa at
+    1 ms. Full of fluid from the start its pressure was 18 to 20 % high."""
+    rate = ("fluid.minimum_opening_m=0", "fluid.inlet={rate_m2_s=1e-4}", "numerics.cell_m=0.25", "fracture.increment_m=0.25")
     at_once = summary_in(tmp_path, RAMP, *rate, "stop.time_s=1e-3")
     assert at_once["inlet_Pa"] < 20e6
-    net = float(summary_in(tmp_path, RAMP, *rate, "stop.time_s=1")["inlet_Pa"]) - 10e6
-    assert net == pytest.approx(exact, rel=0.2)  # the fluid has gone a cell
+    for time_s in (4.0, 8.0):  # 1.5 and 2.4 m
+        fluid = {"time_s": time_s, "viscosity_Pa_s": 1e-3, "rate_m2_s": 1e-4, "youngs_modulus_Pa": 10e9, "poisson_ratio": 0.2}
+        net = float(summary_in(tmp_path, RAMP, *rate, f"stop.time_s={time_s}", f"output.fields_every_s={time_s}")["inlet_Pa"]) - 10e6
+        assert net == pytest.approx(value("kgd_viscosity", "inlet_pressure_Pa", **fluid), rel=0.1)
 
 
 @pytest.mark.parametrize(("lower_Pa", "upper_Pa"), [(20e6, 18e6), (18e6, 20e6)])
