@@ -330,17 +330,38 @@ struct LoadStep {
   double dt = 0.0, change = 0.0, error = 0.0;
 };
 
+// A time (s), `later` or between that and dt, at which the front is at a tip that still waits, where no flow brings it
+// there within dt; 0: none.
+double front_comes_later(const Scene& scene, const Rocks& rocks, const LoadPoint& from, double dt, double later,
+                         State& state, Quasistatic& run) {
+  if (next_row(scene.fluid, from.time) < from.time + later) return 0.0;  // another rate
+  constexpr int most = 6;
+  for (int k = 0; k < most && later > dt; ++k, later = 0.5 * (dt + later)) {
+    if (!try_step(scene, rocks, from, later, state, run).found) return 0.0;
+    if (run.margin < 1.0) return later;
+  }
+  return 0.0;
+}
+
 // The step (s) to the next growth, or as far as is left, by flow that is solved anew from the last growth on; it is
 // sought from dt on. 0 where none is found.
 double step_from_growth(const Scene& scene, const Rocks& rocks, const LoadPoint& from, double dt, double left,
                         State& state, Quasistatic& run) {
   constexpr double patience = 4.0;  // of the time that the growth before took; then the tip waits for something else
   if (from.time - state.grown.time > patience * state.grown.took) return 0.0;
+  const double full = state.grown.time + state.grown.took - from.time, margin = run.margin;
   for (bool shorter = false; dt > std::min(shortest_trial, 0.5 * left);
        dt = shorter ? 0.5 * dt : std::min(2.0 * dt, left)) {
     const bool found = try_step(scene, rocks, from, dt, state, run).found;
     const bool far = dt == left || from.time + dt - state.grown.time > patience * state.grown.took;
     if (found && (shorter || far || run.margin >= 1.0)) return dt;
+    const double later = found || shorter ? 0.0 : front_comes_later(scene, rocks, from, dt, full, state, run);
+    if (later > 0.0 && later <= left) return later;
+    if (later > 0.0) {  // after a row, at which the front is on its way
+      const bool row = try_step(scene, rocks, from, left, state, run, true).found;
+      run.margin = margin;
+      if (row) return left;
+    }
     shorter = !found;
   }
   return 0.0;
