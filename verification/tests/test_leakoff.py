@@ -206,7 +206,7 @@ stop = {time_s = 58}
 
 
 def test_growth_does_not_depend_on_what_is_written(tmp_path: Path) -> None:
-    """Rows between two growths once made the tip wait: 57.5 s to 7 m with one each 20 s, 57.0 s to 8 m without, and the pressure 39 % off, without a mark.
+    """Rows between two growths once made the tip wait: 57.5 s to 7 m with one each 20 s, 57.0 s to 8 m without; later the pressure was 39 % off at 10 m, without a mark.
 
     Mutation that fails: no time beyond the row is tried (front_comes_later gives 0).
     """
