@@ -34,7 +34,7 @@ struct Sweep {
 };
 
 // Reports of particles, lane by lane.
-using LaneReport = MotionReport<std::array<double, most_lanes>>;
+using LaneReport = MotionReport<double[most_lanes]>;
 
 // A span of an axis: its node's coordinate (m), 1/length (1/m).
 template <class Real>
@@ -57,9 +57,9 @@ struct ParticleState {
 
 // Outer weights of the particles at q.
 template <class Shape, class L, class Real = typename L::Real>
-[[gnu::always_inline]] inline BothAxes<AxisWeights<Real>> weights_at(const BothAxes<Span<Real>>& span,
-                                                                     const ParticleState<Real>& is, const Particles& p,
-                                                                     std::size_t q) {
+[[gnu::always_inline]] inline BothAxes<OuterWeights<Real>> weights_at(const BothAxes<Span<Real>>& span,
+                                                                      const ParticleState<Real>& is, const Particles& p,
+                                                                      std::size_t q) {
   const auto along = [&](const Span<Real>& s, const Real& x, const SpreadArray& half) {
     return Shape::outer((x - s.node) * s.per_length, s.share,
                         Shape::has_size ? Real{L::load(&half[q]) * s.per_length} : Real{});
@@ -85,17 +85,17 @@ template <class L, class Real = typename L::Real>
 }
 
 template <class Real>
-[[gnu::always_inline]] inline Real along(const std::array<Real, 3>& c, const AxisWeights<Real>& w) {
-  return c[1] + w.N[0] * c[0] + w.N[2] * c[2];
+[[gnu::always_inline]] inline Real along(const std::array<Real, 3>& c, const OuterWeights<Real>& w) {
+  return c[1] + w.N[0] * c[0] + w.N[1] * c[2];
 }
 template <class Real>
-[[gnu::always_inline]] inline Real slope(const std::array<Real, 3>& c, const AxisWeights<Real>& w) {
-  return w.dN[0] * c[0] + w.dN[2] * c[2];
+[[gnu::always_inline]] inline Real slope(const std::array<Real, 3>& c, const OuterWeights<Real>& w) {
+  return w.dN[0] * c[0] + w.dN[1] * c[2];
 }
 
 template <class Real>
 [[gnu::always_inline]] inline Interpolated<Real> interpolate(const Coefficients<Real>& c,
-                                                             const BothAxes<AxisWeights<Real>>& w) {
+                                                             const BothAxes<OuterWeights<Real>>& w) {
   const std::array<Real, 3> rows{along(c[0], w.x), along(c[1], w.x), along(c[2], w.x)};
   const std::array<Real, 3> slopes{slope(c[0], w.x), slope(c[1], w.x), slope(c[2], w.x)};
   return {along(rows, w.y), along(slopes, w.y), slope(rows, w.y)};
@@ -105,24 +105,22 @@ template <class Real>
 template <class L, class Real = typename L::Real>
 [[gnu::always_inline]] inline void move(const Sweep& sweep, const BothAxes<Span<Real>>& span,
                                         const std::array<Coefficients<Real>, 4>& c,
-                                        const BothAxes<AxisWeights<Real>>& w, const Elasticity& rock, std::size_t q,
-                                        ParticleState<Real>& is, LaneReport& report) {
+                                        const BothAxes<OuterWeights<Real>>& w, const Elasticity& rock, std::size_t q,
+                                        ParticleState<Real>& is, MotionReport<Real>& report) {
   const auto add = [](double* to, const Real& by) { L::store(to, L::load(to) + by); };
   const auto change = [&](SpreadArray& array, Real& value, const Real& by) { L::store(&array[q], value += by); };
-  const auto note = [](auto& largest, const Real& value) {
-    L::store(largest.data(), larger<Real>(L::load(largest.data()), value));
-  };
   Particles& p = sweep.p;
   const Real off_x = (is.x - span.x.node) * span.x.per_length, off_y = (is.y - span.y.node) * span.y.per_length;
-  note(report.farthest_cells, larger<Real>(larger<Real>(off_x, -off_x), larger<Real>(off_y, -off_y)));
+  const Real off = larger<Real>(larger<Real>(off_x, -off_x), larger<Real>(off_y, -off_y));
+  report.farthest_cells = larger<Real>(report.farthest_cells, off);
   const Interpolated<Real> x = interpolate(c[0], w), y = interpolate(c[1], w);
   const Real m = L::load(&p.m[q]), V = L::load(&p.V[q]);
-  add(report.before.data(), m * (is.v_x * is.v_x + is.v_y * is.v_y));
+  report.before += m * (is.v_x * is.v_x + is.v_y * is.v_y);
   is.v_x = sweep.keep * is.v_x + interpolate(c[2], w).value, is.v_y = sweep.keep * is.v_y + interpolate(c[3], w).value;
   L::store(&p.v_x[q], is.v_x), L::store(&p.v_y[q], is.v_y);
   const Real speed2 = is.v_x * is.v_x + is.v_y * is.v_y;
-  add(report.after.data(), m * speed2);
-  note(report.largest_speed2, speed2);
+  report.after += m * speed2;
+  report.largest_speed2 = larger<Real>(report.largest_speed2, speed2);
   change(p.x, is.x, sweep.dt * x.value), change(p.y, is.y, sweep.dt * y.value);
   add(&p.u_x[q], sweep.dt * x.value), add(&p.u_y[q], sweep.dt * y.value);
   const Real by_x = sweep.dt * span.x.per_length, by_y = sweep.dt * span.y.per_length;
@@ -130,15 +128,15 @@ template <class L, class Real = typename L::Real>
   change(p.g_xx, is.g_xx, e_xx), change(p.g_xy, is.g_xy, e_xy);
   change(p.g_yx, is.g_yx, e_yx), change(p.g_yy, is.g_yy, e_yy);
   const Real shear = e_xy + e_yx, trace = e_xx + e_yy;
-  add(report.step_strain.data(), V * (rock.lambda * trace * trace + 2.0 * rock.mu * (e_xx * e_xx + e_yy * e_yy) +
-                                      rock.mu * shear * shear));  // V dsigma : de
+  report.step_strain += V * (rock.lambda * trace * trace + 2.0 * rock.mu * (e_xx * e_xx + e_yy * e_yy) +
+                             rock.mu * shear * shear);  // V dsigma : de
 }
 
 // What particles give to their nodes: mass and momentum by N, and -V sigma, each component with the 1/length of the
 // axis along which it meets dN.
 template <class Real>
 struct Given {
-  BothAxes<AxisWeights<Real>> w;
+  BothAxes<OuterWeights<Real>> w;
   Real m, mom_x, mom_y;
   Real s_xx, s_xy_x;  // with dN/dx into f_x and f_y
   Real s_xy_y, s_yy;  // with dN/dy
@@ -163,14 +161,14 @@ template <std::size_t b, class Real>
 [[gnu::always_inline]] inline void sum_row(const Given<Real>* given, int n, RowSums<Real>& row) {
   for (int k = 0; k < n; ++k) {
     const Given<Real>& g = given[k];
-    const Real N = g.w.y.N[b], dN = g.w.y.dN[b];
+    const Real N = b == 1 ? Real{} + 1.0 : g.w.y.N[b / 2], dN = g.w.y.dN[b / 2];
     const Real by_N[5] = {N * g.m, N * g.mom_x, N * g.mom_y, dN * g.s_xy_y, dN * g.s_yy};
     const Real by_dN[2] = {N * g.s_xx, N * g.s_xy_x};
     for (std::size_t of = 0; of < (b == 1 ? 3 : 5); ++of) {
-      for (std::size_t a = 0; a < 3; ++a) row[of][a] += a == 1 ? by_N[of] : g.w.x.N[a] * by_N[of];
+      for (std::size_t a = 0; a < 3; ++a) row[of][a] += a == 1 ? by_N[of] : g.w.x.N[a / 2] * by_N[of];
     }
     for (std::size_t of = 0; of < 2; ++of)
-      row[3 + of][0] += g.w.x.dN[0] * by_dN[of], row[3 + of][2] += g.w.x.dN[2] * by_dN[of];
+      row[3 + of][0] += g.w.x.dN[0] * by_dN[of], row[3 + of][2] += g.w.x.dN[1] * by_dN[of];
   }
   for (auto& sum : row) sum[1] -= sum[0] + sum[2];
 }
@@ -215,7 +213,7 @@ constexpr std::size_t particles_ahead = std::size_t{12} * most_lanes;
 /// Sweeps the particles q = first, first + stride, ... below last of a block of bins whose first lane is `bin`; lanes'
 /// records follow that bin's one by one, and the rock is the same in all lanes. Throws nothing.
 template <class Shape, bool moves, bool gathers, class L>
-void sweep_block(const Sweep& sweep, const Bin& bin, LaneReport& report) {
+void sweep_block(const Sweep& sweep, const Bin& bin, LaneReport& of) {
   using Real = typename L::Real;
   constexpr int together = 4;                 // particles of a lane whose weights are kept until their sums are formed
   __builtin_prefetch(&bin + 3 * most_lanes);  // a hint, of the first alone of each block
@@ -228,6 +226,8 @@ void sweep_block(const Sweep& sweep, const Bin& bin, LaneReport& report) {
   if constexpr (moves) {
     for (std::size_t of = 0; of < 4; ++of) load_coefficients<L>(sweep.motion[of], bin, c[of]);
   }
+  MotionReport<Real> report{L::load(of.before), L::load(of.after), L::load(of.step_strain), L::load(of.largest_speed2),
+                            L::load(of.farthest_cells)};
   Given<Real> given[together];
   int n = 0;
   for (const std::size_t q : bin) {
@@ -248,6 +248,8 @@ void sweep_block(const Sweep& sweep, const Bin& bin, LaneReport& report) {
       if (n == together || last) add_given<L>(given, n, bin, sweep.sums), n = 0;
     }
   }
+  L::store(of.before, report.before), L::store(of.after, report.after), L::store(of.step_strain, report.step_strain);
+  L::store(of.largest_speed2, report.largest_speed2), L::store(of.farthest_cells, report.farthest_cells);
 }
 
 // --- all particles

@@ -16,19 +16,15 @@
 namespace strata {
 
 // Of the nodes before, between and after.
-template <class Real>
-struct AxisWeights {
-  std::array<Real, 3> N, dN;
+struct Weights {
+  std::array<double, 3> N, dN;
 };
-using Weights = AxisWeights<double>;
 
-// Those of the nodes before and after and, in the middle's place, of all three: 1, and 0 in dN.
+// Of the nodes before and after.
 template <class Real>
-AxisWeights<Real> outer_weights(const Real& N_before, const Real& N_after, const Real& dN_before,
-                                const Real& dN_after) {
-  const Real all = Real{} + 1.0;
-  return {{N_before, all, N_after}, {dN_before, Real{}, dN_after}};
-}
+struct OuterWeights {
+  std::array<Real, 2> N, dN;
+};
 
 // 1/(1 + s) of the spans before and after, of length s times the middle one: 1/2 where all are equal.
 template <class Real>
@@ -44,10 +40,10 @@ struct SpanShares {
 struct QuadraticBspline {
   static constexpr bool has_size = false;  // functions of points
   template <class Real>
-  static AxisWeights<Real> outer(const Real& f, const SpanShares<Real>& share, const Real& /*half*/) {
+  static OuterWeights<Real> outer(const Real& f, const SpanShares<Real>& share, const Real& /*half*/) {
     const Real to_after = 0.5 - f, to_before = 0.5 + f;
     const Real low = share.before * to_after, high = share.after * to_before;
-    return outer_weights<Real>(low * to_after, high * to_before, -2.0 * low, 2.0 * high);
+    return {{low * to_after, high * to_before}, {-2.0 * low, 2.0 * high}};
   }
 };
 
@@ -55,10 +51,10 @@ struct QuadraticBspline {
 struct Linear {
   static constexpr bool has_size = false;
   template <class Real>
-  static AxisWeights<Real> outer(const Real& f, const SpanShares<Real>& share, const Real& /*half*/) {
+  static OuterWeights<Real> outer(const Real& f, const SpanShares<Real>& share, const Real& /*half*/) {
     const Real zero{}, d_before = 2.0 * share.before, d_after = 2.0 * share.after;
-    return outer_weights<Real>(f < 0.0 ? -f * d_before : zero, f < 0.0 ? zero : f * d_after, f < 0.0 ? -d_before : zero,
-                               f < 0.0 ? zero : d_after);
+    return {{f < 0.0 ? -f * d_before : zero, f < 0.0 ? zero : f * d_after},
+            {f < 0.0 ? -d_before : zero, f < 0.0 ? zero : d_after}};
   }
 };
 
@@ -71,13 +67,13 @@ struct Linear {
 struct Ugimp {
   static constexpr bool has_size = true;
   template <class Real>
-  static AxisWeights<Real> outer(const Real& f, const SpanShares<Real>& share, const Real& half) {
+  static OuterWeights<Real> outer(const Real& f, const SpanShares<Real>& share, const Real& half) {
     const Real zero{}, per_size = 0.5 / half;
     const Real before_A = larger<Real>(zero, half - f), before_B = larger<Real>(zero, -half - f);
     const Real after_A = larger<Real>(zero, f + half), after_B = larger<Real>(zero, f - half);
     const Real before = (2.0 * share.before) * ((before_A - before_B) * per_size);  // 2 share is 1/d
     const Real after = (2.0 * share.after) * ((after_A - after_B) * per_size);
-    return outer_weights<Real>(0.5 * before * (before_A + before_B), 0.5 * after * (after_A + after_B), -before, after);
+    return {{0.5 * before * (before_A + before_B), 0.5 * after * (after_A + after_B)}, {-before, after}};
   }
 };
 
@@ -85,9 +81,8 @@ struct Ugimp {
 /// size of a uGIMP particle in spans.
 template <class Shape>
 Weights graded_weights(double f, double before, double after, double half) {
-  Weights w = Shape::outer(f, SpanShares<double>{1.0 / (1.0 + before), 1.0 / (1.0 + after)}, half);
-  w.N[1] -= w.N[0] + w.N[2], w.dN[1] -= w.dN[0] + w.dN[2];
-  return w;
+  const auto [N, dN] = Shape::outer(f, SpanShares<double>{1.0 / (1.0 + before), 1.0 / (1.0 + after)}, half);
+  return {{N[0], 1.0 - (N[0] + N[1]), N[1]}, {dN[0], -(dN[0] + dN[1]), dN[1]}};
 }
 
 /// The same on three equal spans.

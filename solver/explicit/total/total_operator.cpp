@@ -313,16 +313,21 @@ NodeTotals move_nodes(double keep, State& state) {
   TotalMotion& t = state.total;
   const double dt = state.dt;
   return sum_over_parts<NodeTotals>(state.masters.size(), [&](const Part& part) {
-    const auto m = part.of(t.m), a_x = part.of(t.a_x), a_y = part.of(t.a_y);
-    auto v_x = part.of(t.v_x), v_y = part.of(t.v_y);
-    NodeTotals total;
-    total.product = (m * (v_x * (keep * v_x + dt * a_x) + v_y * (keep * v_y + dt * a_y))).sum();
-    v_x = keep * v_x + dt * a_x, v_y = keep * v_y + dt * a_y;
-    part.of(t.u_x) += dt * v_x, part.of(t.u_y) += dt * v_y;
-    total.kinetic = 0.5 * (m * (v_x * v_x + v_y * v_y)).sum();
-    total.increment = 0.5 * dt * dt * (m * (a_x * a_x + a_y * a_y)).sum();
-    total.power = (m * (v_x * a_x + v_y * a_y)).sum();
-    total.largest_speed2 = (v_x * v_x + v_y * v_y).maxCoeff();
+    Lane kinetic{}, increment{}, power{}, product{}, fastest{};
+    for (std::size_t r = part.first; r < part.last; r += most_lanes) {
+      const Lane m = L::load(&t.m[r]), a_x = L::load(&t.a_x[r]), a_y = L::load(&t.a_y[r]);
+      const Lane from_x = L::load(&t.v_x[r]), v_x = keep * from_x + dt * a_x;
+      const Lane from_y = L::load(&t.v_y[r]), v_y = keep * from_y + dt * a_y;
+      L::store(&t.v_x[r], v_x), L::store(&t.u_x[r], L::load(&t.u_x[r]) + dt * v_x);
+      L::store(&t.v_y[r], v_y), L::store(&t.u_y[r], L::load(&t.u_y[r]) + dt * v_y);
+      const Lane speed2 = v_x * v_x + v_y * v_y;
+      kinetic += m * speed2, increment += m * (a_x * a_x + a_y * a_y);
+      power += m * (v_x * a_x + v_y * a_y), product += m * (from_x * v_x + from_y * v_y);
+      fastest = larger<Lane>(fastest, speed2);
+    }
+    NodeTotals total{0.5 * sum_of_lanes(kinetic), 0.5 * dt * dt * sum_of_lanes(increment), sum_of_lanes(power),
+                     sum_of_lanes(product)};
+    for (int l = 0; l < most_lanes; ++l) total.largest_speed2 = std::max(total.largest_speed2, fastest[l]);
     return total;
   });
 }
