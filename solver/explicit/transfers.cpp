@@ -55,16 +55,13 @@ struct ParticleState {
   Real x, y, v_x, v_y, g_xx, g_xy, g_yx, g_yy;
 };
 
-// Outer weights of the particles at q.
-template <class Shape, class L, class Real = typename L::Real>
+// Outer weights of particles with the half sizes `half` (spans).
+template <class Shape, class Real>
 [[gnu::always_inline]] inline BothAxes<OuterWeights<Real>> weights_at(const BothAxes<Span<Real>>& span,
-                                                                      const ParticleState<Real>& is, const Particles& p,
-                                                                      std::size_t q) {
-  const auto along = [&](const Span<Real>& s, const Real& x, const SpreadArray& half) {
-    return Shape::outer((x - s.node) * s.per_length, s.share,
-                        Shape::has_size ? Real{L::load(&half[q]) * s.per_length} : Real{});
-  };
-  return {along(span.x, is.x, p.half_x), along(span.y, is.y, p.half_y)};
+                                                                      const ParticleState<Real>& is,
+                                                                      const BothAxes<Real>& half) {
+  return {Shape::outer((is.x - span.x.node) * span.x.per_length, span.x.share, half.x),
+          Shape::outer((is.y - span.y.node) * span.y.per_length, span.y.share, half.y)};
 }
 
 // Value and slopes (per span) of a quantity at a place.
@@ -240,9 +237,12 @@ void sweep_block(const Sweep& sweep, const Bin& bin, LaneReport& of) {
     }
     ParticleState<Real> is{L::load(&p.x[q]),    L::load(&p.y[q]),    L::load(&p.v_x[q]),  L::load(&p.v_y[q]),
                            L::load(&p.g_xx[q]), L::load(&p.g_xy[q]), L::load(&p.g_yx[q]), L::load(&p.g_yy[q])};
-    if constexpr (moves) move<L>(sweep, span, c, weights_at<Shape, L>(span, is, p, q), rock, q, is, report);
+    BothAxes<Real> half{};
+    if constexpr (Shape::has_size)
+      half = {L::load(&p.half_x[q]) * span.x.per_length, L::load(&p.half_y[q]) * span.y.per_length};
+    if constexpr (moves) move<L>(sweep, span, c, weights_at<Shape>(span, is, half), rock, q, is, report);
     if constexpr (gathers) {
-      given[n].w = weights_at<Shape, L>(span, is, p, q);
+      given[n].w = weights_at<Shape>(span, is, half);
       give<L>(p, span, rock, q, is, given[n++]);
       const bool last = static_cast<int>(q) + bin.stride >= bin.last;
       if (n == together || last) add_given<L>(given, n, bin, sweep.sums), n = 0;
