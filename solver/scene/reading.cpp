@@ -84,6 +84,16 @@ bool Reading::sound(std::string_view path) const {
   return true;
 }
 
+std::string quoted_element(const std::string& path, const toml::node& value) {
+  const toml::table* table = value.as_table();
+  if (table == nullptr || table->empty() || !is_key_table(path + "[]")) return "";
+  const std::string_view first = table->begin()->first.str();
+  if (first.find_first_not_of("0123456789") != first.npos) return "";
+  const toml::table* inner = table->begin()->second.as_table();
+  const std::string key = inner != nullptr && !inner->empty() ? fmt::format(".{}", inner->begin()->first.str()) : "";
+  return fmt::format("\"{}[{}]{}\"", path, first, key);
+}
+
 std::string as_one_line(const toml::node& value) {
   if (const auto* number = value.as_floating_point()) return number_text(number->get());
   std::ostringstream out;
@@ -123,6 +133,9 @@ void take_value(Reading& reading, const std::string& path, const toml::node& val
   }
   for (std::size_t dot = path.find('.'); dot != path.npos; dot = path.find('.', dot + 1))  // --set names no tables
     reading.entries.try_emplace(path.substr(0, dot), Given{nullptr, nullptr, where});
+  if (const std::string quoted = quoted_element(path, value); !quoted.empty())
+    return reading.fault(where, "{} is a list. Name an element of it, counted from 0, in quotes: {} = ...", path,
+                         quoted);
   Scene any = scene_of_one();
   const bool sound = key->member.read({path, *key, value, where, reading.faults}, any, 0);
   reading.entries[path] = {key, &value, where, sound};

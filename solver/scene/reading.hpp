@@ -21,6 +21,10 @@ namespace strata {
 /// A value as TOML on one line.
 std::string as_one_line(const toml::node& value);
 
+/// How a key of an element is written where a list of tables is given a table of numbers ("strata.layers.1.rock" in a
+/// file): "\"strata.layers[1].rock\""; else "".
+std::string quoted_element(const std::string& path, const toml::node& value);
+
 /// A value as it would be typed, cut short where it is long.
 std::string as_typed(const toml::node& value);
 

@@ -196,6 +196,21 @@ void check_stop_values(Reading& reading) {
                     scene.fluid.start_Pa);
 }
 
+// Stops that are given beside or above time 0, at which the run ends with one equilibrium: a variant keeps what it does
+// not replace.
+void note_stops_of_one_state(Reading& reading) {
+  if (reading.scene.stop.time_s != 0.0 || reading.given("resolved_from")) return;
+  const int rank = reading.where("stop.time_s").rank;
+  for (const char* path : {"stop.tip_y_m", "stop.lower_tip_y_m", "stop.inlet_Pa"}) {
+    if (!reading.given(path) || reading.where(path).rank < rank) continue;
+    reading.notes.push_back(
+        {reading.where(path),
+         fmt::format("note: {} is not reached: stop.time_s = 0 ends the run with one equilibrium at "
+                     "the start pressure. Give another stop.time_s.",
+                     path)});
+  }
+}
+
 // Whether one of the stops given is sure to be reached: a fracture under a pressure that does not rise may stay; one
 // that is fed at a rate grows, or takes ever more pressure where it may not.
 void check_end(Reading& reading) {
@@ -387,6 +402,7 @@ void check_scene(Reading& reading) {
   }
   check_fracture(reading, cells_sound);
   check_stop_values(reading);
+  note_stops_of_one_state(reading);
   check_end(reading);
   check_mechanics(reading);
   check_toughness(reading);

@@ -95,6 +95,9 @@ class SweepReader {
         if (meant.empty()) take_value(values_, path, value, at(name));  // which says what is wrong
       } else if (!is_key && value.is_table()) {
         for (const Swept& one : axis_of(*value.as_table(), path, is_sweep)) axis.push_back(one);
+      } else if (const std::string quoted = quoted_element(path, value); !quoted.empty()) {
+        reading_.fault(at(name), "sweep.{} is a list. Name an element of it, counted from 0, in quotes: {} = [values].",
+                       path, quoted);
       } else {
         if (!paths_.insert(path).second) reading_.fault(at(name), "sweep has {} twice. Remove one.", path);
         take_values(axis.emplace_back(Swept{path, at(name), {}, {}}), value);

@@ -65,3 +65,24 @@ stop.time_s = 0
   REQUIRE(refused.errors.size() == 1);
   CHECK(refused.errors[0].starts_with("a.toml:9:23: numerics.cell_m = 2 does not divide"));
 }
+
+// Requires an element of a list to be swept under its name in quotes, and one without them to be told how. Mutation
+// that fails: the table taken for a range, of which "from" is missing.
+TEST_CASE("A sweep reaches an element of a list by its name in quotes", "[sweep]") {
+  const std::string base = R"(
+domain = {width_m = 8, height_m = 8}
+rock.stiff.youngs_modulus_Pa = 10e9
+strata.layers = [{rock = "stiff", horizontal_Pa = 1e6}]
+numerics = {mechanics = "quasistatic", cell_m = 1}
+stop.time_s = 0
+[sweep]
+)";
+  const Found list = list_sweep(base + "\"strata.layers[0].horizontal_Pa\" = [2e6, 3e6]\n", "a.toml");
+  REQUIRE(list.errors.empty());
+  REQUIRE(list.lines.size() == 2);
+  CHECK_THAT(list.lines[1], Catch::Contains("strata.layers[0].horizontal_Pa=3000000.0"));
+  const Found bare = list_sweep(base + "strata.layers.0.horizontal_Pa = {from = 1e6, to = 2e6, count = 2}\n", "a.toml");
+  REQUIRE(bare.errors.size() == 1);
+  CHECK_THAT(bare.errors[0],
+             Catch::Contains("counted from 0, in quotes: \"strata.layers[0].horizontal_Pa\" = [values]"));
+}
