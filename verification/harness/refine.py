@@ -22,7 +22,9 @@ from verification.harness.load import Run
 from verification.harness.observables import path_length
 from verification.harness.paths import need_solver
 from verification.harness.plan import affordable, make_all
-from verification.harness.quantities import HEIGHTS_M, NO_ARREST, Quantity, lack_words, noise_of, path_gap, quantities_of, turns
+from verification.harness.quantities import (
+    HEIGHTS_M, NO_ARREST, Quantity, lack_words, lowest_end_m, noise_of, path_gap, quantities_of, turns,
+)  # fmt: skip
 from verification.harness.richardson import Estimate, estimate, estimate_of_changes
 from verification.harness.run import Job, Outcome
 from verification.harness.scenes import MECHANICS, chosen, content_of, mechanics_of, scene_of
@@ -142,6 +144,8 @@ def unlike(content: dict[str, Any], cells_m: Sequence[float]) -> tuple[str, ...]
     thickness = [float(layer["thickness_m"]) for layer in strata["layers"][:-1]]
     names = ["the interface"] if len(thickness) == 1 else [f"interface {k + 1}" for k in range(len(thickness))]
     places = {"the first tip": ("y", max(float(y) for _, y in path)), "the fracture": ("x", float(path[0][0]))}
+    if (foot := lowest_end_m(content)) is not None:
+        places["the lower tip"] = ("y", foot)
     places |= {name: (axis, place) for name, place in zip(names, accumulate(thickness))}
 
     def words(place_m: float, cell_m: float) -> str:

@@ -49,7 +49,8 @@ class Event:
     tip_x_m: float
     tip_y_m: float
     at_interface: bool  # decided by J with an interface too near for it to be trusted
-    by: str  # what decided: "J", "energy", "failure"; empty of what nothing decides, an end say
+    by: str  # what decided: "J", "K", "energy"; empty of what nothing decides, an end say
+    tip: str = ""  # which of two tips: "upper" or "lower", where they are level "left" or "right"
 
 
 @dataclass(frozen=True)
@@ -65,6 +66,7 @@ class Tip:
     J_spread: float
     kink_deg: float
     G_N_m: float = math.nan
+    tip: str = ""  # which of two: "upper" or "lower", where they are level "left" or "right"
 
 
 @dataclass(frozen=True)
@@ -164,8 +166,12 @@ class Run:
 
     @cached_property
     def path(self) -> Array:
-        """The fracture from its first vertex to its last tip, shape (n, 2), m."""
+        """The fracture from its other end at the start to the last place of its leading tip, shape (n, 2), m. What a lower tip has grown is not in it:
+        at(time_s).fracture["position_m"] is the whole."""
         points = [tuple(map(float, point)) for point in self.scene["fracture"]["path_m"]]
+        first = (self.history["tip_x_m"][0], self.history["tip_y_m"][0])
+        if math.dist(points[0], first) < math.dist(points[-1], first):
+            points.reverse()
         for tip in zip(self.history["tip_x_m"], self.history["tip_y_m"]):
             if math.dist(points[-1], tip) > GROWTH_M:
                 points.append((float(tip[0]), float(tip[1])))

@@ -2,16 +2,18 @@
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from verification.harness import refine
-from verification.harness.load import Run, load
+from verification.harness.load import Event, Run, load
 from verification.harness.paths import EXPERIMENTS
 from verification.harness.plan import about_s
-from verification.harness.quantities import Pause, Quantity, pause_at, path_gap, pauses, quantities_of
+from verification.harness.quantities import Pause, Quantity, noise_of, pause_at, path_gap, pauses, quantities_of
 from verification.harness.refine import Level, job_of, main, row_of, study_of
 from verification.harness.run import Outcome
 from verification.harness.scenes import scene_of
@@ -77,6 +79,64 @@ def test_a_scene_has_the_quantities_that_it_can_have() -> None:
     assert {"deflection_m", "final_angle_deg"} < set(names_of(turning)) and not any(name.startswith("arrest") for name in names_of(turning))
     second = names_of({**CONTENT, "strata": {"interfaces": ["perfect", "soft"]}})
     assert "arrest_2_m" in second and "arrest_1_m" not in second
+
+
+TWO_TIPS: dict[str, Any] = {
+    "domain": {"width_m": 40, "height_m": 40, "bottom": "traction"},
+    "strata": {"layers": [{"thickness_m": 8}, {"thickness_m": 20}, {}], "interfaces": ["weak", "weak"]},
+    "fracture": {"path_m": [[20, 14], [20, 22]], "increment_m": 1.0}, "numerics": {"cell_m": 0.5}, "stop": {"lower_tip_y_m": 4},
+}  # fmt: skip
+
+
+def two_tips(folder: Path, down: list[tuple[float, float]]) -> Run:
+    """A run whose upper tip makes a step at 2.5 MPa and whose lower tip comes down to heights (m) at pressures (Pa) of their own."""
+    layers = '[{rock = "a", thickness_m = 8.0}, {rock = "a", thickness_m = 20.0}, {rock = "a"}]'
+    run = load(write_run(folder, [(2.5e6, 20.0, 23.0), *[(P, 20.0, 23.0) for P, _ in down]], end_Pa=3.0e6, layers=layers))
+    rows = len(run.history["tip_y_m"])
+    lower = np.full(rows, 14.0)
+    for pressure, y in down:
+        lower[run.history["inlet_Pa"] >= pressure] = y
+    history = run.history | {"lower_tip_x_m": np.full(rows, 20.0), "lower_tip_y_m": lower}
+    starts = tuple(Event("start", 0.0, P, 20.0, y, False, "J", tip) for P, y, tip in ((2.5e6, 22.0, "upper"), (down[0][0], 14.0, "lower")))
+    return replace(run, history=history, summary=replace(run.summary, events=starts))
+
+
+def test_the_lower_of_two_tips_is_followed_downwards(tmp_path: Path) -> None:
+    """Its own start, its pause at the interface below, heights below its first place: none of them the upper tip's. Mutations that fail: the upper
+    tip's columns; growth upwards; the interface above given to it."""
+    down = [(2.52e6, 12.0), (2.55e6, 9.0), (2.56e6, 8.0), (2.80e6, 5.0)]
+    found = {one.name: one.measure(two_tips(tmp_path / "r", down)) for one in quantities_of(TWO_TIPS, (5.0, 10.0, 16.0, 23.0, 2.0))}
+    assert {name: one.low for name, one in found.items() if one.exact} == pytest.approx({
+        "start_Pa": 2.5e6, "start_upper_Pa": 2.5e6, "start_lower_Pa": 2.52e6, "arrest_1_lower_m": 8.0, "restart_1_lower_Pa": 2.80e6,
+        "plateau_1_lower_Pa": 0.24e6, "pressure_at_23_Pa": 2.5e6, "pressure_at_5_lower_Pa": 2.80e6, "pressure_at_10_lower_Pa": 2.55e6,
+        "final_height_m": 23.0, "final_height_lower_m": 5.0, "final_Pa": 3.0e6,
+    })  # fmt: skip
+    assert [name for name, one in found.items() if not one.exact] == ["arrest_2_m", "restart_2_Pa", "plateau_2_Pa"]
+    assert refine.unlike(TWO_TIPS, (4.0, 2.0))[0] == "at 4 m the first tip (y = 22 m) lies at mid-cell, at 2 m on a grid line"
+    assert "at 4 m the lower tip (y = 14 m) lies at mid-cell, at 2 m on a grid line" in refine.unlike(TWO_TIPS, (4.0, 2.0))
+
+
+def test_a_level_fracture_has_a_left_and_a_right_tip() -> None:
+    names = [one.name for one in quantities_of({**TWO_TIPS, "fracture": {"path_m": [[14, 20], [26, 20]]}}, ())]
+    assert names[:3] == ["start_Pa", "start_left_Pa", "start_right_Pa"]
+
+
+@pytest.mark.parametrize(("in_situ", "layers", "closing_Pa"), [
+    ({"horizontal_Pa": 2.2e6}, [{}, {}], 2.2e6), ({}, [{"horizontal_Pa": 2.1e6}, {"horizontal_Pa": 1.9e6}], 1.9e6),
+    ({"horizontal_Pa": 2.2e6}, [{"horizontal_Pa": 1.8e6}, {}], 1.8e6), ({"horizontal_Pa": "2e6 + 1e3*Y"}, [{}], 2.0e6),
+])  # fmt: skip
+def test_what_a_pressure_resolves_goes_by_the_stress_of_the_layers(tmp_path: Path, in_situ: dict[str, Any], layers: list[Any], closing_Pa: float) -> None:
+    """1e-4 of the pressure above the least stress, above the first inlet pressure (2 MPa) where the stress is a formula, which ended the study."""
+    run = held(tmp_path / "r")
+    run = replace(run, scene=run.scene | {"in_situ": in_situ, "strata": {"layers": layers}}, summary=replace(run.summary, mechanics="quasistatic"))
+    assert noise_of(quantity("start_Pa"), run, 2.5e6) == pytest.approx(1e-4 * (2.5e6 - closing_Pa))
+
+
+def test_a_path_begins_at_the_end_that_does_not_lead(tmp_path: Path) -> None:
+    """Whichever end of path_m comes first; it folded back where that was the leading one."""
+    run = made(tmp_path / "r", [(2.40e6, 40.0, 6.0), (2.41e6, 40.0, 7.0)])
+    turned = replace(run, scene=run.scene | {"fracture": run.scene["fracture"] | {"path_m": [[40.0, 5.0], [40.0, 0.0]]}})
+    assert turned.path.tolist() == run.path.tolist() == [[40.0, y] for y in (0.0, 5.0, 6.0, 7.0)]
 
 
 def test_paths_are_compared_from_their_first_points_over_what_both_have(tmp_path: Path) -> None:
