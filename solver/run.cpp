@@ -66,21 +66,28 @@ bool is_quasistatic(const Scene& scene) {
   return scene.numerics.mechanics == Numerics::Mechanics::quasistatic;
 }
 
-// Why the run is over, or nothing.
-std::optional<std::string> reason_to_stop(const Scene& scene, const State& state) {
+// Why a run is over, and the tip that ended it; or the leading one, or none.
+struct Ending {
+  std::string reason;
+  const Tip* tip;
+};
+
+// How the run is over, or nothing.
+std::optional<Ending> ending_of(const Scene& scene, const State& state) {
   const Stop& stop = scene.stop;
   const double slack = is_quasistatic(scene) ? 1e-9 * expected_duration(scene).value_or(1.0) : 0.5 * state.dt;
-  if (stop.time_s && state.time >= *stop.time_s - slack) return fmt::format("time reached {} s", *stop.time_s);
-  if (stop.inlet_Pa && state.has_fracture && state.fluid.inlet_Pa >= *stop.inlet_Pa * (1.0 - 1e-12))
-    return fmt::format("inlet pressure reached {} Pa", *stop.inlet_Pa);
   const Tip *tip = leading_tip(state), *lower = lower_tip(state);
+  if (stop.time_s && state.time >= *stop.time_s - slack) return {{fmt::format("time reached {} s", *stop.time_s), tip}};
+  if (stop.inlet_Pa && state.has_fracture && state.fluid.inlet_Pa >= *stop.inlet_Pa * (1.0 - 1e-12))
+    return {{fmt::format("inlet pressure reached {} Pa", *stop.inlet_Pa), tip}};
   const double near = 1e-3 * state.grid.h;
   if (stop.tip_y_m && tip && tip_position(state, *tip).y() >= *stop.tip_y_m - near)
-    return fmt::format("tip reached y = {} m", *stop.tip_y_m);
+    return {{fmt::format("{}tip reached y = {} m", lower ? "upper " : "", *stop.tip_y_m), tip}};
   if (stop.lower_tip_y_m && lower && tip_position(state, *lower).y() <= *stop.lower_tip_y_m + near)
-    return fmt::format("lower tip reached y = {} m", *stop.lower_tip_y_m);
+    return {{fmt::format("lower tip reached y = {} m", *stop.lower_tip_y_m), lower}};
   const bool stuck = !state.tips.empty() && std::ranges::none_of(state.tips, &Tip::growing);
-  if (stuck && !stop.time_s && !stop.inlet_Pa) return "no tip can grow any further: " + state.tips.front().stopped_by;
+  if (stuck && !stop.time_s && !stop.inlet_Pa)
+    return {{"no tip can grow any further: " + state.tips.front().stopped_by, tip}};
   return std::nullopt;
 }
 
@@ -122,11 +129,12 @@ void begin(Run& run) {
   run.good.state = run.state;
 }
 
-void add_stop_event(State& state) {
-  const Tip* tip = leading_tip(state);
+// Of the tip that ended the run, or the leading one.
+void add_stop_event(State& state, const Tip* tip) {
   const Vec2 at = tip != nullptr ? tip_position(state, *tip) : Vec2{Vec2::Zero()};
-  state.events.push_back(
-      {"stop", state.time, state.fluid.inlet_Pa, at.x(), at.y(), tip != nullptr && at_interface(*tip), ""});
+  const bool near = tip != nullptr && at_interface(*tip);
+  state.events.push_back({"stop", state.time, state.fluid.inlet_Pa, at.x(), at.y(), near, "",
+                          tip != nullptr ? tip_name(state, *tip) : ""});
 }
 
 // Strain energy and fields as they are now; without inertia only those that decide what happens next are kept.
@@ -201,10 +209,10 @@ std::optional<std::string> march(Run& run) {
   Clock::time_point last_checkpoint = Clock::now();
   while (true) {
     if (settled(run) && run.output_times().empty()) output(run);
-    if (auto reason = reason_to_stop(run.scene, run.state); reason && settled(run)) {
-      add_stop_event(run.state);
+    if (auto ending = ending_of(run.scene, run.state); ending && settled(run)) {
+      add_stop_event(run.state, ending->tip);
       output(run);
-      return reason;
+      return ending->reason;
     }
     keep_if_sound(run);
     const bool stop = asked_to_stop != 0;

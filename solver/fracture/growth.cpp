@@ -79,7 +79,7 @@ double increments_due(const Scene& scene, const Elasticity& ahead, const State& 
 void record(State& state, const char* kind, const Tip& tip, double time, double pressure, bool doubtful,
             const char* by) {
   const Vec2 at = tip_position(state, tip);
-  state.events.push_back({kind, time, pressure, at.x(), at.y(), doubtful, by});
+  state.events.push_back({kind, time, pressure, at.x(), at.y(), doubtful, by, tip_name(state, tip)});
 }
 
 // The new vertices' pressure: nothing, or what the tip had. The front end is counted from the inlet's side.

@@ -21,7 +21,7 @@ namespace {
 
 // A file is this line, with a number to be raised with every change of what is saved, the checksum of what follows,
 // the scene as it was resolved, what was written, and the state.
-constexpr std::string_view magic = "strata-checkpoint 16\n";
+constexpr std::string_view magic = "strata-checkpoint 17\n";
 
 template <class T, class Plain>
 concept Is = std::is_same_v<std::remove_const_t<T>, Plain>;
@@ -45,7 +45,7 @@ STRATA_SAVED(TipTie, node, plus, minus, stiffness, s)
 STRATA_SAVED(Tip, at_back, growing, stopped_by, K_I, K_II, J, J_spread, ring_m, kink, turn, closed, near, crossed,
              no_length, last_growth_s, last_growth_Pa, due_s, runs_until_s, G_trial, G_along, G, G_by_J, criterion,
              grew_by, has_grown, arrested, reached)
-STRATA_SAVED(Event, kind, time_s, inlet_Pa, tip_x_m, tip_y_m, at_interface, by)
+STRATA_SAVED(Event, kind, time_s, inlet_Pa, tip_x_m, tip_y_m, at_interface, by, tip)
 STRATA_SAVED(SavedState, time, step, dt, grid, particles, surfaces, has_fracture, fluid, reynolds, balance, grown, tips,
              ties, events, ledger, monitors)
 STRATA_SAVED(Written, rows, output_times)

@@ -84,7 +84,7 @@ void write_interface(const H5::Group& file, const std::string& interfaces, const
       [](auto& s) { return s.reaction.dot(s.n); });
   put(group, "reaction_t_Pa", "Pa", "traction on the + face along the interface", points,
       [](auto& s) { return s.reaction.dot(tangent(s)); });
-  put(group, "failed_s", "s", "time at which the place let go, -1 where it has not", points,
+  put(group, "failed_s", "s", "time at which the place let go, -1 where it holds or nothing ever bonded it", points,
       [](auto& s) { return s.failed_s; });
   put<std::int32_t>(group, "split", "1", "1 where the law acts between two sides, 0 where the rock is whole", points,
                     [](auto& s) { return s.split ? 1 : 0; });

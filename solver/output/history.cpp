@@ -84,13 +84,57 @@ double leaked_volume(const State& state) {
   return std::accumulate(state.reynolds.leaked.begin(), state.reynolds.leaked.end(), 0.0);
 }
 
+namespace {
+
+TipNumbers numbers_of(const Scene& scene, const Tip* tip) {
+  return tip ? tip_numbers(scene, *tip) : no_numbers;
+}
+
+Vec2 place_of(const State& state, const Tip* tip) {
+  return tip ? tip_position(state, *tip) : Vec2{nan, nan};
+}
+
+double crossing(const Tip* tip) {
+  return tip && weighs_energy(*tip) ? tip->G_trial : nan;
+}
+
+// Whether the fracture of a scene lies within the block, where it has two tips. Columns go by the scene: the header is
+// written before there is a state.
+bool has_two_tips(const Scene& scene) {
+  if (!scene.fracture || scene.fracture->path_m.empty()) return false;
+  return scene.domain.bottom != Edge::symmetry || scene.fracture->path_m.front()[1] != 0.0;
+}
+
+// Of the lower one of two tips, in every run those that all have had, and the rest where there are two.
+void add_lower_tip(const Scene& scene, const State& state, std::vector<HistoryColumn>& all) {
+  const Tip* lower = lower_tip(state);
+  const TipNumbers told = numbers_of(scene, lower);
+  const Vec2 x = place_of(state, lower);
+  all.insert(all.end(), {{"lower_tip_y_m", "m", x.y(), "place of the lower one of two tips: y"},
+                         {"lower_tip_K_I_Pa_sqrt_m", "Pa m^0.5", told.K_I_Pa_sqrt_m,
+                          "K_I of the lower tip, from the interaction integral"},
+                         {"lower_tip_K_II_Pa_sqrt_m", "Pa m^0.5", told.K_II_Pa_sqrt_m,
+                          "K_II of the lower tip, from the interaction integral"}});
+  if (!has_two_tips(scene)) return;
+  all.insert(all.end(), {{"lower_tip_x_m", "m", x.x(), "place of the lower tip: x"},
+                         {"lower_tip_J_N_m", "N/m", told.J_N_m, "J of the lower tip, from its domain integral"},
+                         {"lower_tip_G_N_m", "N/m", lower ? lower->G : nan,
+                          "energy released per length over the lower tip's next finite increment"},
+                         {"lower_tip_near", "1", lower ? static_cast<double>(lower->near) : nan,
+                          "what is too near to the lower tip, as in near"}});
+  if (scene.parts_by_energy()) {
+    all.push_back({"lower_tip_G_crossing_N_m", "N/m", crossing(lower), "G_crossing_N_m of the lower tip"});
+    all.push_back({"lower_tip_G_along_N_m", "N/m", lower ? lower->G_along : nan, "G_along_N_m of the lower tip"});
+  }
+}
+
+}  // namespace
+
 // Those that the first versions had come first, so that files of all can be laid side by side.
 std::vector<HistoryColumn> history_columns(const Scene& scene, const State& state) {
-  const auto numbers_of = [&](const Tip* tip) { return tip ? tip_numbers(scene, *tip) : no_numbers; };
-  const auto place_of = [&](const Tip* tip) { return tip ? tip_position(state, *tip) : Vec2{nan, nan}; };
-  const Tip *tip = leading_tip(state), *lower = lower_tip(state);
-  const Vec2 x = place_of(tip);
-  const TipNumbers told = numbers_of(tip), told_of_lower = numbers_of(lower);
+  const Tip* tip = leading_tip(state);
+  const Vec2 x = place_of(state, tip);
+  const TipNumbers told = numbers_of(scene, tip);
   std::vector<HistoryColumn> all{
       {"time_s", "s", state.time, "time"},
       {"inlet_Pa", "Pa", state.has_fracture ? state.fluid.inlet_Pa : 0.0, "fluid pressure at the inlet"},
@@ -129,16 +173,12 @@ std::vector<HistoryColumn> history_columns(const Scene& scene, const State& stat
                  "5 fracture"});
   if (scene.leaks()) all.push_back({"leaked_m2", "m^2", leaked_volume(state), "fluid that the rock has taken"});
   if (scene.parts_by_energy()) {
-    all.push_back({"G_crossing_N_m", "N/m", tip && weighs_energy(*tip) ? tip->G_trial : nan,
+    all.push_back({"G_crossing_N_m", "N/m", crossing(tip),
                    "energy released per length by going on across, over crossing_increment_m"});
     all.push_back({"G_along_N_m", "N/m", tip ? tip->G_along : nan,
                    "energy released per length by parting the interface, over crossing_increment_m"});
   }
-  all.insert(all.end(), {{"lower_tip_y_m", "m", place_of(lower).y(), "place of the lower one of two tips: y"},
-                         {"lower_tip_K_I_Pa_sqrt_m", "Pa m^0.5", told_of_lower.K_I_Pa_sqrt_m,
-                          "K_I of the lower tip, from the interaction integral"},
-                         {"lower_tip_K_II_Pa_sqrt_m", "Pa m^0.5", told_of_lower.K_II_Pa_sqrt_m,
-                          "K_II of the lower tip, from the interaction integral"}});
+  add_lower_tip(scene, state, all);
   return all;
 }
 

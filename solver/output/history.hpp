@@ -49,7 +49,8 @@ struct HistoryColumn {
 };
 
 /// The columns in the order of history.csv, with their values in a state: of the leading tip, nan where it has no such
-/// number or there is none (opening, volume and inlet pressure are 0 then); leaked_m2 where a rock takes up fluid.
+/// number or there is none (opening, volume and inlet pressure are 0 then); leaked_m2 where a rock takes up fluid; more
+/// of the lower tip where there are two.
 /// Throws std::bad_alloc only.
 std::vector<HistoryColumn> history_columns(const Scene& scene = Scene(), const State& state = State());
 

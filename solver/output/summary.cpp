@@ -43,7 +43,8 @@ Json tips_json(const Scene& scene, const State& state) {
                     {"at_interface", at_interface(tip)},
                     {"growing", tip.growing},
                     {"stopped_by", tip.stopped_by},
-                    {"ring_m", tip.ring_m}});
+                    {"ring_m", tip.ring_m},
+                    {"tip", tip_name(state, tip)}});
     if (scene.parts_by_energy()) tips.back()["G_along_N_m"] = tip.G_along;
   }
   return tips;
@@ -58,7 +59,8 @@ Json events_json(const std::vector<Event>& events) {
                     {"tip_x_m", event.tip_x_m},
                     {"tip_y_m", event.tip_y_m},
                     {"at_interface", event.at_interface},
-                    {"by", event.by}});
+                    {"by", event.by},
+                    {"tip", event.tip}});
   }
   return list;
 }

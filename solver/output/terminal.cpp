@@ -19,13 +19,25 @@ namespace strata {
 
 namespace {
 
+// What an event or a tip of two is told apart by: "upper tip ", or nothing of a single one.
+std::string which(const std::string& tip) {
+  return tip.empty() ? "" : tip + " tip ";
+}
+
+// Where a tip is along the axis on which two lie apart.
+std::string place(const std::string& tip, double x, double y) {
+  const bool level = tip == "left" || tip == "right";
+  return fmt::format("{} = {:.2f} m", level ? 'x' : 'y', level ? x : y);
+}
+
 // Where the fracture started, stayed and went on: all that fits into a line.
 std::string growth_line(const State& state) {
   constexpr std::size_t most = 6;
   std::vector<std::string> parts;
   for (const Event& event : state.events) {
     if (event.kind == "start" || event.kind == "arrest" || event.kind == "restart")
-      parts.push_back(fmt::format("{} {:.4g} MPa at y = {:.2f} m", event.kind, 1e-6 * event.inlet_Pa, event.tip_y_m));
+      parts.push_back(fmt::format("{}{} {:.4g} MPa at {}", which(event.tip), event.kind, 1e-6 * event.inlet_Pa,
+                                  place(event.tip, event.tip_x_m, event.tip_y_m)));
   }
   if (parts.size() > most) {
     const std::string rest = fmt::format("{} more in summary.json", parts.size() - most);
@@ -50,12 +62,13 @@ std::string tip_line(const Scene& scene, const State& state) {
       note = fmt::format("near {}: K and J are not to be trusted", name_of(tip.near));
     if (!tip.stopped_by.empty())
       note += fmt::format("{}may not grow: it is {}", note.empty() ? "" : "; ", tip.stopped_by);
-    parts.push_back(fmt::format("x = {:.2f} m, y = {:.2f} m, K_I {} and K_II {} MPa sqrt(m), J {} N/m{}", x.x(), x.y(),
-                                number_or_none(1e-6 * told.K_I_Pa_sqrt_m, 3),
+    parts.push_back(fmt::format("{}x = {:.2f} m, y = {:.2f} m, K_I {} and K_II {} MPa sqrt(m), J {} N/m{}",
+                                which(tip_name(state, tip)), x.x(), x.y(), number_or_none(1e-6 * told.K_I_Pa_sqrt_m, 3),
                                 number_or_none(1e-6 * told.K_II_Pa_sqrt_m, 3), number_or_none(told.J_N_m, 1),
                                 note.empty() ? "" : " (" + note + ")"));
   }
-  return fmt::format("tip: {}; inlet {:.4g} MPa", fmt::join(parts, "; and "), 1e-6 * state.fluid.inlet_Pa);
+  return fmt::format("{}: {}; inlet {:.4g} MPa", parts.size() > 1 ? "tips" : "tip", fmt::join(parts, "; and "),
+                     1e-6 * state.fluid.inlet_Pa);
 }
 
 std::string monitor_line(const Scene& scene, const State& state) {
@@ -94,7 +107,15 @@ std::string duration_text(double seconds) {
 std::string progress_text(const State& state, double fraction, double left_s) {
   std::string text = fmt::format("{:3.0f} %  t = {:.4g} s", std::floor(100.0 * fraction), state.time);
   if (state.has_fracture) text += fmt::format("  P = {:.3f} MPa", 1e-6 * state.fluid.inlet_Pa);
-  if (const Tip* tip = leading_tip(state)) text += fmt::format("  tip at {:.2f} m", tip_position(state, *tip).y());
+  const Tip *tip = leading_tip(state), *lower = lower_tip(state);
+  if (tip && !lower) text += fmt::format("  tip at {:.2f} m", tip_position(state, *tip).y());
+  if (lower) {
+    const Vec2 one = tip_position(state, *lower), other = tip_position(state, *tip);
+    const std::string name = tip_name(state, *lower);
+    const bool level = name == "left" || name == "right";
+    const auto [low, high] = std::minmax(level ? one.x() : one.y(), level ? other.x() : other.y());
+    text += fmt::format("  tips at {}{:.2f} and {:.2f} m", level ? "x = " : "", low, high);
+  }
   return text + "  left " + duration_text(left_s);
 }
 

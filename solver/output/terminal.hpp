@@ -18,7 +18,8 @@ double fraction_done(const Scene& scene, const State& state);
 /// Time (s) as "3 h 05 min", "4 min 10 s" or "12 s", "?" where it is none or negative; throws std::bad_alloc only.
 std::string duration_text(double seconds);
 
-/// Time of the run, inlet pressure, tip height and time left (s; "?" if nan) as text; throws std::bad_alloc only.
+/// Time of the run, inlet pressure, height of the tip or of both and time left (s; "?" if nan) as text; throws
+/// std::bad_alloc only.
 std::string progress_text(const State& state, double fraction, double left_s);
 
 // Cheap enough to be told of every step.

@@ -73,6 +73,7 @@ struct Event {
   double tip_x_m = 0.0, tip_y_m = 0.0;
   bool at_interface = false;  // decided by a J too near to an interface to be trusted
   std::string by;             // what decided it: "J", "K" or "energy"
+  std::string tip = {};       // which of two tips, by tip_name()
 };
 
 // Energy per metre of thickness (J/m) since the start: what each is says `ledger_energies`. Work done on the rock is
@@ -193,6 +194,16 @@ inline bool at_interface(const Tip& tip) {
 /// Where a tip is (m): the fracture's last vertex or its first; throws nothing.
 inline Vec2 tip_position(const State& state, const Tip& tip) {
   return tip.at_back ? state.fracture().vertices.back().x : state.fracture().vertices.front().x;
+}
+
+/// Which of two tips one is: "upper" or "lower"; "left" or "right" where they are level to half a cell; "" of a single
+/// one. Throws nothing.
+inline const char* tip_name(const State& state, const Tip& tip) {
+  if (state.tips.size() < 2) return "";
+  const auto& v = state.fracture().vertices;
+  const Vec2 off = (tip.at_back ? 1.0 : -1.0) * (v.back().x - v.front().x);  // from the other tip
+  if (std::abs(off.y()) < 0.5 * state.grid.h) return off.x() > 0.0 ? "right" : "left";
+  return off.y() > 0.0 ? "upper" : "lower";
 }
 
 /// Sets the pressure at the fracture's vertices to that of a fluid at rest under its inlet's; throws nothing.

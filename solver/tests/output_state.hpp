@@ -154,7 +154,7 @@ inline State made_state() {
   state.ties = {{44, 101, 102, number.next(), {}}};
   fill_point(state.ties[0].s, number);
   state.events = {{"start", 0.1 / 3, 1e6 / 3, 4.0, 2.1 / 3, false, "J"},
-                  {"arrest", 0.2 / 3, 2e6 / 3, 3.9, 2.3 / 3, true, "energy"}};
+                  {"arrest", 0.2 / 3, 2e6 / 3, 3.9, 2.3 / 3, true, "energy", "lower"}};
   Ledger& l = state.ledger;
   for (double* value :
        {&l.kinetic, &l.strain, &l.interface_strain, &l.fluid_work, &l.in_situ_work, &l.edge_work, &l.body_work,

@@ -64,6 +64,23 @@ TEST_CASE("a run ends with how, growth, tip, worst monitor and where") {
   CHECK(lines[4] == "results in " + folder.path.string() + ": summary.json, result.h5");
 }
 
+// Requires the last lines to say which tip of two each event and each number belongs to, by the axis on which they lie
+// apart. Mutation that fails: names left out.
+TEST_CASE("the last lines tell two tips apart") {
+  const TemporaryFolder folder;
+  State state = sound_state();
+  state.tips.resize(2, state.tips[0]);
+  for (Tip& tip : state.tips) tip.near = Obstacle::none, tip.crossed = tip.closed = false, tip.stopped_by.clear();
+  state.tips[1].at_back = false;
+  state.tips[0].K_I = 1.25e6, state.tips[1].K_I = 1.5e6;
+  state.events = {{"start", 0.5, 2.1e6, 4.0, 0.0, false, "J", "lower"},
+                  {"arrest", 0.6, 2.25e6, 3.0, 2.0, true, "J", "right"}};
+  const auto lines = lines_of(made_scene(), state, record, folder.path);
+  CHECK(lines.at(1) == "growth: lower tip start 2.1 MPa at y = 0.00 m; right tip arrest 2.25 MPa at x = 3.00 m");
+  CHECK_THAT(lines.at(2), Catch::StartsWith("tips: upper tip x = 4.00 m, y = 2.00 m, K_I 1.250 and ") &&
+                              Catch::Contains("; and lower tip x = 4.00 m, y = 0.00 m, K_I 1.500 and "));
+}
+
 TEST_CASE("all monitors that mark a run are named in its last lines, with value, threshold and reason") {
   const TemporaryFolder folder;
   State state = sound_state();

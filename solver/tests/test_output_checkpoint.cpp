@@ -34,6 +34,7 @@ TEST_CASE("a checkpoint gives the state back to the same digits") {
   CHECK(checkpoint.state.reynolds.leaked == state.reynolds.leaked);
   CHECK(checkpoint.state.tips[1].reached == state.tips[1].reached);
   CHECK(checkpoint.state.events[1].by == "energy");
+  CHECK(checkpoint.state.events[1].tip == "lower");
   CHECK(checkpoint.state.ledger.largest == state.ledger.largest);
   CHECK(checkpoint.state.monitors.mirror == 1);
   CHECK(checkpoint.state.total.velocity == state.total.velocity);

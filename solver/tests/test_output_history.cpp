@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -99,6 +100,59 @@ TEST_CASE("the tip reported is the highest one") {
   CHECK(of(row, "lower_tip_y_m") == 2.0);
   CHECK(of(row, "lower_tip_K_I_Pa_sqrt_m") == state.tips[0].K_I);
   CHECK(of(row, "lower_tip_K_II_Pa_sqrt_m") == state.tips[0].K_II);
+}
+
+// Requires all that is told of the upper tip near its growth of the lower one too, by the lower tip's own numbers, and
+// no such column for a single tip. Mutations that fail: the upper tip's numbers in a lower column; columns of a single
+// tip.
+TEST_CASE("the lower of two tips has columns of its own") {
+  State state = made_state();
+  Scene scene = made_scene();
+  const auto column = [&](const std::string& name) {
+    for (const HistoryColumn& one : history_columns(scene, state))
+      if (one.name == name) return std::optional(one.value);
+    return std::optional<double>();
+  };
+  for (const char* name : {"lower_tip_x_m", "lower_tip_J_N_m", "lower_tip_G_N_m", "lower_tip_near"})
+    CHECK_FALSE(column(name));
+  scene.domain.bottom = Edge::traction;
+  CHECK(history_columns(scene).size() == history_columns(scene, state).size());  // those of the header
+  CHECK(history_columns(scene).size() == history_columns().size() + 4);
+  Numbers number{500};
+  state.tips.push_back(made_tip(false, number));
+  state.fracture().vertices[0].x = {7.0, -3.0};
+  Tip& lower = state.tips[1];
+  lower.closed = lower.crossed = false, lower.near = Obstacle::edge, lower.G = 17.0, lower.J = 31.0;
+  state.tips[0].G = 19.0;
+  CHECK(column("lower_tip_x_m") == 7.0);
+  CHECK(column("lower_tip_y_m") == -3.0);
+  CHECK(column("lower_tip_J_N_m") == 31.0);
+  CHECK(column("lower_tip_G_N_m") == 17.0);
+  CHECK(column("lower_tip_near") == 4.0);
+  CHECK(column("G_N_m") == 19.0);
+  CHECK_FALSE(column("lower_tip_G_along_N_m"));
+  scene.laws[1].toughness_Pa_sqrt_m = 1e6;
+  lower.G_along = 23.0, lower.G_trial = 29.0, lower.criterion = Criterion::energy;
+  CHECK(column("lower_tip_G_along_N_m") == 23.0);
+  CHECK(column("lower_tip_G_crossing_N_m") == 29.0);
+}
+
+// Requires the names of two tips by where they lie, left and right where they are level to half a cell, whichever end
+// of the path they are at. Mutation that fails: the sign turned.
+TEST_CASE("tips are told apart by where they lie") {
+  State state = made_state();
+  CHECK(tip_name(state, state.tips[0]) == std::string());
+  Numbers number{500};
+  state.tips.push_back(made_tip(false, number));
+  const auto names = [&](const Vec2& front, const Vec2& back) {
+    state.fracture().vertices.front().x = front, state.fracture().vertices.back().x = back;
+    return tip_name(state, state.tips[0]) + std::string(" ") + tip_name(state, state.tips[1]);
+  };
+  CHECK(names({4.0, 0.0}, {4.0, 2.0}) == "upper lower");
+  CHECK(names({4.0, 2.0}, {6.0, 0.0}) == "lower upper");
+  CHECK(names({4.0, 2.0}, {6.0, 2.4}) == "right left");
+  CHECK(names({6.0, 2.0}, {4.0, 2.4}) == "left right");
+  CHECK(names({4.0, 2.0}, {6.0, 2.6}) == "upper lower");
 }
 
 TEST_CASE("without a fracture what belongs to a tip is nan, volume and opening are 0") {

@@ -24,12 +24,19 @@ def test_K_of_both_tips_under_the_weight_of_the_fluid() -> None:
     assert row["K_I_Pa_sqrt_m"] == pytest.approx(by_weight[-1.0], rel=5e-3)
     assert abs(row["lower_tip_K_II_Pa_sqrt_m"]) < 1e-6 * row["K_I_Pa_sqrt_m"]
     assert (row["tip_y_m"], row["lower_tip_y_m"]) == pytest.approx((34.0, 14.0), abs=1e-9)
+    assert row["lower_tip_J_N_m"] == pytest.approx(by_weight[1.0] ** 2 / (10e9 / 0.96), rel=2e-2)  # K^2/E'; J of the upper tip is half as large
+    assert (row["lower_tip_x_m"], row["lower_tip_near"]) == (pytest.approx(row["tip_x_m"]), 0.0)
 
 
 def test_a_symmetric_fracture_has_two_equal_tips_and_stops_by_the_lower_one(tmp_path: Path) -> None:
     """About y = 24 m: K_I equal to round-off, the places mirror images in each row. A scene that shears turns K_II about alike at both."""
     assert run_in(tmp_path, GROWS, *RISES).returncode == 0
-    assert summary_of(tmp_path / "X")["reason"] == "lower tip reached y = 11 m"
+    summary = summary_of(tmp_path / "X")
+    assert summary["reason"] == "lower tip reached y = 11 m"
+    assert [tip["tip"] for tip in sorted(summary["tips"], key=lambda tip: tip["y_m"])] == ["lower", "upper"]
+    assert {(event["tip"], round(event["tip_y_m"])) for event in summary["events"] if event["kind"] == "start"} == {("lower", 14), ("upper", 34)}
+    stop = summary["events"][-1]
+    assert (stop["kind"], stop["tip"], stop["tip_y_m"]) == ("stop", "lower", pytest.approx(11.0, abs=1e-2))
     history = read_history(tmp_path / "X" / "history.csv")
     assert history["lower_tip_K_I_Pa_sqrt_m"] == pytest.approx(history["K_I_Pa_sqrt_m"], rel=1e-9)
     assert 0.5e6 < min(history["K_I_Pa_sqrt_m"]) < 0.6e6
@@ -60,3 +67,19 @@ def test_fine_cells_reach_to_the_lower_stop(tmp_path: Path) -> None:
     settings = ("fluid.inlet={start_Pa=20.05e6, rate_Pa_s=1e5}", "numerics.far_cell_m=2", "stop.tip_y_m=36", "stop.lower_tip_y_m=4")
     assert run_in(tmp_path, GROWS, *settings).returncode == 0
     assert summary_of(tmp_path / "X")["reason"] == "lower tip reached y = 4 m"
+
+
+def test_a_run_tells_its_two_tips_apart(tmp_path: Path) -> None:
+    """Last lines and the reason name the tip; a level fracture has a left and a right one, whichever end of its path comes first. Mutation that fails:
+    the name left out, or taken from the other tip."""
+    (tmp_path / "scene.toml").write_text(GROWS, encoding="utf-8")
+    settings = [word for one in (*RISES, "stop.tip_y_m=36", "stop.lower_tip_y_m=9") for word in ("--set", one)]
+    done = strata(tmp_path, "run", "scene.toml", *settings, "--out", "X")
+    assert done.returncode == 0 and ": upper tip reached y = 36 m" in done.stderr and "growth: " in done.stderr
+    assert "upper tip start 20.1" in done.stderr and "MPa at y = 34.00 m" in done.stderr and "lower tip start 20.1" in done.stderr
+    assert "tips: " in done.stderr and "lower tip x = 24.00 m, y = " in done.stderr
+    level = ("in_situ.vertical_Pa=20e6", "stop.time_s=0", "fluid.inlet.rate_Pa_s=0")
+    for name, path in (("a", "[[14, 24], [34, 24]]"), ("b", "[[34, 24], [14, 24]]")):
+        (tmp_path / name).mkdir()
+        assert run_in(tmp_path / name, SCENE.read_text(encoding="utf-8"), WEIGHTLESS, *level, f"fracture.path_m={path}").returncode == 0
+        assert {(tip["tip"], round(tip["x_m"])) for tip in summary_of(tmp_path / name / "X")["tips"]} == {("left", 14), ("right", 34)}
