@@ -159,13 +159,18 @@ def unlike(content: dict[str, Any], cells_m: Sequence[float]) -> tuple[str, ...]
     )  # fmt: skip
 
 
+def marks_of(level: Level) -> list[str]:
+    """The monitors that mark the run of a size."""
+    return [mark.monitor for mark in level.run.suspect] if level.run else []
+
+
 def as_json(scene: Path, settings: Sequence[str], studies: Sequence[Study]) -> dict[str, Any]:
     """The whole as plain data: of each level how its run ended and what it cost."""
 
     def plain(level: Level) -> dict[str, Any]:
         found = {"cell_m": level.cell_m, "status": level.outcome.word, "reason": level.outcome.reason}
         cost = {name: getattr(level.run.summary, name) for name in ("particles", "steps", "wall_s")} if level.run else {}
-        return found | cost | ({"run": str(level.run.folder)} if level.run else {})
+        return found | cost | ({"suspect": marks_of(level), "run": str(level.run.folder)} if level.run else {})
 
     versions = sorted({level.run.summary.version for study in studies for level in study.levels if level.run})
     all_plain = [store.plain(replace(study, levels=())) | {"levels": [plain(level) for level in study.levels]} for study in studies]
@@ -190,6 +195,7 @@ def table(study: Study) -> str:
     """One study as a table in text."""
     lines = [f"\n{study.mechanics} {study.variant}, increment {study.increment_m:g} m"]
     lines += [f"  {level.cell_m:g} m {level.outcome.word}: {level.outcome.reason}" for level in study.levels if not level.outcome.ok]
+    lines += [f"  {level.cell_m:g} m is suspect: {', '.join(marks_of(level))}" for level in study.levels if marks_of(level)]
     lines.append(f"  {'':38}" + "".join(f"{f'{level.cell_m:g} m':>11}" for level in study.levels) + "   limit h -> 0, or why there is none")
     lines += [f"  {note}" for note in study.notes]
     for row in study.rows:

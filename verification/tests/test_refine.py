@@ -17,7 +17,7 @@ from verification.harness.quantities import Pause, Quantity, noise_of, pause_at,
 from verification.harness.refine import Level, job_of, main, row_of, study_of
 from verification.harness.run import Outcome
 from verification.harness.scenes import scene_of
-from verification.tests.fake_run import Step, climb, write_run
+from verification.tests.fake_run import Step, changed, climb, write_run
 
 EXP1 = EXPERIMENTS / "exp1_single_interface.toml"
 CONTENT: dict[str, Any] = {
@@ -158,6 +158,16 @@ def test_sizes_without_a_value_are_named_and_left_out_of_the_order(tmp_path: Pat
 def test_a_height_that_is_not_reached_is_a_bound_and_no_value(tmp_path: Path) -> None:
     row = row_of(quantity("pressure_at_40_Pa"), [level(2.0, held(tmp_path / "a")), level(1.0, made(tmp_path / "b", climb(to_m=30.0), 2.9e6))])
     assert row.values[1] is None and row.notes == ("1 m: does not reach 40 m, at least 2.9e+06 Pa",) and row.estimate.kind == "too few"
+
+
+def test_a_size_whose_run_is_marked_is_told(tmp_path: Path) -> None:
+    """In the table and in the file, by size and monitor; not those of sound runs."""
+    mark = {"monitor": "held_tip", "value": 2.0, "threshold": 1.1, "why": "held"}
+    runs = [held(tmp_path / "coarse"), held(tmp_path / "fine")]
+    levels = [level(1.0, load(changed(runs[0].folder, suspect=[mark]))), level(0.5, runs[1])]
+    study = study_of(EXP1, "quasistatic", "weak", levels)
+    assert [line for line in refine.table(study).splitlines() if "suspect" in line] == ["  1 m is suspect: held_tip"]
+    assert [one["suspect"] for one in refine.as_json(EXP1, (), [study])["studies"][0]["levels"]] == [["held_tip"], []]
 
 
 def test_arrests_that_no_size_has_are_left_out_and_some_are_told(tmp_path: Path) -> None:
