@@ -23,32 +23,23 @@ Gradients gradients_of_particle(const Scene& scene, const State& state, const Bi
   return gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
 }
 
-// Fields of the particles of some bins; gradients_of(bin, q): of the nodes' functions at each, in turn.
-template <class GradientsOf>
-void set_particles(const std::vector<std::size_t>& bins, GradientsOf gradients_of, const std::vector<Vec2>& u,
-                   State& state) {
+// Fields of the particles of some bins.
+void set_particles(const Scene& scene, const std::vector<std::size_t>& bins, const std::vector<Vec2>& u, State& state) {
   Particles& p = state.particles;
-  for (const std::size_t b : bins) {
-    const Bin& bin = state.bins[b];
-    std::array<Vec2, 9> u_i;
-    std::ranges::transform(bin.record, u_i.begin(), [&](int r) { return u[static_cast<std::size_t>(r)]; });
-    for (const std::size_t q : bin) {
-      const Gradients& g = gradients_of(bin, q);
-      Vec2 u_p = Vec2::Zero(), d_x = Vec2::Zero(), d_y = Vec2::Zero();
-      for (std::size_t n = 0; n < 9; ++n) u_p += g.N[n] * u_i[n], d_x += g.N_x[n] * u_i[n], d_y += g.N_y[n] * u_i[n];
-      p.u_x[q] = u_p.x(), p.u_y[q] = u_p.y();
-      p.g_xx[q] = d_x.x(), p.g_xy[q] = d_y.x(), p.g_yx[q] = d_x.y(), p.g_yy[q] = d_y.y();
+  with_shape(scene.numerics.shape, [&](auto shape) {  // asked for once
+    for (const std::size_t b : bins) {
+      const Bin& bin = state.bins[b];
+      std::array<Vec2, 9> u_i;
+      std::ranges::transform(bin.record, u_i.begin(), [&](int r) { return u[static_cast<std::size_t>(r)]; });
+      for (const std::size_t q : bin) {
+        const Gradients g = gradients_of<decltype(shape)>(state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
+        Vec2 u_p = Vec2::Zero(), d_x = Vec2::Zero(), d_y = Vec2::Zero();
+        for (std::size_t n = 0; n < 9; ++n) u_p += g.N[n] * u_i[n], d_x += g.N_x[n] * u_i[n], d_y += g.N_y[n] * u_i[n];
+        p.u_x[q] = u_p.x(), p.u_y[q] = u_p.y();
+        p.g_xx[q] = d_x.x(), p.g_xy[q] = d_y.x(), p.g_yx[q] = d_x.y(), p.g_yy[q] = d_y.y();
+      }
     }
-  }
-}
-
-std::vector<Gradients> gradients_in(const Scene& scene, const State& state, const std::vector<std::size_t>& bins) {
-  std::vector<Gradients> gradients;
-  for (const std::size_t b : bins) {
-    for (const std::size_t q : state.bins[b])
-      gradients.push_back(gradients_of_particle(scene, state, state.bins[b], q));
-  }
-  return gradients;
+  });
 }
 
 std::vector<std::size_t> all_bins(const State& state) {
@@ -192,7 +183,6 @@ void update_model(const Scene& scene, const Rocks& rocks, State& state, Quasista
   model.bonds = find_bonds(scene, state);
   model.watched = scene.body.acceleration_m_s2 ? all_bins(state) : watched_bins(scene, state, model.bonds);
   model.asked = ask_for(scene, state, *model.body, model.watched);
-  model.gradients = gradients_in(scene, state, model.watched);
   model.vertex_jumps = jumps_at_vertices(state, model.condensed);
 }
 
@@ -225,23 +215,15 @@ Equilibrium find_equilibrium(const Scene& scene, double time, State& state, Quas
 }
 
 void set_all_particles(const Scene& scene, State& state, const QuasistaticModel& model) {
-  const std::vector<Vec2> u =
-      displacements(scene, state, *model.body, model.condensed, model.shown, ask_for_all(state, *model.body));
-  const Particles& p = state.particles;
-  with_shape(scene.numerics.shape, [&](auto shape) {  // of all particles: the shape is asked for once
-    const auto gradients = [&](const Bin& bin, std::size_t q) {
-      return gradients_of<decltype(shape)>(state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
-    };
-    set_particles(all_bins(state), gradients, u, state);
-  });
+  const Asked all = ask_for_all(state, *model.body);
+  const std::vector<Vec2> u = displacements(scene, state, *model.body, model.condensed, model.shown, all);
+  set_particles(scene, all_bins(state), u, state);
 }
 
 void set_fields(const Scene& scene, State& state, QuasistaticModel& model, const Equilibrium& equilibrium) {
   model.shown = equilibrium.j;
-  auto g = model.gradients.begin();
-  set_particles(
-      model.watched, [&](const Bin&, std::size_t) -> const Gradients& { return *g++; },
-      displacements(scene, state, *model.body, model.condensed, model.shown, model.asked), state);
+  set_particles(scene, model.watched,
+                displacements(scene, state, *model.body, model.condensed, model.shown, model.asked), state);
   for (std::size_t k = 0; k < model.places.size(); ++k) {
     const ContactPlace& place = model.places[k];
     const LawAnswer& r = equilibrium.answers[k];

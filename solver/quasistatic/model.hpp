@@ -22,7 +22,6 @@ struct QuasistaticModel {
   std::vector<std::size_t> watched;  // bins whose fields decide what happens next: around tips and beside bonded
                                      // interfaces, all of them under a body force, whose work needs them
   Asked asked;                       // the records that these reach
-  std::vector<Gradients> gradients;  // of the nodes' functions at each of their particles
   Eigen::SparseMatrix<double, Eigen::RowMajor> vertex_jumps;  // jumps at all vertices (x and y) by the jump unknowns
   Eigen::VectorXd j;                                          // the last solution, as a first guess
   Eigen::VectorXd shown;                                      // the solution whose fields the state was given
