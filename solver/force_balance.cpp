@@ -1,6 +1,5 @@
 #include "force_balance.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "explicit/transfers.hpp"
@@ -8,7 +7,6 @@
 #include "state/round_off.hpp"
 
 namespace strata {
-
 namespace {
 
 // D^T r A of split places and of the springs of tips.

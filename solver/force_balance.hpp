@@ -1,8 +1,6 @@
 // An equilibrium held against the loops over particles of runs with inertia.
 #pragma once
 
-#include <vector>
-
 #include "state/elasticity.hpp"
 #include "state/state.hpp"
 

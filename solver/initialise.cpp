@@ -14,7 +14,6 @@
 #include "state/rebuild.hpp"
 
 namespace strata {
-
 namespace {
 
 Particles make_particles(const Scene& scene, const Rocks& rocks, const Grid& grid) {

@@ -31,7 +31,6 @@
 #include "scene/toml_reader.hpp"
 
 namespace strata {
-
 namespace {
 
 constexpr int done = 0, bad_input = 2, numerics_failed = 3, interrupted = 130;

@@ -8,7 +8,6 @@
 #include "flow/reynolds_flow.hpp"
 
 namespace strata {
-
 namespace {
 
 // The points to one side of the inlet, outwards.

@@ -6,7 +6,6 @@
 #include "scene/inlet.hpp"
 
 namespace strata {
-
 namespace {
 
 void require_stable(const Channel& channel, double mobility, double dt) {

@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <unsupported/Eigen/AutoDiff>
 
 namespace strata {
-
 namespace {
 
 using Eigen::Index;

@@ -7,7 +7,6 @@
 #include "state/rebuild.hpp"
 
 namespace strata {
-
 namespace {
 
 constexpr double slope_cells = 3.0;        // from here on K is right to 0.3 %, at 2 cells to 3 % between unlike rocks

@@ -7,13 +7,11 @@
 #include <span>
 
 #include "fracture/criterion.hpp"
-#include "fracture/j_integral.hpp"
 #include "fracture/tip_rings.hpp"
 #include "scene/derived.hpp"
 #include "state/rebuild.hpp"
 
 namespace strata {
-
 namespace {
 
 constexpr double edge_cells = 3.0;      // a tip nearer than this to an edge has no ring left to measure J in

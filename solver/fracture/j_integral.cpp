@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "state/shape_functions.hpp"
 
 namespace strata {
-
 namespace {
 
 constexpr auto rings = ring_fractions.size();

@@ -11,7 +11,6 @@
 #include "state/shape_functions.hpp"
 
 namespace strata {
-
 namespace {
 
 constexpr double pi = std::numbers::pi;

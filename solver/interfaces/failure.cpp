@@ -12,10 +12,8 @@
 
 #include "state/rebuild.hpp"
 #include "state/shape_functions.hpp"
-#include "state/stiffness.hpp"
 
 namespace strata {
-
 namespace {
 
 // --- columns of nodes across an interface

@@ -3,7 +3,6 @@
 
 #include <set>
 #include <utility>
-#include <vector>
 
 #include "state/elasticity.hpp"
 #include "state/state.hpp"

@@ -8,7 +8,6 @@
 #include "interfaces/surface_law.hpp"
 
 namespace strata {
-
 namespace {
 
 void watch_energies(State& state) {

@@ -7,7 +7,6 @@
 #include "scene/graded_cells.hpp"
 
 namespace strata {
-
 namespace {
 
 // What parts from one end of a stretch of bonded places (back: from its last one); of no length where nothing ends

@@ -4,7 +4,6 @@
 #include <cmath>
 
 namespace strata {
-
 namespace {
 
 using Piece = LawAnswer::Piece;

@@ -3,7 +3,6 @@
 #include "state/shape_functions.hpp"
 
 namespace strata {
-
 namespace {
 
 // A copy that no particle's shape function reaches has no motion of its own: there the node does not tell the sides

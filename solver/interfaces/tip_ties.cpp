@@ -7,7 +7,6 @@
 #include "state/rebuild.hpp"
 
 namespace strata {
-
 namespace {
 
 // Measured: with c = 0.11 the K_I of the pressurised crack in a 40 m block (tip at 8, 8.25, 8.5, 8.75, 9 m, 1 m cells)

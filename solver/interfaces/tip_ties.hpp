@@ -3,8 +3,6 @@
 // row in instead, and K no longer depends on where in a cell the tip lies.
 #pragma once
 
-#include <vector>
-
 #include "state/elasticity.hpp"
 #include "state/state.hpp"
 

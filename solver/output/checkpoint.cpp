@@ -16,7 +16,6 @@
 #include "scene/toml_reader.hpp"
 
 namespace strata {
-
 namespace {
 
 // A file is this line, with a number to be raised with every change of what is saved, the checksum of what follows,

@@ -13,7 +13,6 @@
 #include "output/summary.hpp"
 
 namespace strata {
-
 namespace {
 
 // Where a kind of fields is: "/particles/00000".

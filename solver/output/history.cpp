@@ -10,7 +10,6 @@
 #include <numeric>
 
 namespace strata {
-
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();

@@ -12,7 +12,6 @@
 #include "scene/messages.hpp"
 
 namespace strata {
-
 namespace {
 
 using FilePath = std::filesystem::path;

@@ -1,6 +1,5 @@
 #include "output/summary.hpp"
 
-#include <cmath>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -9,7 +8,6 @@
 #include "output/suspect.hpp"
 
 namespace strata {
-
 namespace {
 
 using Json = nlohmann::ordered_json;

@@ -15,7 +15,6 @@
 #include "state/round_off.hpp"
 
 namespace strata {
-
 namespace {
 
 using Limit = std::optional<double>;

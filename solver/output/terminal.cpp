@@ -16,7 +16,6 @@
 #include "scene/messages.hpp"
 
 namespace strata {
-
 namespace {
 
 // What an event or a tip of two is told apart by: "upper tip ", or nothing of a single one.

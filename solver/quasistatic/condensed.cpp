@@ -10,7 +10,6 @@
 #include "state/stiffness.hpp"
 
 namespace strata {
-
 namespace {
 
 // Mixes the bits of a particle's id and area (splitmix64), so that a sum over a set tells sets apart.

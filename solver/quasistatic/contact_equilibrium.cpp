@@ -7,7 +7,6 @@
 #include <utility>
 
 namespace strata {
-
 namespace {
 
 using Shear = LawAnswer::Shear;

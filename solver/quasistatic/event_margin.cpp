@@ -10,7 +10,6 @@
 #include "quasistatic/fluid_step.hpp"
 
 namespace strata {
-
 namespace {
 
 // How near interfaces are to parting by energy: sqrt(G/J_c) of the trial that is nearest, whose G each tip notes.

@@ -12,7 +12,6 @@
 #include "state/elasticity.hpp"
 
 namespace strata {
-
 namespace {
 
 void set_point_pressures(const Eigen::VectorXd& P, State& state) {

@@ -8,7 +8,6 @@
 #include "state/rebuild.hpp"
 
 namespace strata {
-
 namespace {
 
 // How many points the trial's fracture has before those of the state's own.

@@ -7,7 +7,6 @@
 #include "state/stiffness.hpp"
 
 namespace strata {
-
 namespace {
 
 // The node across the mirror line x = width/2.

@@ -16,7 +16,6 @@
 #include "scene/inlet.hpp"
 
 namespace strata {
-
 namespace {
 
 constexpr double event_tolerance = 1e-4;  // of an event's margin: 0.01 % in K

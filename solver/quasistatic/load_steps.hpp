@@ -1,8 +1,6 @@
 // Steps of a run without inertia: from event to event.
 #pragma once
 
-#include <optional>
-
 #include "fracture/j_integral.hpp"
 #include "quasistatic/growth_trials.hpp"
 #include "quasistatic/model.hpp"

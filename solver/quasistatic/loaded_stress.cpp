@@ -5,7 +5,6 @@
 #include "state/stiffness.hpp"
 
 namespace strata {
-
 namespace {
 
 // Adds the force of a uniform traction t (Pa) on 1/parts of an edge of `length` m to f, applied at x.

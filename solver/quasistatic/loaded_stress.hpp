@@ -1,8 +1,6 @@
 // Static equilibrium of the intact block on the same particles, shapes and grid.
 #pragma once
 
-#include <vector>
-
 #include "state/elasticity.hpp"
 #include "state/state.hpp"
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
-#include <utility>
 
 #include "interfaces/surface_tractions.hpp"
 #include "interfaces/tip_ties.hpp"
@@ -15,7 +14,6 @@
 #include "state/stiffness.hpp"
 
 namespace strata {
-
 namespace {
 
 Gradients gradients_of_particle(const Scene& scene, const State& state, const Bin& bin, std::size_t q) {

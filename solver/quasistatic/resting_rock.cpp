@@ -9,7 +9,6 @@
 #include "quasistatic/growth_trials.hpp"
 
 namespace strata {
-
 namespace {
 
 // The rock of a run with inertia as it would be at rest. All of it follows from the state.

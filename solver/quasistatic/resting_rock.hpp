@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <vector>
 
 #include "state/elasticity.hpp"
 #include "state/state.hpp"

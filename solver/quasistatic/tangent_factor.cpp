@@ -4,7 +4,6 @@
 #include <cmath>
 
 namespace strata {
-
 namespace {
 
 // What stands still: the tangent scaled to a unit diagonal has no eigenvalue below this where nothing moves freely.

@@ -12,7 +12,6 @@
 #include "state/types.hpp"
 
 namespace strata {
-
 namespace {
 
 // CHOLMOD brings threads of its own, which wait for each other at every supernode however many the run was given.

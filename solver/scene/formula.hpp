@@ -1,7 +1,6 @@
 // Formulas in a scene: text that is a number for each value of its variables, read and evaluated by muParser.
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>

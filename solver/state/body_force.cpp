@@ -2,13 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "scene/formula.hpp"
 
 namespace strata {
-
 namespace {
 
 // Formulas of the places where particles start, from which what has moved since is their displacement.

@@ -3,7 +3,6 @@
 #include "scene/in_situ.hpp"
 
 namespace strata {
-
 namespace {
 
 double rayleigh_speed(double c_P, double c_S) {

@@ -5,7 +5,6 @@
 #include "scene/graded_cells.hpp"
 
 namespace strata {
-
 namespace {
 
 std::vector<GridPoint> points_along(const std::vector<double>& t, int n, double h, int across) {

@@ -8,7 +8,6 @@
 #include "state/shape_functions.hpp"
 
 namespace strata {
-
 namespace {
 
 std::size_t master_of(const State& state, int record) {

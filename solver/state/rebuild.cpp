@@ -10,11 +10,9 @@
 #include <utility>
 
 #include "state/blocks.hpp"
-#include "state/elasticity.hpp"
 #include "state/light_copies.hpp"
 
 namespace strata {
-
 namespace {
 
 // Surfaces follow the rock by fractions of a millimetre; places nearer than this to a threshold stand on it.

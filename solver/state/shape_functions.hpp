@@ -6,7 +6,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 
 #include "scene/scene.hpp"
 #include "state/grid.hpp"

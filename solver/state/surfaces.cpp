@@ -5,7 +5,6 @@
 #include <limits>
 
 namespace strata {
-
 namespace {
 
 constexpr double on_it = 1e-9;  // of a segment's length: nearer than this a place is on the surface, and on its + side
