@@ -8,7 +8,7 @@
 #include "fracture/growth.hpp"
 #include "interfaces/failure.hpp"
 #include "interfaces/tip_ties.hpp"
-#include "quasistatic/loaded_stress.hpp"
+#include "quasistatic/intact_body.hpp"
 #include "scene/derived.hpp"
 #include "state/body_force.hpp"
 #include "state/rebuild.hpp"
@@ -17,10 +17,10 @@ namespace strata {
 namespace {
 
 Particles make_particles(const Scene& scene, const Rocks& rocks, const Grid& grid) {
-  const std::vector<GridPoint> columns = points_along_x(grid, points_across(scene));
+  const std::vector<GridPoint> columns = points_along(grid, Axis::x, points_across(scene));
   Particles p;
   std::vector<Vec2> places;
-  for (const GridPoint& y : points_along_y(grid, points_across(scene))) {
+  for (const GridPoint& y : points_along(grid, Axis::y, points_across(scene))) {
     for (const GridPoint& x : columns) {
       const std::size_t rock = rock_at(scene, {x.at, y.at});
       for (auto* zero : {&p.u_x, &p.u_y, &p.v_x, &p.v_y, &p.g_xx, &p.g_xy, &p.g_yx, &p.g_yy}) zero->push_back(0.0);

@@ -25,7 +25,6 @@
 #include "quasistatic/load_steps.hpp"
 #include "quasistatic/resting_rock.hpp"
 #include "scene/derived.hpp"
-#include "scene/inlet.hpp"
 #include "scene/keys.hpp"
 #include "scene/messages.hpp"
 #include "scene/toml_reader.hpp"
@@ -163,7 +162,7 @@ bool row_follows(const Run& run) {
   const double end = state.time + state.dt, slack = 0.5 * state.dt;
   if (end >= run.next_output() - slack) return true;
   if (stop.time_s && end >= *stop.time_s - slack) return true;
-  return stop.inlet_Pa && inlet_pressure(run.scene.fluid, end) >= *stop.inlet_Pa * (1.0 - 1e-9);
+  return stop.inlet_Pa && run.scene.fluid.inlet_pressure(end) >= *stop.inlet_Pa * (1.0 - 1e-9);
 }
 
 // Whether all interfaces carry what they can: until then a state is neither written nor the last.

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <string>
 
-#include "scene/inlet.hpp"
-
 namespace strata {
 namespace {
 
@@ -94,7 +92,7 @@ void advance_pressure(const Scene& scene, State& state) {
   if (!state.has_fracture) return;
   const Fluid& fluid = scene.fluid;
   FluidLine& line = state.fluid;
-  line.inlet_Pa = inlet_pressure(fluid, state.time + state.dt);
+  line.inlet_Pa = fluid.inlet_pressure(state.time + state.dt);
   if (fluid.law == Fluid::Law::uniform) {
     rest_fluid(fluid, state);
   } else {

@@ -21,13 +21,13 @@ bool apart_at(const Surface& surface, const Vec2& x, double h) {
 // Distance (m) from a tip to the nearest real interface ahead of it (sign 1) or behind (-1); one it stands on is both.
 double to_interface(const Scene& scene, const State& state, const Tip& tip, double sign) {
   const Vec2 x = tip_position(state, tip);
-  const double at = stacking(scene, x);
-  const double way = stacking(scene, tip_direction(state.fracture(), tip.at_back));
+  const double at = scene.stacking(x);
+  const double way = scene.stacking(tip_direction(state.fracture(), tip.at_back));
   double nearest = HUGE_VAL;
   for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
     const double off = scene.strata.interfaces[k].at_m - at;
     const bool level = std::abs(way) < 1e-6, on = std::abs(off) < ahead_cells * state.grid.h;
-    if (scene.changes_at(k, beside(scene, x)) && (level || on || sign * off * way > 0.0))
+    if (scene.changes_at(k, scene.beside(x)) && (level || on || sign * off * way > 0.0))
       nearest = std::min(nearest, std::abs(off));
   }
   return nearest;
@@ -37,7 +37,7 @@ double to_interface(const Scene& scene, const State& state, const Tip& tip, doub
 // cent off next to a tip: 5 to 11 % of J one or two cells past a border where K is 0.2 % off.
 bool stress_jumps_near(const Scene& scene, const State& state, const Tip& tip) {
   const auto& layers = scene.strata.layers;
-  const double at = stacking(scene, tip_position(state, tip)), reach = (scene.numerics.ring_cells + 2.0) * state.grid.h;
+  const double at = scene.stacking(tip_position(state, tip)), reach = (scene.numerics.ring_cells + 2.0) * state.grid.h;
   for (std::size_t k = 0; k + 1 < layers.size(); ++k) {
     if (!layers[k].has_stress_of(layers[k + 1]) && std::abs(layers[k].to_m - at) < reach) return true;
   }
@@ -51,7 +51,7 @@ bool apart_at(const Scene& scene, const State& state, std::size_t interface, con
   const double at = scene.strata.interfaces[interface].at_m, h = state.grid.h;
   return std::ranges::any_of(state.surfaces, [&](const Surface& surface) {
     return surface.kind == Surface::Kind::interface &&
-           std::abs(stacking(scene, surface.vertices.front().x) - at) < told_apart_cells * h && apart_at(surface, x, h);
+           std::abs(scene.stacking(surface.vertices.front().x) - at) < told_apart_cells * h && apart_at(surface, x, h);
   });
 }
 
@@ -65,7 +65,7 @@ double past_open_interface(const Scene& scene, const State& state, const Tip& ti
     if (surface.kind != Surface::Kind::interface) continue;
     const bool behind = std::ranges::any_of(
         fracture.points, [&](const SurfacePoint& s) { return ((s.sides ^ ahead) & surface.mask()) != 0; });
-    const double off = stacking(scene, at - surface.vertices.front().x), rate = stacking(scene, way);
+    const double off = scene.stacking(at - surface.vertices.front().x), rate = scene.stacking(way);
     const double along = std::abs(off / rate);
     if (!behind || !(along < looked_back_cells * h) || !apart_at(surface, at - off / rate * way, h)) continue;
     nearest = std::min(nearest, std::abs(off) < ahead_cells * h ? 0.0 : along);

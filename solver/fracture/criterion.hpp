@@ -16,14 +16,6 @@ namespace strata {
 /// In place of J, K where the in-situ stress jumps within the tip's rings. Throws nothing.
 Criterion criterion_of(const Scene& scene, const State& state, const Tip& tip);
 
-/// Coordinate of a place (m) along which layers are stacked, and that along interfaces. Throws nothing.
-inline double stacking(const Scene& scene, const Vec2& x) {
-  return scene.stacking(x.x(), x.y());
-}
-inline double beside(const Scene& scene, const Vec2& x) {
-  return scene.beside(x.x(), x.y());
-}
-
 /// How far a tip grows at once (m): by what decides about it. Throws nothing.
 inline double increment_of(const Scene& scene, const Tip& tip) {
   return tip.criterion == Criterion::energy ? scene.fracture->crossing_increment() : scene.fracture->increment_m;

@@ -28,12 +28,12 @@ double increment_to_interface(const Scene& scene, const State& state, const Vec2
   bool meets = false;
   for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
     const Layer &before = scene.strata.layers[k], &beyond = scene.strata.layers[k + 1];
-    const double rate = stacking(scene, direction);
-    const double distance = scene.strata.interfaces[k].at_m - stacking(scene, tip);
+    const double rate = scene.stacking(direction);
+    const double distance = scene.strata.interfaces[k].at_m - scene.stacking(tip);
     if (std::abs(rate) < 1e-6) continue;
     const double to_it = distance / rate;
     const Vec2 met = tip + to_it * direction;
-    const bool changes = scene.changes_at(k, beside(scene, met));
+    const bool changes = scene.changes_at(k, scene.beside(met));
     if (!changes && before.rock == beyond.rock && before.has_stress_of(beyond)) continue;
     if (to_it <= 0.0 || to_it >= length) continue;
     const bool apart = apart_at(scene, state, k, met);
@@ -379,7 +379,7 @@ bool grow(const Scene& scene, const Rocks& rocks, State& state) {
 void watch_tips(const Scene& scene, State& state) {
   for (Tip& tip : state.tips) {
     for (int k = 0; const InterfacePlace& interface : scene.strata.interfaces) {
-      const double distance = std::abs(stacking(scene, tip_position(state, tip)) - interface.at_m);
+      const double distance = std::abs(scene.stacking(tip_position(state, tip)) - interface.at_m);
       const int id = k++;
       if (distance > 0.5 * state.grid.h || std::ranges::count(tip.reached, id) > 0) continue;
       tip.reached.push_back(id);

@@ -63,7 +63,7 @@ void keep_off_fracture(const State& state, const Tip& tip, const Vec2& at, Room&
 // may fail at any time. One whose faces are apart is met where they are.
 void keep_off_interfaces(const Scene& scene, const State& state, const Vec2& at, Room& room) {
   for (const Surface& surface : state.surfaces) {
-    const double distance = std::abs(stacking(scene, at - surface.vertices.front().x));
+    const double distance = std::abs(scene.stacking(at - surface.vertices.front().x));
     if (surface.kind != Surface::Kind::interface || distance > trusted_cells_at_interface * room.h) continue;
     for (const SurfacePoint& s : surface.points) {
       const double off = (s.x - at).norm() - 0.5 * s.A;
@@ -72,8 +72,8 @@ void keep_off_interfaces(const Scene& scene, const State& state, const Vec2& at,
   }
   for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
     const InterfacePlace& place = scene.strata.interfaces[k];
-    if (!scene.changes_at(k, beside(scene, at))) continue;
-    const double distance = std::abs(stacking(scene, at) - place.at_m);
+    if (!scene.changes_at(k, scene.beside(at))) continue;
+    const double distance = std::abs(scene.stacking(at) - place.at_m);
     room.keep_off(distance);
     if (scene.stiffness_changes_at(k)) room.note(distance, Obstacle::rock_border, trusted_cells_at_interface);
   }

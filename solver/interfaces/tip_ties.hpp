@@ -16,8 +16,7 @@ namespace strata {
 void update_tip_ties(const Scene& scene, const Rocks& rocks, State& state);
 
 /// All that follows from particles and surfaces: rebuild_copies(), then the springs of the present tips and, of runs
-/// with inertia, the bonded places of interfaces. Throws
-/// NumericalFailure as rebuild_copies() does.
+/// with inertia, the bonded places of interfaces. Throws NumericalFailure as rebuild_copies() does.
 void rebuild(const Scene& scene, const Rocks& rocks, State& state);
 
 }  // namespace strata

@@ -20,11 +20,6 @@ std::string group_of(const char* kind, std::size_t k) {
   return fmt::format("/{}/{:05}", kind, k);
 }
 
-// Unit vector along the path: the normal is on its left.
-Vec2 tangent(const SurfacePoint& s) {
-  return {s.n.y(), -s.n.x()};
-}
-
 enum class Pack { no, one_value, yes };  // one_value: where all values are equal
 
 // Writes a field of points or particles: value_of(each). Deflate shortens places, areas, labels and fields of one value
@@ -54,7 +49,7 @@ void write_places(const H5::Group& group, const std::vector<SurfacePoint>& point
   put(group, "opening_m", "m", "opening face to face, negative where faces overlap", points,
       [](auto& s) { return s.opening(); });
   put(group, "slip_m", "m", "slip: motion of the + side (on the left of the path) along the path", points,
-      [](auto& s) { return s.w.dot(tangent(s)); });
+      [](auto& s) { return s.w.dot(tangent_of(s.n)); });
   put_positions(group, points.size());
 }
 
@@ -82,7 +77,7 @@ void write_interface(const H5::Group& file, const std::string& interfaces, const
   put(group, "reaction_n_Pa", "Pa", "traction on the + face normal to the interface, positive in compression", points,
       [](auto& s) { return s.reaction.dot(s.n); });
   put(group, "reaction_t_Pa", "Pa", "traction on the + face along the interface", points,
-      [](auto& s) { return s.reaction.dot(tangent(s)); });
+      [](auto& s) { return s.reaction.dot(tangent_of(s.n)); });
   put(group, "failed_s", "s", "time at which the place let go, -1 where it holds or nothing ever bonded it", points,
       [](auto& s) { return s.failed_s; });
   put<std::int32_t>(group, "split", "1", "1 where the law acts between two sides, 0 where the rock is whole", points,

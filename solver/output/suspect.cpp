@@ -10,7 +10,6 @@
 
 #include "output/history.hpp"
 #include "scene/derived.hpp"
-#include "scene/inlet.hpp"
 #include "state/elasticity.hpp"
 #include "state/round_off.hpp"
 
@@ -220,7 +219,7 @@ void Watch::loading() {
   const double slowest = std::ranges::min(make_elasticities(scene), {}, &Elasticity::c_S).c_S;
   const double crossing = std::max(scene.domain.width_m, scene.domain.height_m) / slowest;
   const double d = scene.numerics.damping_1_s, answer = crossing * (1.0 + d * crossing / (pi * pi));
-  note("loading_share", fastest_change(scene.fluid) * answer / m.largest_net_Pa, threshold,
+  note("loading_share", scene.fluid.fastest_change() * answer / m.largest_net_Pa, threshold,
        "the load is not slow: the pressure rises by more than a tenth of the largest net pressure while the block "
        "answers; lower fluid.inlet.rate_Pa_s, or check density_kg_m3 and damping_1_s");
   // A pressure above the closing stress at time 0 acts with up to twice its size. What counts is what damping has left

@@ -41,14 +41,13 @@ void number_jumps(const State& state, const IntactBody& body, Condensed& out) {
   for (const CutNode& cut : state.copies.cut) {
     if (cut.records.size() < 2) continue;
     const int node = state.copies.node_of_record[static_cast<std::size_t>(cut.records.front())];
-    const Master& intact = body.masters()[static_cast<std::size_t>(node)];
+    const Master& intact = body.masters[static_cast<std::size_t>(node)];
     for (int component = 0; component < 2; ++component) {
-      bool carries_u = intact.record == node && (component == 0 ? intact.x : intact.y) != 0.0;
+      bool carries_u = intact.record == node && intact.of(component) != 0.0;
       for (const int record : cut.records) {
         const auto r = static_cast<std::size_t>(record);
         const Master& master = out.masters[r];
-        if (master.record != record || (component == 0 ? master.x : master.y) == 0.0) continue;
-        if (state.sums[r].m == 0.0) continue;
+        if (master.record != record || master.of(component) == 0.0 || state.sums[r].m == 0.0) continue;
         if (carries_u) {
           carries_u = false;
           continue;
@@ -93,7 +92,7 @@ void add_particle(const LocalStiffness& K, const Bin& bin, const IntactBody& bod
   for (int k = 0; k < 18; ++k) {
     const auto at = static_cast<std::size_t>(k);
     const int record = bin.record[at / 2];
-    base[at] = unknown_of(body.masters(), state.copies.node_of_record[static_cast<std::size_t>(record)], k % 2);
+    base[at] = unknown_of(body.masters, state.copies.node_of_record[static_cast<std::size_t>(record)], k % 2);
     jump[at] = jump_unknown(out, record, k % 2);
   }
   for (int b = 0; b < 18; ++b) {
@@ -144,10 +143,10 @@ std::vector<Entries> assemble_jumps(const Scene& scene, const Rocks& rocks, cons
     if (!any) continue;
     std::sort(members.begin(), members.end(), [](const Member& a, const Member& c) { return a.id < c.id; });
     for (const Member& m : members) {
-      if (body.halved() && p.x[m.q] > 0.5 * scene.domain.width_m) continue;
+      if (body.halved && p.x[m.q] > 0.5 * scene.domain.width_m) continue;
       LocalStiffness K = LocalStiffness::Zero();
       const Gradients g = gradients_at(scene, state.grid, m.bin->i, m.bin->j, {p.x[m.q], p.y[m.q]}, p.half(m.q));
-      add_stiffness(rocks[p.rock[m.q]], g, body.halved() ? 2.0 * p.V[m.q] : p.V[m.q], K);
+      add_stiffness(rocks[p.rock[m.q]], g, body.halved ? 2.0 * p.V[m.q] : p.V[m.q], K);
       add_particle(K, *m.bin, body, state, fresh, out, G);
     }
   }
@@ -170,7 +169,7 @@ SparseVector summed(Entries entries) {
 // G and Y of new unknowns, so many side by side, and their S = K_jj - Y^T Y against all whose Y is known.
 void condense_some(const IntactBody& body, std::span<const std::size_t> some, const std::vector<char>& fresh,
                    std::vector<Entries>& entries, Condensed& out) {
-  const TreeFactor& factor = body.factor();
+  const TreeFactor& factor = body.factor;
   std::vector<SparseVector> G;
   std::vector<int> loaded;
   for (const std::size_t k : some) {
@@ -243,7 +242,7 @@ void remove_rigid_motion(const Scene& scene, const State& state, bool halved, st
 
 Unknown jump_unknown(const Condensed& condensed, int record, int component) {
   const Master& master = condensed.masters[static_cast<std::size_t>(record)];
-  const double factor = component == 0 ? master.x : master.y;
+  const double factor = master.of(component);
   const int index =
       condensed.jump_of_record[static_cast<std::size_t>(master.record)][static_cast<std::size_t>(component)];
   return factor == 0.0 ? Unknown{} : Unknown{index, factor};
@@ -252,7 +251,7 @@ Unknown jump_unknown(const Condensed& condensed, int record, int component) {
 Condensed condense(const Scene& scene, const Rocks& rocks, const State& state, const IntactBody& body,
                    const Condensed* before) {
   Condensed out;
-  out.masters = body.halved() ? mirrored(state, state.masters) : state.masters;
+  out.masters = body.halved ? mirrored(state, state.masters) : state.masters;
   number_jumps(state, body, out);
   const std::vector<char> fresh = reuse_columns(before, out);
   std::vector<std::size_t> made;  // the new unknowns
@@ -267,12 +266,12 @@ Condensed condense(const Scene& scene, const Rocks& rocks, const State& state, c
   }
   std::vector<int> loaded;
   for (const auto& column : out.columns) loaded.insert(loaded.end(), column->G.index.begin(), column->G.index.end());
-  out.loaded = body.factor().branches(loaded);
+  out.loaded = body.factor.branches(loaded);
   return out;
 }
 
 Asked ask_for(const Scene& scene, const State& state, const IntactBody& body, const std::vector<std::size_t>& bins) {
-  if (!holds_rigid_motion(scene, body.halved())) return ask_for_all(state, body);
+  if (!holds_rigid_motion(scene, body.halved)) return ask_for_all(state, body);
   std::vector<int> records;
   for (const std::size_t b : bins)
     records.insert(records.end(), state.bins[b].record.begin(), state.bins[b].record.end());
@@ -282,24 +281,24 @@ Asked ask_for(const Scene& scene, const State& state, const IntactBody& body, co
   for (const int record : records) {
     const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
     for (int component = 0; component < 2; ++component) {
-      const Unknown from = unknown_of(body.masters(), node, component);
+      const Unknown from = unknown_of(body.masters, node, component);
       if (from.index >= 0) unknowns.push_back(from.index);
     }
   }
-  return {std::move(records), body.factor().branches(unknowns)};
+  return {std::move(records), body.factor.branches(unknowns)};
 }
 
 Asked ask_for_all(const State& state, const IntactBody& body) {
   Asked all;
   all.records.resize(static_cast<std::size_t>(state.copies.records()));
-  all.blocks = body.factor().all();
+  all.blocks = body.factor.all();
   std::iota(all.records.begin(), all.records.end(), 0);
   return all;
 }
 
 std::vector<Vec2> displacements(const Scene& scene, const State& state, const IntactBody& body,
                                 const Condensed& condensed, const Eigen::VectorXd& j, const Asked& asked) {
-  const TreeFactor& factor = body.factor();
+  const TreeFactor& factor = body.factor;
   const auto& loaded = condensed.load.empty() ? condensed.loaded : factor.all();  // a body force loads them all
   Eigen::VectorXd base = Eigen::VectorXd::Zero(factor.size());
   for (int k = 0; k < condensed.load.intact.size(); ++k) base[factor.row(k)] = condensed.load.intact[k];
@@ -314,13 +313,12 @@ std::vector<Vec2> displacements(const Scene& scene, const State& state, const In
     const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
     Vec2& u_r = u[static_cast<std::size_t>(record)];
     for (int component = 0; component < 2; ++component) {
-      const Unknown from = unknown_of(body.masters(), node, component),
-                    jump = jump_unknown(condensed, record, component);
+      const Unknown from = unknown_of(body.masters, node, component), jump = jump_unknown(condensed, record, component);
       if (from.index >= 0) u_r[component] += from.factor * base[factor.row(from.index)];
       if (jump.index >= 0) u_r[component] += jump.factor * j[jump.index];
     }
   }
-  remove_rigid_motion(scene, state, body.halved(), u);
+  remove_rigid_motion(scene, state, body.halved, u);
   return u;
 }
 

@@ -66,7 +66,7 @@ Eigen::VectorXd body_load(const Condensed& condensed) {
 }
 
 // Jumps and what the laws answer to them; returns their share of the energy less the work of the loads (J/m).
-double answer(const State& state, const std::vector<ContactPlace>& places, Equilibrium& at) {
+double answer(const State& state, const Places& places, Equilibrium& at) {
   at.answers.resize(places.size());
   at.w.resize(places.size());
   at.pieces.resize(places.size());
@@ -81,8 +81,7 @@ double answer(const State& state, const std::vector<ContactPlace>& places, Equil
   return energy;
 }
 
-void evaluate(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
-              Equilibrium& at) {
+void evaluate(const State& state, const Condensed& condensed, const Places& places, Equilibrium& at) {
   const double of_laws = answer(state, places, at);
   Eigen::VectorXd load = body_load(condensed), reaction = Eigen::VectorXd::Zero(condensed.size());
   at.energy =
@@ -112,8 +111,8 @@ bool in_balance(const Condensed& condensed, const Equilibrium& at) {
 }
 
 // The solution as if all places stayed on the pieces that `answers` describe.
-Eigen::VectorXd solve_on_pieces(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
-                                const std::vector<LawAnswer>& answers, const TangentFactor& factor) {
+Eigen::VectorXd solve_on_pieces(const State& state, const Condensed& condensed, const Places& places,
+                                const Answers& answers, const TangentFactor& factor) {
   Eigen::VectorXd f = body_load(condensed);
   for (std::size_t k = 0; k < places.size(); ++k) {
     const ContactPlace& place = places[k];
@@ -125,11 +124,11 @@ Eigen::VectorXd solve_on_pieces(const State& state, const Condensed& condensed, 
   return factor.solve(f);
 }
 
-bool slips(const std::vector<LawAnswer>& answers) {
+bool slips(const Answers& answers) {
   return std::any_of(answers.begin(), answers.end(), [](const LawAnswer& r) { return r.dt_dn != 0.0; });
 }
 
-[[noreturn]] void report_mechanism(const State& state, const std::vector<ContactPlace>& places) {
+[[noreturn]] void report_mechanism(const State& state, const Places& places) {
   int interfaces = 0;
   for (const Surface& surface : state.surfaces) interfaces += surface.kind == Surface::Kind::interface ? 1 : 0;
   throw NumericalFailure(
@@ -155,8 +154,8 @@ int unknowns_that_move(const TangentFactor& factor, Eigen::Index n) {
 // a solution they may for a while, so the factor is then that of a tangent slightly stiffer. A sliver of rock with
 // fewer particles than its copies of nodes have unknowns (between a fracture and an interface that it meets, or in a
 // sharp turn) has motions without strain, too; no load drives them, and the same stiffening holds them.
-bool factor_tangent(const Condensed& condensed, const std::vector<ContactPlace>& places,
-                    const std::vector<LawAnswer>& answers, const State& state, TangentFactor& factor) {
+bool factor_tangent(const Condensed& condensed, const Places& places, const Answers& answers, const State& state,
+                    TangentFactor& factor) {
   constexpr double stiffening = 1e-9;
   constexpr double on_the_way = 1e-6;  // parts that come to rest later: a step that does not leave all sight of it
   constexpr int sliver =
@@ -169,7 +168,7 @@ bool factor_tangent(const Condensed& condensed, const std::vector<ContactPlace>&
   // The coupling of tangential and normal reactions of few sliding places costs less as a change of a symmetric tangent
   // than in a factorisation that is not symmetric: that takes n^3/3 more, a change 2 n^2, which is n/6 of them; an
   // eighth leaves some for what changes later.
-  std::vector<LawAnswer> first = answers;
+  Answers first = answers;
   Eigen::Index sliding = 0;
   for (LawAnswer& r : first) sliding += std::exchange(r.dt_dn, 0.0) != 0.0 ? 1 : 0;
   if (sliding > 0 && 8 * sliding < condensed.size()) {
@@ -193,8 +192,8 @@ constexpr double least_unbalanced = 1e-9;
 
 // Slope (J/m) along a step of what the laws hold less the work of the loads on surfaces: at the jumps w (m) of places,
 // which change by dw (m) along it.
-double slope(const State& state, const std::vector<ContactPlace>& places, const std::vector<Vec2>& w,
-             const std::vector<Vec2>& dw, double length) {
+double slope(const State& state, const Places& places, const std::vector<Vec2>& w, const std::vector<Vec2>& dw,
+             double length) {
   double sum = 0.0;
   for (std::size_t k = 0; k < places.size(); ++k) {
     const ContactPlace& place = places[k];
@@ -207,8 +206,8 @@ double slope(const State& state, const std::vector<ContactPlace>& places, const 
 
 // Newton's step shortened to the minimum of the energy along it, where its slope, which only rises, is 0. The whole
 // step where the slope there is still down, or next to nothing.
-double step_length(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
-                   const Equilibrium& from, const Eigen::VectorXd& to) {
+double step_length(const State& state, const Condensed& condensed, const Places& places, const Equilibrium& from,
+                   const Eigen::VectorXd& to) {
   constexpr double flat = 1e-3;  // of the slope at the start
   const Eigen::VectorXd d = to - from.j, S_d = condensed.S.selfadjointView<Eigen::Lower>() * d;
   const double at_start = from.j.dot(S_d) - body_load(condensed).dot(d), rise = d.dot(S_d);
@@ -229,8 +228,8 @@ double step_length(const State& state, const Condensed& condensed, const std::ve
 
 // Whether what is out of balance of the solution on `pieces` is what a factor that followed changes lost of the digits:
 // corrections by it then bring them back. Leaves `at` as it was where they do not.
-bool refine(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
-            const TangentFactor& factor, const Pieces& pieces, Equilibrium& at) {
+bool refine(const State& state, const Condensed& condensed, const Places& places, const TangentFactor& factor,
+            const Pieces& pieces, Equilibrium& at) {
   constexpr int corrections = 2;
   Equilibrium better = at;
   for (int k = 0; k < corrections && better.pieces == pieces; ++k) {
@@ -245,8 +244,8 @@ bool refine(const State& state, const Condensed& condensed, const std::vector<Co
 
 // Newton's method on the pieces from at.j; false where it does not end within its iterations. bounds_held: the problem
 // is convex and any state in balance its solution.
-bool iterate(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
-             TangentFactor& factor, bool bounds_held, Equilibrium& at) {
+bool iterate(const State& state, const Condensed& condensed, const Places& places, TangentFactor& factor,
+             bool bounds_held, Equilibrium& at) {
   constexpr int most_iterations = 200;
   constexpr int plain_iterations = 15;  // without line search it ends within some 5 where it does
   constexpr int solved_from = 5;        // from this iteration on balance counts, whatever the pieces
@@ -304,7 +303,7 @@ bool iterate(const State& state, const Condensed& condensed, const std::vector<C
 }
 
 // Friction by bounds that are held while the jumps are found, from `start` on, and renewed from the normal reactions.
-Equilibrium solve_with_fixed_bounds(const State& state, const Condensed& condensed, std::vector<ContactPlace> places,
+Equilibrium solve_with_fixed_bounds(const State& state, const Condensed& condensed, Places places,
                                     const Eigen::VectorXd& start, TangentFactor& factor) {
   constexpr int most_rounds = 400;
   constexpr double renewed = 1e-10;  // change of a bound against the largest
@@ -345,25 +344,24 @@ Equilibrium solve_with_fixed_bounds(const State& state, const Condensed& condens
 
 }  // namespace
 
-Pieces pieces_of(const std::vector<LawAnswer>& answers) {
+Pieces pieces_of(const Answers& answers) {
   Pieces pieces;
   pieces.reserve(answers.size());
   for (const LawAnswer& r : answers) pieces.push_back(r.piece);
   return pieces;
 }
 
-std::vector<LawAnswer> first_pieces(const std::vector<ContactPlace>& places, const std::vector<LawAnswer>& laws,
-                                    bool guessed) {
-  std::vector<LawAnswer> on = laws;
+Answers first_pieces(const Places& places, const Answers& laws, bool guessed) {
+  Answers on = laws;
   for (std::size_t k = 0; k < on.size() && !guessed; ++k) {
     if (sense(on[k]) != 0) on[k] = sticking(places[k], on[k]);
   }
   return on;
 }
 
-void pivot(const std::vector<ContactPlace>& places, const std::vector<LawAnswer>& laws, Pivoting& pivoting) {
+void pivot(const Places& places, const Answers& laws, Pivoting& pivoting) {
   constexpr int steps_without_gain = 3;  // with 10 Experiment 6 friction takes 2 % more of them
-  std::vector<LawAnswer>& on = pivoting.on;
+  Answers& on = pivoting.on;
   std::vector<std::size_t> differ;
   for (std::size_t k = 0; k < laws.size(); ++k) {
     if (laws[k].piece != on[k].piece) differ.push_back(k);
@@ -399,9 +397,8 @@ Vec2 jump_at(const Condensed& condensed, const SurfaceStencil& stencil, const Ei
   return {times(rows[0], j), times(rows[1], j)};
 }
 
-std::vector<ContactPlace> contact_places(const Scene& scene, const Rocks& rocks, const State& state,
-                                         const Condensed& condensed) {
-  std::vector<ContactPlace> places;
+Places contact_places(const Scene& scene, const Rocks& rocks, const State& state, const Condensed& condensed) {
+  Places places;
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
     const Surface& surface = state.surfaces[k];
     const InterfaceLaw law = law_of(scene, surface);
@@ -424,7 +421,7 @@ std::vector<ContactPlace> contact_places(const Scene& scene, const Rocks& rocks,
   return places;
 }
 
-Equilibrium solve_equilibrium(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
+Equilibrium solve_equilibrium(const State& state, const Condensed& condensed, const Places& places,
                               const Eigen::VectorXd& start, TangentFactor& factor) {
   Equilibrium at;
   const Eigen::VectorXd first =
@@ -434,9 +431,8 @@ Equilibrium solve_equilibrium(const State& state, const Condensed& condensed, co
   return solve_with_fixed_bounds(state, condensed, places, first, factor);
 }
 
-Eigen::MatrixXd opening_per_pressure(const State& state, const Condensed& condensed,
-                                     const std::vector<ContactPlace>& places, const Equilibrium& equilibrium,
-                                     const TangentFactor& factor) {
+Eigen::MatrixXd opening_per_pressure(const State& state, const Condensed& condensed, const Places& places,
+                                     const Equilibrium& equilibrium, const TangentFactor& factor) {
   const auto n = static_cast<Eigen::Index>(state.fracture().points.size());
   // Rows of the openings; on a closed face the reaction gives way as much as the pressure rises.
   Eigen::MatrixXd opening = Eigen::MatrixXd::Zero(condensed.size(), n), load = opening;

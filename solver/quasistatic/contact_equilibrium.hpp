@@ -15,28 +15,27 @@ namespace strata {
 // the laws answer at all places, as long as fewer and fewer of these are others than the last step took; where that
 // fails a few times, the last such place alone changes until there are fewer than ever.
 struct Pivoting {
-  std::vector<LawAnswer> on;  // of the last step, one a place: only their linear pieces count
+  Answers on;  // of the last step, one a place: only their linear pieces count
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
   int patience = 0;
 };
 
 /// The pieces of answers. Throws nothing.
-Pieces pieces_of(const std::vector<LawAnswer>& answers);
+Pieces pieces_of(const Answers& answers);
 
 /// The pieces of the first step: those of the laws' answers at the first guess. Where nothing was guessed, what slides
 /// at no jump at all has come there by the jump that friction remembers, and sticks. Throws nothing.
-std::vector<LawAnswer> first_pieces(const std::vector<ContactPlace>& places, const std::vector<LawAnswer>& laws,
-                                    bool guessed);
+Answers first_pieces(const Places& places, const Answers& laws, bool guessed);
 
 /// Goes on to the pieces of the next step, where `laws` answer to the last one. A place that would turn round sticks
 /// first: contact is so stiff that a law answers the smallest way back by full sliding to the other side. Throws
 /// nothing.
-void pivot(const std::vector<ContactPlace>& places, const std::vector<LawAnswer>& laws, Pivoting& pivoting);
+void pivot(const Places& places, const Answers& laws, Pivoting& pivoting);
 
 struct Equilibrium {
-  Eigen::VectorXd j;               // m
-  std::vector<LawAnswer> answers;  // one a place
-  std::vector<Vec2> w;             // jump of each place (m)
+  Eigen::VectorXd j;    // m
+  Answers answers;      // one a place
+  std::vector<Vec2> w;  // jump of each place (m)
   Pieces pieces;
   double energy = 0.0;         // potential energy: strain and laws less the work of the loads (J/m)
   double strain = 0.0;         // strain energy of the rock (J/m)
@@ -54,23 +53,20 @@ auto& point_of(AnyState& state, const ContactPlace& place) {
 
 /// The split places of a state and the springs of its tips, with the memory of friction as the state holds it.
 /// Stencil weights must be up to date.
-std::vector<ContactPlace> contact_places(const Scene& scene, const Rocks& rocks, const State& state,
-                                         const Condensed& condensed);
+Places contact_places(const Scene& scene, const Rocks& rocks, const State& state, const Condensed& condensed);
 
 /// Solves S j = sum_s A_s D_s^T (P n - t_in_situ + r(D j)) + condensed.load.jumps for the pressures that the state's
-/// points hold, by Newton's method on the pieces of the laws (semismooth, by block pivoting).
-/// Where that does not end by itself, friction's bounds are held fixed, so that the problem is the minimum of a convex
-/// energy (Newton with a line search), and renewed until they agree with the normal reactions. What is returned depends
-/// on loads and memory only, not on `start` (the first guess, or empty). `factor` is reused where the pieces are the
-/// same, and left for what follows. Throws NumericalFailure where parts of the block move freely, or where no
-/// equilibrium is found.
-Equilibrium solve_equilibrium(const State& state, const Condensed& condensed, const std::vector<ContactPlace>& places,
+/// points hold, by Newton's method on the pieces of the laws (semismooth, by block pivoting). Where that does not end
+/// by itself, friction's bounds are held fixed, so that the problem is the minimum of a convex energy (Newton with a
+/// line search), and renewed until they agree with the normal reactions. What is returned depends on loads and memory
+/// only, not on `start` (the first guess, or empty). `factor` is reused where the pieces are the same, and left for
+/// what follows. Throws NumericalFailure where parts of the block move freely, or where no equilibrium is found.
+Equilibrium solve_equilibrium(const State& state, const Condensed& condensed, const Places& places,
                               const Eigen::VectorXd& start, TangentFactor& factor);
 
 /// Change of the opening at the fracture's points with the pressure at each of them (m/Pa), at an equilibrium.
-Eigen::MatrixXd opening_per_pressure(const State& state, const Condensed& condensed,
-                                     const std::vector<ContactPlace>& places, const Equilibrium& equilibrium,
-                                     const TangentFactor& factor);
+Eigen::MatrixXd opening_per_pressure(const State& state, const Condensed& condensed, const Places& places,
+                                     const Equilibrium& equilibrium, const TangentFactor& factor);
 
 /// Rows of the jump's x and y at a stencil in terms of the jump unknowns. Throws nothing.
 std::array<SparseRow, 2> jump_rows(const Condensed& condensed, const SurfaceStencil& stencil);

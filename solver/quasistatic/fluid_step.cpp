@@ -8,7 +8,6 @@
 #include "flow/paper_flow.hpp"
 #include "flow/reynolds_flow.hpp"
 #include "fracture/growth.hpp"
-#include "scene/inlet.hpp"
 #include "state/elasticity.hpp"
 
 namespace strata {
@@ -46,7 +45,7 @@ void diffuse_in_steps(const Scene& scene, const State& state, const std::vector<
   }
   const int steps = std::clamp(static_cast<int>(std::ceil(std::min(dt / shortest, 1.0 * most))), 1, most);
   const double step = dt / steps;
-  const auto inlet_Pa = [&](int k) { return inlet_pressure(fluid, time + k * step); };
+  const auto inlet_Pa = [&](int k) { return fluid.inlet_pressure(time + k * step); };
   diffuse(channel, mobility, fluid.time_rule, step, steps, inlet_Pa, line.P);
   line.inlet_Pa = inlet_Pa(steps);
 }
@@ -169,10 +168,10 @@ RockModel rock_of(const Scene& scene, double time, double there, State& state, Q
 // The pressure at the end of a step between two times (s), or the rate midway, which between rows of a table is its
 // mean.
 Inlet inlet_over(const Scene& scene, const State& state, double start, double end) {
-  if (!scene.fluid.rate_m2_s) return {Inlet::Drive::pressure, inlet_pressure(scene.fluid, end)};
+  if (!scene.fluid.rate_m2_s) return {Inlet::Drive::pressure, scene.fluid.inlet_pressure(end)};
   // Half of a fracture that starts on the symmetry line gets half of what the whole is fed.
   const bool half = scene.domain.bottom == Edge::symmetry && state.fracture().vertices.front().x.y() == 0.0;
-  return {Inlet::Drive::rate, inlet_rate(scene.fluid, 0.5 * (start + end)) * (half ? 0.5 : 1.0)};
+  return {Inlet::Drive::rate, scene.fluid.inlet_rate(0.5 * (start + end)) * (half ? 0.5 : 1.0)};
 }
 
 // At closed ends the fluid is at rest.
@@ -324,7 +323,7 @@ FluidStep advance_fluid(const Scene& scene, double dt, State& state, Quasistatic
   }
   if (scene.fluid.law == Fluid::Law::reynolds) return couple(scene, dt, on_the_way, state, model);
   if (scene.fluid.law == Fluid::Law::uniform) {
-    if (dt > 0.0) state.fluid.inlet_Pa = inlet_pressure(scene.fluid, state.time + dt);
+    if (dt > 0.0) state.fluid.inlet_Pa = scene.fluid.inlet_pressure(state.time + dt);
     rest_fluid(scene.fluid, state);
   } else if (dt > 0.0) {
     diffuse_in_steps(scene, state, openings_midway(scene, dt, state, model), state.time, dt, state.fluid);

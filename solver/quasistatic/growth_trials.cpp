@@ -32,7 +32,7 @@ void load_trial(const Fluid& fluid, const State& state, GrowthTrial& trial) {
 }
 
 // Friction's memory of the trial: that of the state it starts from.
-void inherit_friction(const State& state, const std::vector<ContactPlace>& places, GrowthTrial& trial) {
+void inherit_friction(const State& state, const Places& places, GrowthTrial& trial) {
   const std::ptrdiff_t shift = shift_of(state, trial);
   for (ContactPlace& place : trial.model.places) {
     if (place.tie >= 0) continue;

@@ -15,26 +15,24 @@ namespace strata {
 std::vector<Master> mirrored(const State& state, std::vector<Master> masters);
 
 // K of the intact block, factored.
-class IntactBody {
- public:
+struct IntactBody {
   /// Assembles and factors K from the state's particles with all surfaces closed; halved: with the mirror's ties, the
   /// energy of the left half counted twice. Rigid motion that no edge holds is held at corners: loads are in balance.
   /// Throws NumericalFailure where the factorisation fails.
   IntactBody(const Scene& scene, const Rocks& rocks, const State& state, bool halved);
 
-  /// K = L L^T in one value for each of the 2 x nodes unknowns (N/m, m); loads on held ones must be 0.
-  const TreeFactor& factor() const { return factor_; }
+  bool halved;
+  int points;                   // that K is summed over: next_id of these
+  std::vector<Master> masters;  // of the grid's nodes
+  TreeFactor factor;            // K = L L^T in one value for each unknown (N/m, m); loads on held ones must be 0
 
-  bool halved() const { return halved_; }
-  int points() const { return points_; }                           // that K is summed over: next_id of these
-  const std::vector<Master>& masters() const { return masters_; }  // of the grid's nodes
-  int unknowns() const { return 2 * static_cast<int>(masters_.size()); }
-
- private:
-  TreeFactor factor_;
-  std::vector<Master> masters_;
-  int points_ = 0;
-  bool halved_ = false;
+  int unknowns() const { return 2 * static_cast<int>(masters.size()); }
 };
+
+/// The in-situ state `loaded`: K u = f with K = sum_p V_p B^T C B of the bonded block without fracture under the
+/// in-situ tractions on sides and top (and bottom, where it is no symmetry line), whatever the scene's edges are
+/// afterwards; writes the stress to particles.in_situ (Pa). Rigid motion that no edge holds is taken out. Throws
+/// NumericalFailure where the factorisation fails.
+void load_in_situ(const Scene& scene, const Rocks& rocks, State& state);
 
 }  // namespace strata

@@ -13,7 +13,6 @@
 #include "interfaces/monitors.hpp"
 #include "quasistatic/event_margin.hpp"
 #include "quasistatic/fluid_step.hpp"
-#include "scene/inlet.hpp"
 
 namespace strata {
 namespace {
@@ -155,7 +154,7 @@ void rebuild_all(const Scene& scene, const Rocks& rocks, State& state, Quasistat
   const double excess = state.ledger.excess;
   run.trials.clear();  // two bodies are not to be held at a time
   update_model(scene, rocks, state, run.model);
-  state.monitors.mirror = run.model.body->halved();
+  state.monitors.mirror = run.model.body->halved;
   run.rules = make_tip_rules(scene, rocks, state);
   state.ledger.excess = excess;  // what springs of tips give back is in the difference of stored energy already
   run.trials = build_trials(scene, rocks, state, run.model);
@@ -164,7 +163,7 @@ void rebuild_all(const Scene& scene, const Rocks& rocks, State& state, Quasistat
 // Lets what fails or parts go; where half a block answers for the whole, with its mirror image, which is as bad but for
 // round-off.
 void let_columns_go(Columns columns, const Quasistatic& run, State& state, SideWord mask = 0, SideWord sides = 0) {
-  if (run.model.body->halved()) {
+  if (run.model.body->halved) {
     for (const auto& [surface, column] : Columns{columns}) columns.emplace(surface, state.grid.nx - column);
   }
   let_go(columns, run.model.bonds, state, mask, sides);
@@ -495,8 +494,8 @@ void advance_quasistatic(const Scene& scene, const Rocks& rocks, double until, S
   }
   const LoadPoint from = load_point(state);
   const double margin = run.margin;
-  if (next_row(scene.fluid, state.grown.time) <= from.time) state.grown = {};
-  const double left = std::min(until, next_row(scene.fluid, from.time)) - from.time;
+  if (scene.fluid.next_row(state.grown.time) <= from.time) state.grown = {};
+  const double left = std::min(until, scene.fluid.next_row(from.time)) - from.time;
   const LoadStep step = find_step(scene, rocks, from, left, state, run);
   if (run.margin > 1.0 + event_tolerance && !locate_event(scene, rocks, from, margin, step.dt, state, run)) {
     return_to(from, state);
@@ -504,8 +503,8 @@ void advance_quasistatic(const Scene& scene, const Rocks& rocks, double until, S
     state.grown = {};
     return advance_quasistatic(scene, rocks, until, state, run);
   }
-  const bool fed = !scene.fluid.rate_m2_s || inlet_rate(scene.fluid, from.time) > 0.0;  // as fast as before
-  if (fed && state.grown.line.size() > 0 && run.margin < 1.0 && next_row(scene.fluid, from.time) > until)
+  const bool fed = !scene.fluid.rate_m2_s || scene.fluid.inlet_rate(from.time) > 0.0;  // as fast as before
+  if (fed && state.grown.line.size() > 0 && run.margin < 1.0 && scene.fluid.next_row(from.time) > until)
     show_front(scene, rocks, from, step.dt, state, run);
   if (foresees_openings(scene, state)) note_rates(openings_of(from.surfaces.front()), state.time - from.time, state);
   accept(scene, from, Change::load, state, run);

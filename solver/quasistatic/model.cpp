@@ -151,7 +151,7 @@ void load_body(const Scene& scene, double time, const IntactBody& body, State& s
         const int node = state.copies.node_of_record[static_cast<std::size_t>(bin.record[n])];
         for (int component = 0; component < 2; ++component) {
           const double f = g.N[n] * p.m[q] * state.body[q][component];
-          const Unknown base = unknown_of(body.masters(), node, component);
+          const Unknown base = unknown_of(body.masters, node, component);
           const Unknown jump = jump_unknown(condensed, bin.record[n], component);
           if (base.index >= 0) load.intact[base.index] += base.factor * f;
           if (jump.index >= 0) load.jumps[jump.index] += jump.factor * f;
@@ -159,7 +159,7 @@ void load_body(const Scene& scene, double time, const IntactBody& body, State& s
       }
     }
   }
-  const Eigen::VectorXd u_0 = body.factor().solve(load.intact);
+  const Eigen::VectorXd u_0 = body.factor.solve(load.intact);
   for (std::size_t k = 0; k < condensed.columns.size(); ++k) {
     const SparseVector& G = condensed.columns[k]->G;
     for (std::size_t e = 0; e < G.index.size(); ++e)
@@ -189,7 +189,7 @@ void update_equations(const Scene& scene, const Rocks& rocks, State& state, Quas
   weigh_copies(scene, state);
   update_stencil_weights(scene, state);
   const bool halved = halve && mirror_symmetric(scene);
-  const bool same_body = model.body && model.body->points() == state.particles.next_id;  // a trial has some of them
+  const bool same_body = model.body && model.body->points == state.particles.next_id;  // a trial has some of them
   if (!same_body) {
     model.body.reset();  // two are not to be held at a time
     model.body = std::make_shared<const IntactBody>(scene, rocks, state, halved);

@@ -16,7 +16,7 @@ namespace strata {
 struct QuasistaticModel {
   std::shared_ptr<const IntactBody> body;
   Condensed condensed;
-  std::vector<ContactPlace> places;
+  Places places;
   TangentFactor factor;
   Bonds bonds;
   std::vector<std::size_t> watched;  // bins whose fields decide what happens next: around tips and beside bonded

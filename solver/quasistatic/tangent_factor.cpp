@@ -45,8 +45,7 @@ Eigen::Matrix2d tangent_matrix(const ContactPlace& place, const LawAnswer& r) {
   return r.dn_dn * n * n.transpose() + r.dt_dn * t * n.transpose() + r.dt_dt * t * t.transpose();
 }
 
-Eigen::MatrixXd tangent(const Eigen::MatrixXd& S, const std::vector<ContactPlace>& places,
-                        const std::vector<LawAnswer>& answers) {
+Eigen::MatrixXd tangent(const Eigen::MatrixXd& S, const Places& places, const Answers& answers) {
   Eigen::MatrixXd T = S;
   for (std::size_t k = 0; k < places.size(); ++k) {
     const ContactPlace& place = places[k];
@@ -70,10 +69,9 @@ B TangentFactor::solve_scaled(const B& b) const {
   return symmetric_ ? B(cholesky_.solve(b)) : B(lu_.solve(b));
 }
 
-bool TangentFactor::factorise(const Eigen::MatrixXd& T, const std::vector<ContactPlace>& places,
-                              const std::vector<LawAnswer>& answers, bool stiffened) {
+bool TangentFactor::factorise(const Eigen::MatrixXd& T, const Places& places, const Answers& answers, bool stiffened) {
   symmetric_ = std::none_of(answers.begin(), answers.end(), [](const LawAnswer& r) { return r.dt_dn != 0.0; });
-  first_ = stiffened ? std::vector<LawAnswer>{} : answers;
+  first_ = stiffened ? Answers{} : answers;
   known_.assign(places.size(), {-1, -1});
   Z_all_.resize(T.rows(), 0);
   V_.clear();
@@ -86,8 +84,7 @@ bool TangentFactor::factorise(const Eigen::MatrixXd& T, const std::vector<Contac
 }
 
 // The rows of reactions that are others now than in T_0.
-std::vector<TangentFactor::Change> TangentFactor::changes(const std::vector<ContactPlace>& places,
-                                                          const std::vector<LawAnswer>& answers) const {
+std::vector<TangentFactor::Change> TangentFactor::changes(const Places& places, const Answers& answers) const {
   std::vector<Change> changes;
   for (std::size_t k = 0; k < places.size(); ++k) {
     const LawAnswer &before = first_[k], &now = answers[k];
@@ -101,7 +98,7 @@ std::vector<TangentFactor::Change> TangentFactor::changes(const std::vector<Cont
 }
 
 // Adds the columns of Z that are not known yet.
-void TangentFactor::solve_for(const std::vector<ContactPlace>& places, const std::vector<Change>& fresh) {
+void TangentFactor::solve_for(const Places& places, const std::vector<Change>& fresh) {
   if (fresh.empty()) return;
   Eigen::MatrixXd U = Eigen::MatrixXd::Zero(scale_.size(), static_cast<Eigen::Index>(fresh.size()));
   const Eigen::Index before = Z_all_.cols();
@@ -129,7 +126,7 @@ Eigen::MatrixXd TangentFactor::change_of(const Eigen::MatrixXd& y) const {
   return out;
 }
 
-bool TangentFactor::follow(const std::vector<ContactPlace>& places, const std::vector<LawAnswer>& answers) {
+bool TangentFactor::follow(const Places& places, const Answers& answers) {
   if (scale_.size() == 0 || first_.size() != places.size()) return false;
   const std::vector<Change> differ = changes(places, answers);
   std::vector<Change> fresh;

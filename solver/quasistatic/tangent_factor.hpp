@@ -33,14 +33,15 @@ struct ContactPlace {
   Vec2 along(double normal, double tangential) const { return normal * n + tangential * t(); }
 };
 
+using Places = std::vector<ContactPlace>;
+using Answers = std::vector<LawAnswer>;  // one a place
 using Pieces = std::vector<LawAnswer::Piece>;
 
 /// dr/dw of a place's piece in x and y (Pa/m). Throws nothing.
 Eigen::Matrix2d tangent_matrix(const ContactPlace& place, const LawAnswer& r);
 
 /// T = S - sum A D^T (dr/dw) D (N/m per metre of thickness). Throws nothing.
-Eigen::MatrixXd tangent(const Eigen::MatrixXd& S, const std::vector<ContactPlace>& places,
-                        const std::vector<LawAnswer>& answers);
+Eigen::MatrixXd tangent(const Eigen::MatrixXd& S, const Places& places, const Answers& answers);
 
 // A tangent T_0 that was factored, and what of it has changed since. A place whose law is on another piece changes the
 // derivative of its normal reaction, or of its tangential one, or both: with a column u = D^T n or D^T t and a row
@@ -54,12 +55,11 @@ class TangentFactor {
 
   /// Factors T as the T_0 of what follows; false where it is singular. stiffened: T is not quite that of `places` and
   /// `answers`, and nothing may follow it.
-  bool factorise(const Eigen::MatrixXd& T, const std::vector<ContactPlace>& places,
-                 const std::vector<LawAnswer>& answers, bool stiffened = false);
+  bool factorise(const Eigen::MatrixXd& T, const Places& places, const Answers& answers, bool stiffened = false);
 
   /// Goes over to the tangent of other answers of the same places; false where it is not sure to keep the digits (too
   /// many places have changed, the result is nearly singular) or nothing was factored: then it has to be factorised.
-  bool follow(const std::vector<ContactPlace>& places, const std::vector<LawAnswer>& answers);
+  bool follow(const Places& places, const Answers& answers);
 
   /// Whether a tangent with so many unknowns is factored.
   bool holds(Eigen::Index unknowns) const { return scale_.size() == unknowns; }
@@ -85,15 +85,15 @@ class TangentFactor {
   template <class B>
   B solve_scaled(const B& b) const;
   Eigen::MatrixXd solve_first(const Eigen::MatrixXd& b) const;
-  std::vector<Change> changes(const std::vector<ContactPlace>& places, const std::vector<LawAnswer>& answers) const;
-  void solve_for(const std::vector<ContactPlace>& places, const std::vector<Change>& fresh);
+  std::vector<Change> changes(const Places& places, const Answers& answers) const;
+  void solve_for(const Places& places, const std::vector<Change>& fresh);
   Eigen::MatrixXd change_of(const Eigen::MatrixXd& y) const;
 
   bool symmetric_ = true;
   Eigen::VectorXd scale_;
   Eigen::LLT<Eigen::MatrixXd> cholesky_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
-  std::vector<LawAnswer> first_;           // answers of the places in T_0; none where nothing may follow it
+  Answers first_;                          // answers of the places in T_0; none where nothing may follow it
   std::vector<std::array<int, 2>> known_;  // where a place's columns of Z stand in Z_all_; -1: not computed
   Eigen::MatrixXd Z_all_;
   std::vector<SparseRow> V_;                    // columns of V

@@ -83,6 +83,12 @@ bool weighs_growth(const Scene& scene) {
   return weighs;
 }
 
+// Whether a fracture's path may leave its straight line: it grows, and by the direction of the largest hoop stress.
+bool may_turn(const Scene& scene) {
+  return scene.fracture && scene.fracture->growth != Fracture::Growth::none &&
+         scene.fracture->direction == Fracture::Direction::max_hoop;
+}
+
 }  // namespace
 
 double segment_distance(const Point& a0, const Point& a1, const Point& b0, const Point& b1) {
@@ -129,15 +135,10 @@ std::vector<Point> legs_between_interfaces(const Scene& scene, const Point& from
 
 std::size_t layer_at(const Scene& scene, const Point& x) {
   const auto& layers = scene.strata.layers;
-  const double along = scene.stacking(x[0], x[1]);
+  const double along = scene.stacking(x);
   std::size_t k = 0;
   while (k + 1 < layers.size() && along >= layers[k].to_m) ++k;
   return k;
-}
-
-bool may_turn(const Scene& scene) {
-  return scene.fracture && scene.fracture->growth != Fracture::Growth::none &&
-         scene.fracture->direction == Fracture::Direction::max_hoop;
 }
 
 int points_across(const Scene& scene) {

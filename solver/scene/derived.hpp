@@ -4,7 +4,6 @@
 // Nothing here throws but std::bad_alloc.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -14,8 +13,6 @@
 #include "scene/scene.hpp"
 
 namespace strata {
-
-using Point = std::array<double, 2>;
 
 /// Least distance (m) between the segments a0 a1 and b0 b1, 0 where they cross. All points in m.
 double segment_distance(const Point& a0, const Point& a1, const Point& b0, const Point& b1);
@@ -30,9 +27,6 @@ std::vector<Point> legs_between_interfaces(const Scene& scene, const Point& from
 
 /// The layer in which a place (m) lies, counted from 0; the first and the last go on beyond the block.
 std::size_t layer_at(const Scene& scene, const Point& x);
-
-/// Whether a fracture's path may leave its straight line: it grows, and by the direction of the largest hoop stress.
-bool may_turn(const Scene& scene);
 
 /// Points across a cell at the start: the root of numerics.particles_per_cell, or four where that is two and a layer is
 /// too thin for it or, without inertia, the path may turn.

@@ -8,8 +8,6 @@
 namespace strata {
 namespace {
 
-using Point = std::array<double, 2>;
-
 // Length of the straight way from x along the unit vector d until it leaves the block.
 double way_to_edge(const Domain& domain, const Point& x, const Point& d) {
   const Point far{domain.width_m, domain.height_m};

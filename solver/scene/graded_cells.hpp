@@ -4,7 +4,6 @@
 // Nothing here throws but std::bad_alloc.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "scene/scene.hpp"
@@ -24,8 +23,8 @@ constexpr double fine_cells_at_interface = 4.0;
 
 // The straight way along which a tip may grow.
 struct GrowthWay {
-  std::array<double, 2> end{};  // m
-  double length = 0.0;          // m
+  Point end{};          // m
+  double length = 0.0;  // m
 };
 
 /// The ways of all tips that may grow, each in the direction of its end of the path: up to stop.tip_y_m (of the lower

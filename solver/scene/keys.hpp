@@ -19,7 +19,6 @@
 namespace strata {
 
 struct Value;  // a key's value in TOML, see reading.hpp
-using Path = std::vector<std::array<double, 2>>;
 
 /// Whether a value is one that its key and the type of the member allow; it is then written to the member, and what is
 /// wrong with it is a fault otherwise. Of layers and interfaces, which name others, only the number is written.

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <memory>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "scene/keys.hpp"
@@ -111,8 +112,6 @@ std::string comment_on(const Key& key, std::string_view indent = "") {
   return text;
 }
 
-}  // namespace
-
 std::string new_scene_text(std::string_view title) {
   std::string text, table;
   std::set<std::string_view> explained;
@@ -126,6 +125,8 @@ std::string new_scene_text(std::string_view title) {
   text.pop_back();  // the line behind the last end of line
   return text.replace(text.find("TITLE"), 5, title);
 }
+
+}  // namespace
 
 std::vector<std::string> write_new_scene(const std::string& name) {
   const std::string title = name.substr(0, name.size() - (name.ends_with(".toml") ? 5 : 0)), file = title + ".toml";

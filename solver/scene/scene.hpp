@@ -13,6 +13,9 @@
 
 namespace strata {
 
+using Point = std::array<double, 2>;  // a place's x and y (m), or a row of a table
+using Path = std::vector<Point>;
+
 constexpr double standard_gravity = 9.80665;  // m/s^2
 
 // Beside each enumeration stand the words that a scene has for its values, in their order.
@@ -178,7 +181,7 @@ struct Fracture {
   friend constexpr std::string_view words(Order) { return "interfaces, larger_margin"; }
   enum class Faces { contact, free };
   friend constexpr std::string_view words(Faces) { return "contact, free"; }
-  std::vector<std::array<double, 2>> path_m;  // an end on the symmetry line comes first
+  Path path_m;  // an end on the symmetry line comes first
   Growth growth = Growth::J;
   double increment_m = 1.0;
   double turn_share = 0.5;  // largest share of the maximum-hoop kink that an increment turns by
@@ -211,7 +214,7 @@ struct Fluid {
   // the first one. Empty: none.
   enum class TableOf { rate_m2_s, pressure_Pa };
   friend constexpr std::string_view words(TableOf) { return "rate_m2_s, pressure_Pa"; }
-  std::vector<std::array<double, 2>> table;
+  Path table;
   TableOf table_of = TableOf::rate_m2_s;
   double cavitation_Pa = 0.0;  // absolute lower bound of the fluid pressure
   double density_kg_m3 = 0.0;  // 0: without weight
@@ -222,6 +225,14 @@ struct Fluid {
   // weight.
   double weight() const { return density_kg_m3 * standard_gravity; }  // N/m^3
   double at_rest(double P, double above) const { return std::max(P - weight() * above, std::min(P, cavitation_Pa)); }
+
+  // What the inlet prescribes at a time (s): a pressure (Pa), or what the whole fracture is fed (m^2/s) of a fluid fed
+  // at a rate. The fastest change of the pressure (Pa/s), at least 0. The time of the table's next row, between which
+  // all is linear; infinite after the last and without a table.
+  double inlet_pressure(double time) const;
+  double inlet_rate(double time) const;
+  double fastest_change() const;
+  double next_row(double time) const;
   bool operator==(const Fluid&) const = default;
 };
 
@@ -325,8 +336,8 @@ struct Scene {
   }
 
   // Coordinates of a place (m): along interfaces, and that along which layers are stacked.
-  double beside(double x, double y) const { return strata.along == Strata::Along::y ? x : y; }
-  double stacking(double x, double y) const { return strata.along == Strata::Along::y ? y : x; }
+  double beside(const auto& x) const { return strata.along == Strata::Along::y ? x[0] : x[1]; }
+  double stacking(const auto& x) const { return strata.along == Strata::Along::y ? x[1] : x[0]; }
   bool operator==(const Scene&) const = default;
 };
 

@@ -1,5 +1,4 @@
-// A well log, a table of layers as CSV, becomes a scene.
-// Nothing here throws but std::bad_alloc.
+// A well log, a table of layers as CSV, becomes a scene. Nothing here throws but std::bad_alloc.
 #pragma once
 
 #include <string>

@@ -68,6 +68,8 @@ struct Strip {
 struct Master {
   int record = 0;
   double x = 1.0, y = 1.0;
+
+  double of(int component) const { return component == 0 ? x : y; }
 };
 
 // The nodes that a place on a surface reaches: D w = sum_i N_i (u[plus_i] - u[minus_i]).

@@ -18,8 +18,6 @@ double rayleigh_speed(double c_P, double c_S) {
   return c_S * std::sqrt(lo);
 }
 
-}  // namespace
-
 Elasticity make_elasticity(const Rock& rock) {
   const double E = rock.youngs_modulus_Pa, nu = rock.poisson_ratio;
   Elasticity e;
@@ -34,6 +32,8 @@ Elasticity make_elasticity(const Rock& rock) {
   e.J_c = rock.toughness_Pa_sqrt_m * rock.toughness_Pa_sqrt_m / e.E_prime;
   return e;
 }
+
+}  // namespace
 
 Rocks make_elasticities(const Scene& scene) {
   Rocks all;

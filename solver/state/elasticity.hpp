@@ -24,11 +24,8 @@ struct Elasticity {
 
 using Rocks = std::vector<Elasticity>;  // of all rocks of a scene, in their order
 
-/// Constants of one rock in plane strain; c_R solves the Rayleigh equation
+/// Constants of all rocks of a scene in plane strain; c_R solves the Rayleigh equation
 /// (2 - q)^2 - 4 sqrt(1 - q) sqrt(1 - q c_S^2/c_P^2) = 0, q = (c_R/c_S)^2, by bisection to round-off.
-Elasticity make_elasticity(const Rock& rock);
-
-/// The same for all rocks of a scene.
 Rocks make_elasticities(const Scene& scene);
 
 /// Index of the rock of the layer at a place (m).

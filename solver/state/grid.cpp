@@ -5,12 +5,22 @@
 #include "scene/graded_cells.hpp"
 
 namespace strata {
-namespace {
+Grid make_grid(const Scene& scene) {
+  const double h = scene.numerics.cell_m;
+  Grid grid{static_cast<int>(std::lround(scene.domain.width_m / h)),
+            static_cast<int>(std::lround(scene.domain.height_m / h)), h, scene_knots(scene, 0), scene_knots(scene, 1)};
+  constexpr int ghosts = 4;  // knots beyond those between the nodes
+  if (!grid.x_knots.empty()) grid.nx = static_cast<int>(grid.x_knots.size()) - ghosts;
+  if (!grid.y_knots.empty()) grid.ny = static_cast<int>(grid.y_knots.size()) - ghosts;
+  return grid;
+}
 
-std::vector<GridPoint> points_along(const std::vector<double>& t, int n, double h, int across) {
+std::vector<GridPoint> points_along(const Grid& grid, Axis axis, int across) {
+  const std::vector<double>& t = axis == Axis::x ? grid.x_knots : grid.y_knots;
+  const int n = axis == Axis::x ? grid.nx : grid.ny;
   std::vector<GridPoint> points;
   if (t.empty()) {
-    const double side = h / across;
+    const double side = grid.h / across;
     for (int k = 0; k < n * across; ++k) points.push_back({(k + 0.5) * side, side});
     return points;
   }
@@ -25,26 +35,6 @@ std::vector<GridPoint> points_along(const std::vector<double>& t, int n, double 
     }
   }
   return points;
-}
-
-}  // namespace
-
-Grid make_grid(const Scene& scene) {
-  const double h = scene.numerics.cell_m;
-  Grid grid{static_cast<int>(std::lround(scene.domain.width_m / h)),
-            static_cast<int>(std::lround(scene.domain.height_m / h)), h, scene_knots(scene, 0), scene_knots(scene, 1)};
-  constexpr int ghosts = 4;  // knots beyond those between the nodes
-  if (!grid.x_knots.empty()) grid.nx = static_cast<int>(grid.x_knots.size()) - ghosts;
-  if (!grid.y_knots.empty()) grid.ny = static_cast<int>(grid.y_knots.size()) - ghosts;
-  return grid;
-}
-
-std::vector<GridPoint> points_along_x(const Grid& grid, int across) {
-  return points_along(grid.x_knots, grid.nx, grid.h, across);
-}
-
-std::vector<GridPoint> points_along_y(const Grid& grid, int across) {
-  return points_along(grid.y_knots, grid.ny, grid.h, across);
 }
 
 SpanTable spans_along(const Grid& grid, Axis axis) {

@@ -104,18 +104,15 @@ struct GridPoint {
   double at = 0.0, length = 0.0;
 };
 
-/// The points of `across` (2, 3 or 4) particles a cell along x. In fractions c = (k + 1/2)/across of a cell from node i
-/// to node i + 1 with spans s_i, s_i+1: x_i + c s_i in the first half, x_i+1 - (1 - c) s_i+1 in the second one, and the
-/// knot between the spans at c = 1/2, with lengths s_i/across, s_i+1/across and the mean of both. In each span they are
-/// symmetric about its middle: what is linear on every span, as the derivatives of shape functions are, is integrated
-/// exactly. Lattices of (k + 1/2) h/across where the grid is uniform. Throws nothing.
-std::vector<GridPoint> points_along_x(const Grid& grid, int across);
-
-/// The same along y.
-std::vector<GridPoint> points_along_y(const Grid& grid, int across);
+/// The points of `across` (2, 3 or 4) particles a cell along an axis. In fractions c = (k + 1/2)/across of a cell from
+/// node i to node i + 1 with spans s_i, s_i+1: x_i + c s_i in the first half, x_i+1 - (1 - c) s_i+1 in the second one,
+/// and the knot between the spans at c = 1/2, with lengths s_i/across, s_i+1/across and the mean of both. In each span
+/// they are symmetric about its middle: what is linear on every span, as the derivatives of shape functions are, is
+/// integrated exactly. Lattices of (k + 1/2) h/across where the grid is uniform. Throws nothing.
+enum class Axis { x, y };
+std::vector<GridPoint> points_along(const Grid& grid, Axis axis, int across);
 
 /// The spans of the grid's columns (x) or rows (y). Throws nothing.
-enum class Axis { x, y };
 SpanTable spans_along(const Grid& grid, Axis axis);
 
 }  // namespace strata

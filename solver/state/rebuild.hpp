@@ -1,6 +1,5 @@
-// Builds everything in a State that follows from particles and surfaces: copies of nodes, bins, strips, masters
-// and surface stencils. Called at the start, after growth or failure, and when
-// particles have changed bins.
+// Builds everything in a State that follows from particles and surfaces: copies of nodes, bins, strips, masters and
+// surface stencils. Called at the start, after growth or failure, and when particles have changed bins.
 #pragma once
 
 #include "state/state.hpp"

@@ -25,7 +25,7 @@ struct Unknown {
 
 inline Unknown unknown_of(const std::vector<Master>& masters, int record, int component) {
   const Master& master = masters[static_cast<std::size_t>(record)];
-  const double factor = component == 0 ? master.x : master.y;
+  const double factor = master.of(component);
   return {factor == 0.0 ? -1 : 2 * master.record + component, factor};
 }
 

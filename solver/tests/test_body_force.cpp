@@ -211,7 +211,7 @@ TEST_CASE("equilibrium under a body force is where an explicit step finds no for
   scene.strata.layers = {{0, 0.0, 12.0}, {1, 12.0, 20.0}};
   scene.strata.interfaces = {{0, 12.0}};
   Statics s(scene);
-  CHECK_FALSE(s.model.body->halved());
+  CHECK_FALSE(s.model.body->halved);
   s.solve();
   State& state = s.state();
   CHECK(state.fracture().points.front().opening() > 1e-5);

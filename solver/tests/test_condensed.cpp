@@ -30,7 +30,7 @@ Eigen::MatrixXd schur_complement(Statics& s) {
   const IntactBody& body = *s.model.body;
   const Condensed& condensed = s.model.condensed;
   State weighted = s.state();
-  for (std::size_t q = 0; q < weighted.particles.size() && body.halved(); ++q)
+  for (std::size_t q = 0; q < weighted.particles.size() && body.halved; ++q)
     weighted.particles.V[q] *= weighted.particles.x[q] < 0.5 * s.run.scene.domain.width_m ? 2.0 : 0.0;
   const Eigen::MatrixXd lower(assemble_stiffness(s.run.scene, s.run.rocks, weighted, condensed.masters));
   const Eigen::MatrixXd K = lower.selfadjointView<Eigen::Lower>();
@@ -41,7 +41,7 @@ Eigen::MatrixXd schur_complement(Statics& s) {
     if (condensed.masters[r].record != record || (is_cut(s.state().copies, record) && s.state().sums[r].m == 0.0))
       continue;
     for (int c = 0; c < 2; ++c) {
-      const Unknown u = unknown_of(body.masters(), s.state().copies.node_of_record[r], c);
+      const Unknown u = unknown_of(body.masters, s.state().copies.node_of_record[r], c);
       const int j = condensed.jump_of_record[r][static_cast<std::size_t>(c)];
       if (unknown_of(condensed.masters, record, c).index < 0) continue;
       if (u.index >= 0) T(2 * record + c, u.index) = u.factor;
@@ -77,7 +77,7 @@ TEST_CASE("S is the Schur complement of the stiffness of all records") {
   for (const Scene& scene : scenes) {
     for (const bool halve : {true, false}) {
       Statics s(scene, halve);
-      some_halved = some_halved || s.model.body->halved();
+      some_halved = some_halved || s.model.body->halved;
       const Eigen::MatrixXd expected = schur_complement(s), &S = s.model.condensed.S;
       REQUIRE(S.rows() > 4);
       CHECK(largest(S - S.transpose()) == 0.0);
@@ -131,8 +131,8 @@ TEST_CASE("half a block answers for the whole") {
     scene.strata.layers.back().to_m = 16.0;
     scene.fracture->path_m = {{0.5 * width, 0.0}, {0.5 * width, 5.25}};
     Statics half(scene, true), whole(scene, false);
-    REQUIRE(half.model.body->halved());
-    REQUIRE_FALSE(whole.model.body->halved());
+    REQUIRE(half.model.body->halved);
+    REQUIRE_FALSE(whole.model.body->halved);
     CHECK(10 * half.model.condensed.size() < 6 * whole.model.condensed.size());
     half.solve(), whole.solve();
     REQUIRE(half.at.w.size() == whole.at.w.size());
@@ -188,7 +188,7 @@ TEST_CASE("columns of any kind give the same K") {
       CHECK(tip.K_I == Approx(expected.K_I).epsilon(2e-3));
       CHECK(tip.J == Approx(expected.J).epsilon(2e-3));
       CHECK(std::abs(tip.K_II) < 1e-3 * tip.K_I);
-      ++halves[any.model.body->halved() ? 1 : 0];
+      ++halves[any.model.body->halved ? 1 : 0];
     }
     CHECK(halves[0] > 2);
     CHECK(halves[1] > 1);

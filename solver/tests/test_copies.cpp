@@ -12,8 +12,6 @@ using namespace strata::test;
 
 namespace {
 
-using Path = std::vector<std::array<double, 2>>;
-
 Scene cut_block(const Path& path, Numerics::Shape shape = Numerics::Shape::bspline2, bool held = true) {
   Scene scene = block(12, 12);
   if (held) hold_edges(scene);

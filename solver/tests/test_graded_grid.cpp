@@ -337,7 +337,7 @@ TEST_CASE("particles of a graded grid") {
     const int across = points == 4 ? 2 : 4;
     Grid even{6, 6, 0.5}, same = even;
     for (int k = -1; k <= 8; ++k) same.x_knots.push_back((k - 0.5) * 0.5);
-    const auto lattice = points_along_x(even, across), by_spans = points_along_x(same, across);
+    const auto lattice = points_along(even, Axis::x, across), by_spans = points_along(same, Axis::x, across);
     REQUIRE(lattice.size() == by_spans.size());
     for (std::size_t k = 0; k < lattice.size(); ++k) {
       CHECK(lattice[k].at == by_spans[k].at);

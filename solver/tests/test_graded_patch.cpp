@@ -47,11 +47,11 @@ NodalIntegrals edge_integrals(const Scene& scene, const State& state) {
     for (int k = 0; k < 9; ++k)
       to[static_cast<std::size_t>(g.node(i + k % 3 - 1, j + k / 3 - 1))] += length * at.N[static_cast<std::size_t>(k)];
   };
-  for (const GridPoint& s : points_along_y(g, across)) {
+  for (const GridPoint& s : points_along(g, Axis::y, across)) {
     add({0.0, s.at}, -s.length, sum.N_x);
     add({scene.domain.width_m, s.at}, s.length, sum.N_x);
   }
-  for (const GridPoint& s : points_along_x(g, across)) {
+  for (const GridPoint& s : points_along(g, Axis::x, across)) {
     add({s.at, 0.0}, -s.length, sum.N_y);
     add({s.at, scene.domain.height_m}, s.length, sum.N_y);
   }

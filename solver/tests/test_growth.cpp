@@ -15,8 +15,6 @@ using namespace strata::test;
 
 namespace {
 
-using Path = std::vector<std::array<double, 2>>;
-
 Scene growing(const Path& path, double increment = 1.0) {
   Scene scene = block(14, 20);
   scene.domain.bottom = Edge::symmetry;

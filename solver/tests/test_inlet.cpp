@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "scene/inlet.hpp"
+#include "scene/scene.hpp"
 
 using namespace strata;
 
@@ -28,8 +28,8 @@ TEST_CASE("a table is linear between its rows and keeps its last value") {
                                     {15.25, 0.5},
                                     {20.0, 1.0},
                                     {1e6, 1.0}}) {
-    CHECK(inlet_pressure(with_table(Fluid::TableOf::pressure_Pa), time) == Approx(value).margin(1e-12));
-    CHECK(inlet_rate(with_table(Fluid::TableOf::rate_m2_s), time) == Approx(value).margin(1e-12));
+    CHECK(with_table(Fluid::TableOf::pressure_Pa).inlet_pressure(time) == Approx(value).margin(1e-12));
+    CHECK(with_table(Fluid::TableOf::rate_m2_s).inlet_rate(time) == Approx(value).margin(1e-12));
   }
 }
 
@@ -37,20 +37,20 @@ TEST_CASE("without a table the inlet has a ramp or one rate") {
   Fluid fluid;
   fluid.start_Pa = 2e6;
   fluid.rate_Pa_s = -3e5;
-  CHECK(inlet_pressure(fluid, 2.0) == 1.4e6);
-  CHECK(fastest_change(fluid) == 3e5);
+  CHECK(fluid.inlet_pressure(2.0) == 1.4e6);
+  CHECK(fluid.fastest_change() == 3e5);
   fluid.rate_m2_s = 1e-4;
-  CHECK(inlet_rate(fluid, 7.0) == 1e-4);
-  CHECK(next_row(fluid, 0.0) == std::numeric_limits<double>::infinity());
+  CHECK(fluid.inlet_rate(7.0) == 1e-4);
+  CHECK(fluid.next_row(0.0) == std::numeric_limits<double>::infinity());
 }
 
 // Mutation that fails: no slack, so that a step that ends a digit before a row is followed by one of no length.
 TEST_CASE("the next row, and the fastest change of a pressure") {
   const Fluid fluid = with_table(Fluid::TableOf::pressure_Pa);
-  CHECK(next_row(fluid, 0.0) == 10.0);
-  CHECK(next_row(fluid, 9.9) == 10.0);
-  CHECK(next_row(fluid, 10.0) == 10.5);
-  CHECK(next_row(fluid, 10.0 - 1e-14) == 10.5);
-  CHECK(next_row(fluid, 20.0) == std::numeric_limits<double>::infinity());
-  CHECK(fastest_change(fluid) == 8.0);
+  CHECK(fluid.next_row(0.0) == 10.0);
+  CHECK(fluid.next_row(9.9) == 10.0);
+  CHECK(fluid.next_row(10.0) == 10.5);
+  CHECK(fluid.next_row(10.0 - 1e-14) == 10.5);
+  CHECK(fluid.next_row(20.0) == std::numeric_limits<double>::infinity());
+  CHECK(fluid.fastest_change() == 8.0);
 }

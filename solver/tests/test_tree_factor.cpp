@@ -136,7 +136,7 @@ TEST_CASE("displacements of a few records are those among all") {
   const IntactBody& body = *s.model.body;
   const auto part = displacements(scene, s.state(), body, s.model.condensed, s.at.j, s.model.asked);
   const auto all = displacements(scene, s.state(), body, s.model.condensed, s.at.j, ask_for_all(s.state(), body));
-  REQUIRE(s.model.asked.blocks.size() < body.factor().all().size());
+  REQUIRE(s.model.asked.blocks.size() < body.factor.all().size());
   double largest = 0.0;
   for (const int record : s.model.asked.records) {
     const auto r = static_cast<std::size_t>(record);
