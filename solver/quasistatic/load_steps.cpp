@@ -332,7 +332,7 @@ struct LoadStep {
 // there within dt; 0: none.
 double front_comes_later(const Scene& scene, const Rocks& rocks, const LoadPoint& from, double dt, double later,
                          State& state, Quasistatic& run) {
-  if (next_row(scene.fluid, from.time) < from.time + later) return 0.0;  // another rate
+  if (scene.fluid.next_row(from.time) < from.time + later) return 0.0;  // another rate
   constexpr int most = 6;
   for (int k = 0; k < most && later > dt; ++k, later = 0.5 * (dt + later)) {
     if (!try_step(scene, rocks, from, later, state, run).found) return 0.0;
