@@ -112,6 +112,7 @@ std::string comment_on(const Key& key, std::string_view indent = "") {
   return text;
 }
 
+// The scene with this title, its keys explained where they first stand.
 std::string new_scene_text(std::string_view title) {
   std::string text, table;
   std::set<std::string_view> explained;
