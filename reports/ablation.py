@@ -3,10 +3,9 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from reports.charts.ablation import draw_ablation
+from reports.charts.records import draw_ablation
 from reports.figures import Figure, Table, Topic
-from reports.shown import Shown
-from reports.words import NONE, experiment_name, listed, number, plain, share
+from reports.words import NONE, Shown, experiment_name, listed, number, plain, share
 from verification.ablation.table import CHANGES, NEEDED, SPARED, WANTED, Tried, read_all
 from verification.ablation.table import Table as Kept
 

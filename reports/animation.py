@@ -12,10 +12,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from reports.charts.animation import write_animation
-from reports.layout import layout_of
-from reports.runs import Arrays, NotAvailable, Run, fields_at, load_runs, output_times
-from reports.shown import Shown
-from reports.words import experiment_name, mechanics_name, mpa, number, plain
+from reports.runs import Arrays, NotAvailable, Run, fields_at, layout_of, load_runs, output_times
+from reports.words import Shown, experiment_name, mechanics_name, mpa, number, plain
 from verification.harness import store
 from verification.harness.command import command
 from verification.harness.paths import ROOT, RUNS

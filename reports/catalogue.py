@@ -8,12 +8,9 @@ from reports.charts.experiments import draw_heights, draw_paths, draw_profiles
 from reports.crack import copies_figure, divided, index_when_tip_passes, pressure_figure
 from reports.curves import drawn_of, height_figure, path_figure, profile_figure
 from reports.figures import Figure
-from reports.layout import layout_of
-from reports.runs import NotAvailable, Run, load_run, output_times
-from reports.shown import Shown
-from reports.words import listed, plain
-from verification.harness.plan import make
-from verification.harness.run import Job
+from reports.runs import NotAvailable, Run, layout_of, load_run, output_times
+from reports.words import Shown, listed, plain
+from verification.harness.run import Job, make
 
 MAGNIFIED = 300.0  # of openings in Fig 1: a millimetre becomes a third of a 1 m cell
 FINE_TIP_M = 10.0

@@ -5,9 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from reports.comparison import path_distance, shift_Pa
-from reports.layout import layout_of
 from reports.outcome import event_inlet
-from reports.runs import Run, mechanics_in
+from reports.runs import Run, layout_of, mechanics_in
 from reports.words import NONE, mechanics_name, metres, mpa, number, plain
 from verification.harness.choices import Choice, Point
 

@@ -2,8 +2,7 @@
 
 from collections.abc import Sequence
 
-from reports.shown import Shown
-from reports.words import mechanics_name, number, plain, quantity, split_unit
+from reports.words import Shown, mechanics_name, number, plain, quantity, split_unit
 from verification.harness.choices import Point
 from verification.harness.claim_data import NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, CaseResult, ClaimResult, Reading
 from verification.harness.scenes import MECHANICS

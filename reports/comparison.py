@@ -7,7 +7,7 @@ import numpy as np
 from reports.figures import words_of
 from reports.outcome import Arrest, Outcome, outcome_of
 from reports.runs import Run
-from reports.shown import Shown
+from reports.words import Shown
 from verification.harness.observables import distances_to, path_length, resample
 from verification.harness.scenes import MECHANICS
 

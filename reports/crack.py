@@ -3,10 +3,8 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
-from reports.layout import layout_of
-from reports.runs import Arrays, NotAvailable, Run, fields_at, interfaces_at, output_times
-from reports.shown import Shown
-from reports.words import mechanics_name, metres, mpa, number, plain, share
+from reports.runs import Arrays, NotAvailable, Run, fields_at, interfaces_at, layout_of, output_times
+from reports.words import Shown, mechanics_name, metres, mpa, number, plain, share
 
 SQUARES = 160  # of Fig 2 along either side
 WINDOW_CELLS = 9  # width of Fig 1's panels: few enough for single nodes and particles to be told apart

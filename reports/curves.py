@@ -5,11 +5,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from reports.comparison import path_distance, shift_Pa
-from reports.layout import layout_of
 from reports.outcome import finding, outcome_of, outcomes_of
-from reports.runs import NotAvailable, Run, fields_at, lead_of, mechanics_in, output_times
-from reports.shown import Shown
-from reports.words import listed, mechanics_name, metres, minus, number, plain, sentence
+from reports.runs import NotAvailable, Run, fields_at, layout_of, lead_of, mechanics_in, output_times
+from reports.words import Shown, listed, mechanics_name, metres, minus, number, plain, sentence
 
 OPENING_INSTANTS = 7  # profiles a panel of Fig 7: as many as stay distinguishable in one colour scale
 PANEL_ASPECT = 1.15  # height over width of a panel of Fig 8

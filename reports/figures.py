@@ -15,8 +15,7 @@ import numpy as np
 
 from reports.charts.style import ONE_COLUMN, TWO_COLUMNS, save
 from reports.runs import NotAvailable, Run
-from reports.shown import Shown
-from reports.words import listed, mechanics_name, metres, mpa, plain, share
+from reports.words import Shown, listed, mechanics_name, metres, mpa, plain, share
 
 FILTERS = {"listed": listed, "mechanics": mechanics_name, "metres": metres, "mpa": mpa, "plain": plain, "share": share}
 OUT, TEMPLATES = (Path(__file__).resolve().parent / name for name in ("out", "templates"))

@@ -10,19 +10,15 @@ from pathlib import Path
 
 import numpy as np
 
-from reports.charts.gallery import draw_gallery
+from reports.charts.records import draw_gallery
 from reports.charts.style import save
-from reports.shown import Shown
+from reports.words import Shown
 import verification.gallery as gallery
-from verification.harness.column import column
 from verification.harness.command import command
 from verification.harness.front_table import with_table
-from verification.harness.given import given, net_Pa, rock
-from verification.harness.load import Array, Run, frames
+from verification.harness.load import Array, Run, column, frames, given, net_Pa, rock, value, values
 from verification.harness.paths import RUNS
-from verification.harness.plan import Made, make
-from verification.harness.reference import value, values
-from verification.harness.run import Job, timed
+from verification.harness.run import Job, Made, make, timed
 
 MARKS = "<!-- gallery -->\n", "<!-- end of gallery -->"
 Curve = tuple[str, str, Array, Array, bool]  # name, look, x, y, whether a value holds until the next

@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from reports.figures import Table, Topic, words_of
-from reports.shown import Shown
-from reports.words import NONE, mechanics_name, number, order_words, plain, relative, sentence, share, thousands
+from reports.words import NONE, Shown, mechanics_name, number, order_words, plain, relative, sentence, share, thousands
 from verification.harness.front_table import LINES
 
 ROUND_OFF = "round-off"  # as in verification/ladder/gates.py: how the reason of what holds to rounding begins

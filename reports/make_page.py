@@ -20,8 +20,8 @@ from reports.verification import write_verification  # noqa: E402
 from verification.harness.choices import read_points  # noqa: E402
 from verification.harness.claim_data import read_claims  # noqa: E402
 from verification.harness.paths import RUNS  # noqa: E402
-from verification.precision.store import DATA  # noqa: E402
-from verification.stability.store import RECORDS  # noqa: E402
+from verification.precision.problem import DATA  # noqa: E402
+from verification.stability.runner import RECORDS  # noqa: E402
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -6,12 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
-from reports.charts.measured import draw_measured
+from reports.charts.records import draw_measured
 from reports.figures import Figure, Table, Topic, words_of
-from reports.shown import Shown
-from reports.words import NONE, minus, mpa, plain, share, wall_time
+from reports.words import NONE, Shown, minus, mpa, plain, share, wall_time
 from verification.harness import store
-from verification.harness.reference import NoReference, reference
+from verification.harness.load import NoReference, reference
 from verification.measured import rubin
 
 DRAWN = ("plain", "closing_stress", "tough")  # the finest run of each

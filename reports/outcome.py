@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from reports.layout import INTERFACE, layout_of, settings_between
-from reports.runs import Arrays, NotAvailable, Run, interfaces_at, output_times
+from reports.runs import INTERFACE, Arrays, NotAvailable, Run, interfaces_at, layout_of, output_times, settings_between
 from reports.words import listed, metres, millimetres, mpa, plain
 from verification.harness.claim_data import BY_J
 

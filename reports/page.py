@@ -17,8 +17,7 @@ from reports.ladder import load_ladder
 from reports.ladder import topic as accuracy
 from reports.run_rows import title_of, write_runs
 from reports.runs import Run
-from reports.shown import Shown
-from reports.words import listed, mechanics_name, plain, wall_time
+from reports.words import Shown, listed, mechanics_name, plain, wall_time
 from verification.harness.choices import Point
 from verification.harness.claim_data import NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, ClaimResult
 from verification.harness.scenes import MECHANICS

@@ -7,19 +7,17 @@ from pathlib import Path
 
 from reports.charts.precision import draw_front
 from reports.figures import Figure, Table, Topic, words_of
-from reports.shown import Shown
-from reports.words import listed, sentence, share, wall_time
-from verification.precision import store
+from reports.words import Shown, listed, sentence, share, wall_time
 from verification.precision.judge import GROUPS, TOLERANCES, Dot, Panel, cheapest, choice_for, nearest, panel_of, pareto, run_at
-from verification.precision.problem import STRATA, Method
+from verification.precision.problem import DATA, STRATA, Method, Sheet, read_sheet
 from verification.precision.problems import PROBLEMS
 
 LEAST_SHOWN = 1e-5  # errors below are drawn there
 
 
-def measurements(folder: Path = store.DATA) -> Shown | None:
+def measurements(folder: Path = DATA) -> Shown | None:
     """All that was measured: panels, the machine in words, notes on what is odd; None without data, ValueError where they cannot be read."""
-    sheets = [(problem, sheet) for problem in PROBLEMS if (sheet := store.read(problem.name, folder)) is not None and sheet.points]
+    sheets = [(problem, sheet) for problem in PROBLEMS if (sheet := read_sheet(problem.name, folder)) is not None and sheet.points]
     if not sheets:
         return None
     panels = tuple(panel_of(problem, wanted, sheet) for problem, sheet in sheets for wanted in problem.wanted)
@@ -28,7 +26,7 @@ def measurements(folder: Path = store.DATA) -> Shown | None:
     return Shown(panels=panels, recipe=recipe(measured), notes=notes(measured), version=version)
 
 
-def recipe(sheets: Sequence[store.Sheet]) -> tuple[tuple[str, str], ...]:
+def recipe(sheets: Sequence[Sheet]) -> tuple[tuple[str, str], ...]:
     """Hardware and method of the measurements, as names with words."""
     points = [point for sheet in sheets for point in sheet.points]
     dates = sorted(point.date for point in points)
@@ -45,7 +43,7 @@ def recipe(sheets: Sequence[store.Sheet]) -> tuple[tuple[str, str], ...]:
     )
 
 
-def notes(sheets: Sequence[store.Sheet]) -> tuple[str, ...]:
+def notes(sheets: Sequence[Sheet]) -> tuple[str, ...]:
     """What is odd about the data: disturbed runs, single runs, several machines or versions."""
     points = [point for sheet in sheets for point in sheet.points]
     odd = {"were disturbed by something else on the machine": sum(point.disturbed for point in points),
@@ -178,7 +176,7 @@ def _shipped(panels: Sequence[Panel]) -> str:
     return f"The scenes' own setting, with inertia ({label}, {level}), takes {wall_time(dots[0].time_s)}: errors of {_errors(dots, panels)}."
 
 
-def topic(folder: Path = store.DATA) -> Topic | None:
+def topic(folder: Path = DATA) -> Topic | None:
     """The section of the front page; None without data, ValueError where they cannot be read."""
     found = measurements(folder)
     if found is None:

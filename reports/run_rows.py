@@ -10,11 +10,9 @@ import jinja2
 import numpy as np
 
 from reports.figures import write_page
-from reports.layout import flat_keys, settings_between
 from reports.outcome import held, interface_states, outcome_of
-from reports.runs import Run, mechanics_in
-from reports.shown import Shown
-from reports.words import NONE, listed, mechanics_name, metres, mpa, number, plain, setting, share, thousands, written
+from reports.runs import Run, flat_keys, mechanics_in, settings_between
+from reports.words import NONE, Shown, listed, mechanics_name, metres, mpa, number, plain, setting, share, thousands, written
 from verification.benchmarks.machine import this_machine
 from verification.harness.claim_data import BY_J
 

@@ -8,13 +8,11 @@ from pathlib import Path
 
 from reports.charts.stability import draw_edges, draw_part
 from reports.figures import Figure, make, told_of, write_page
-from reports.shown import Shown
-from reports.words import NONE, general, minus, span
-from verification.stability import store
+from reports.words import NONE, Shown, general, minus, span
+from verification.stability import runner
 from verification.stability.families import families
 from verification.stability.family import FAILED, GARBAGE, MARKED, OUTCOMES, REFUSED, STABLE, Family
-from verification.stability.judge import problems
-from verification.stability.store import EdgeFound, PointFound, Record
+from verification.stability.runner import EdgeFound, PointFound, Record, problems
 
 NAME = "stability.html"
 MANY = 6  # families of a section that are drawn one by one
@@ -29,12 +27,12 @@ def walk_of(family: Family, record: Record | None) -> Shown:
                  parameter=f"{family.parameter.name} ({unit})" if unit else family.parameter.name)
 
 
-def parts(folder: Path = store.RECORDS) -> list[Shown]:
+def parts(folder: Path = runner.RECORDS) -> list[Shown]:
     """All families with their records, by section in the order of the catalogue; the anchor is the first one's name, edges are those that have
     a number under a name ("predicted", "measured" or "difference")."""
     sections: dict[str, list[Shown]] = {}
     for name, family in families().items():
-        sections.setdefault(family.section or family.title, []).append(walk_of(family, store.read(name, folder)))
+        sections.setdefault(family.section or family.title, []).append(walk_of(family, runner.read(name, folder)))
     return [Shown(title=title, walks=walks, anchor=walks[0].family.name, points=[point for walk in walks for point in walk.points],
                   wrong=[f"{walk.title}: {words}" for walk in walks for words in walk.wrong],
                   edges={key: [value for walk in walks if (value := getattr(walk.edge, key)) is not None]
@@ -127,7 +125,7 @@ def headline(every: Sequence[Shown]) -> str:
     return said + theory + (f"; {wrong} walks are NOT as they are to be" if wrong else "; all as they are to be")
 
 
-def write_stability(out: Path, folder: Path = store.RECORDS) -> Shown:
+def write_stability(out: Path, folder: Path = runner.RECORDS) -> Shown:
     """Write the page below a page's folder; whatever is wrong with the records is told, not raised."""
     return told_of(NAME, lambda: _write(out, folder), "The stability atlas could not be shown")
 

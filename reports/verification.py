@@ -6,8 +6,7 @@ from typing import Any
 from reports.charts.ladder import draw_convergence
 from reports.figures import Figure, make, told_of, words_of, write_page
 from reports.ladder import family_shown, load_ladder
-from reports.shown import Shown
-from reports.words import counted
+from reports.words import Shown, counted
 
 NAME = "verification.html"
 

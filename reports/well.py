@@ -5,20 +5,16 @@ usage: python3 -m reports.well [--out experiments/well]     (makes its three run
 
 import sys
 from itertools import accumulate
-from pathlib import Path
 
 import numpy as np
 
+from reports.charts.records import draw_well
 from reports.charts.style import save
-from reports.charts.well import draw_well
-from reports.shown import Shown
-from verification.harness.column import EDGE_M, column, pressure_beyond
+from reports.words import Shown
 from verification.harness.command import command
-from verification.harness.load import Run, frames
+from verification.harness.load import EDGE_M, Run, column, frames, pressure_beyond, values
 from verification.harness.paths import EXPERIMENTS, RUNS
-from verification.harness.plan import make_all
-from verification.harness.reference import values
-from verification.harness.run import Job
+from verification.harness.run import Job, make_all
 
 SCENE = EXPERIMENTS / "well" / "well.toml"
 BOTTOM_M = 2500.0  # depth of y = 0, the log's last row

@@ -1,8 +1,9 @@
-"""Numbers as words: units, rounding and lists, used by titles, captions and tables."""
+"""What is shown: plain data under names, and numbers as words: units, rounding and lists, used by titles, captions and tables."""
 
 import math
 import re
 from collections.abc import Callable, Sequence
+from types import SimpleNamespace
 from typing import Any
 
 # How keys end, with the factor to the printed unit and that unit; longer endings before those they end in.
@@ -175,3 +176,7 @@ def quantity(key: str, value: Any) -> str:
     if isinstance(value, dict):
         return "; ".join(f"{plain(k)} {quantity(k if unit == '' else key, v)}" for k, v in value.items())
     return str(value)
+
+
+class Shown(SimpleNamespace):
+    """What is shown, under names that carry their units; a figure's has its finding as `title`."""

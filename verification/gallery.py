@@ -6,11 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verification.harness.column import column, pressure_beyond
-from verification.harness.given import E_prime, crack_ends, given, half_length, net_Pa, rock, start_of, upper
-from verification.harness.load import Run, frames
+from verification.harness.load import E_prime, Run, column, crack_ends, frames, given, half_length, net_Pa, pressure_beyond, rock, start_of, upper, value
 from verification.harness.paths import EXPERIMENTS
-from verification.harness.reference import value
 from verification.ladder.cases.junction import along, curve
 
 FOLDER = EXPERIMENTS / "gallery"

@@ -10,7 +10,7 @@ from matplotlib.colors import BoundaryNorm
 from matplotlib.figure import Figure
 
 from reports.charts.style import COLOURS, DOTTED, FLUID, INK, PALE, new_figure, plt
-from reports.shown import Shown
+from reports.words import Shown
 
 DPI, PER_SECOND, HOLD = 80, 8, 12  # pixels an inch, frames a second, times that the last one is shown
 STEPS = 12  # of colour: few enough for a GIF, whose frames then differ in little

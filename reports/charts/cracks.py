@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Wedge
 
 from reports.charts.style import COLOURS, FLUID, INK, ONE_COLUMN, PALE, entry, new_figure, panel_rows, put_legend
-from reports.shown import Shown
+from reports.words import Shown
 
 # By side of the fracture (0: ahead of its tip), then below and above the first interface.
 _SIDES: dict[int, tuple[str, str, str]] = {

@@ -10,7 +10,7 @@ from reports.charts.style import (
     COLOURS, DOTTED, FLAG, FLUID, INK, KIND_NAMES, MARKERS, ONE_COLUMN, PALE, SHADES, SOFT, STIFF, TWO_COLUMNS, entry, interface_lines, line_of, new_figure, panel_rows,
     put_legend, wrapped,
 )
-from reports.shown import Shown
+from reports.words import Shown
 
 HEIGHT = "height above the symmetry line (m)"
 

@@ -7,8 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
 from reports.charts.style import FLAG, INK, PALE, entry, panel_grid, put_legend, wrapped
-from reports.shown import Shown
-from reports.words import order_words
+from reports.words import Shown, order_words
 
 # Wong's palette again and paler ones, each with its own mark for those who see no colours.
 _LOOKS: tuple[tuple[str, str], ...] = (

@@ -9,7 +9,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from reports.charts.style import DASHED, FLAG, INK, ONE_COLUMN, PALE, entry, panel_grid, put_legend, wrapped
-from reports.shown import Shown
+from reports.words import Shown
 
 _COLOURS = {"quasistatic": "#0067a5", "updated": "#d04a00", "total": "#a3397f", "elements": "#00845f"}
 _NAMES = {

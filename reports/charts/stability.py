@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from reports.charts.style import DASHED, INK, PALE, entry, new_figure, panel_grid, put_legend, wrapped
-from reports.shown import Shown
+from reports.words import Shown
 
 # Colour, mark and name of each outcome.
 _OUTCOMES = {

@@ -10,8 +10,8 @@ from PIL import Image
 from reports.animation import animations, chosen, largest_principal, main, movie
 from reports.charts.animation import write_animation
 from reports.runs import load_run, load_runs
-from reports.shown import Shown
 from reports.tests.synthetic import OUTPUTS, Plan, write_run
+from reports.words import Shown
 
 SOFT = Plan("soft", ("soft",), stop_at_m=10.0, restart_Pa=3.2e6)
 

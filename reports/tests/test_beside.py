@@ -10,11 +10,9 @@ import pytest
 from reports import precision, stability
 from reports.make_page import main
 from reports.page import topics
-from verification.precision import store
-from verification.precision.problem import Problem
+from verification.precision.problem import FAILED, OK, REFUSED, Found, Point, Problem, Sheet, read_sheet, write_sheet
 from verification.precision.problems import PROBLEMS
-from verification.precision.store import FAILED, OK, REFUSED, Found, Point, Sheet
-from verification.stability import store as atlas_store
+from verification.stability import runner as atlas
 from verification.stability.family import GARBAGE
 
 
@@ -46,11 +44,11 @@ def test_the_page_shows_every_walk_with_its_edge(tmp_path: Path) -> None:
 def test_garbage_and_a_wrong_edge_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A record with garbage in it, and one whose edge is 5 % off, are said to be wrong in the headline, the table and the section."""
     records = tmp_path / "records"
-    shutil.copytree(atlas_store.RECORDS, records)
-    step, flow = atlas_store.read("step_bspline2_total_4"), atlas_store.read("flow_explicit")
+    shutil.copytree(atlas.RECORDS, records)
+    step, flow = atlas.read("step_bspline2_total_4"), atlas.read("flow_explicit")
     assert step is not None and flow is not None and step.edge is not None and step.edge.predicted is not None
-    atlas_store.write(replace(step, edge=replace(step.edge, measured=1.05 * step.edge.predicted)), records)
-    atlas_store.write(replace(flow, points=(replace(flow.points[0], outcome=GARBAGE), *flow.points[1:])), records)
+    atlas.write(replace(step, edge=replace(step.edge, measured=1.05 * step.edge.predicted)), records)
+    atlas.write(replace(flow, points=(replace(flow.points[0], outcome=GARBAGE), *flow.points[1:])), records)
     every = stability.parts(records)
     assert "2 walks are NOT as they are to be" in stability.headline(every)
     monkeypatch.setattr(stability, "figures_of", lambda part: [])  # are drawn in the test above
@@ -94,7 +92,7 @@ def made_up(problem: Problem, error: float = 0.02) -> Sheet:
 def data(tmp_path: Path) -> Path:
     """Data of all problems."""
     for problem in PROBLEMS:
-        store.write(made_up(problem), tmp_path / "data")
+        write_sheet(made_up(problem), tmp_path / "data")
     return tmp_path / "data"
 
 
@@ -117,9 +115,9 @@ def test_torn_data_cost_the_chart_alone(data: Path, tmp_path: Path) -> None:
 
 def test_odd_measurements_are_told(data: Path) -> None:
     """Disturbed and single runs, and problems that are not there."""
-    sheet = store.read("block", data)
+    sheet = read_sheet("block", data)
     assert sheet is not None
-    store.write(replace(sheet, points=(replace(sheet.points[0], disturbed=True, once=True), *sheet.points[1:])), data)
+    write_sheet(replace(sheet, points=(replace(sheet.points[0], disturbed=True, once=True), *sheet.points[1:])), data)
     (data / "soft.json").unlink()
     found = precision.measurements(data)
     assert found is not None
@@ -141,7 +139,7 @@ def test_what_is_drawn_is_what_is_judged(data: Path) -> None:
 
 def test_the_table_says_where_none_reaches(tmp_path: Path) -> None:
     """A tolerance that no method reaches has no advice."""
-    store.write(made_up(PROBLEMS[0], error=3.0), tmp_path)
+    write_sheet(made_up(PROBLEMS[0], error=3.0), tmp_path)
     found = precision.measurements(tmp_path)
     assert found is not None
     row = precision.table_of(found.panels)[0]

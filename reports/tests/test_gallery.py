@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reports.charts.gallery import draw_gallery
+from reports.charts.records import draw_gallery
 from reports.charts.style import save
 from reports.gallery import row, shown
 from verification.gallery import FOLDER, SCENES, Scene

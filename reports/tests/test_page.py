@@ -14,12 +14,12 @@ from reports.figures import Table
 from reports.make_page import main
 from reports.page import cell_words, minute
 from reports.runs import Run
-from reports.shown import Shown
 from reports.tests.browser import Browser, faults
 from reports.tests.synthetic import STEMS, Plan, claims, write_all, write_run
+from reports.words import Shown
 from verification.harness.claim_data import REPRODUCED
 from verification.harness.paths import ROOT
-from verification.stability.store import RECORDS
+from verification.stability.runner import RECORDS
 
 STUDY_FIGURES = tuple(f"fig{number}" for number in range(1, 9))
 KEPT_FIGURES = ("ablation", "crossing_map", "measured")

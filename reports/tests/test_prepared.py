@@ -13,10 +13,9 @@ from reports.comparison import comparisons, inertia_words, path_distance
 from reports.crack import sampled, side_of
 from reports.curves import height_figure, largest_turn, path_figure, profile_figure
 from reports.figures import make, suspect_words
-from reports.layout import layout_of
 from reports.outcome import finding, outcome_of, outcomes_of
 from reports.run_rows import base_of, closure_of, differences, suspicions
-from reports.runs import load_run, load_runs
+from reports.runs import layout_of, load_run, load_runs
 from reports.tests.synthetic import STEMS, Plan, claims, write_both, write_run
 from reports.words import number, quantity
 from verification.harness.choices import Choice, Point

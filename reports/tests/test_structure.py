@@ -35,7 +35,7 @@ def test_no_file_both_computes_and_plots(path: Path) -> None:
     in_charts = path.parent.name == "charts"
     assert not (uses(modules, DRAWS) and uses(modules, COMPUTES))
     assert in_charts or not uses(modules, DRAWS)
-    assert not in_charts or modules & MODULES.keys() <= {"reports.charts.style", "reports.shown", "reports.words"}
+    assert not in_charts or modules & MODULES.keys() <= {"reports.charts.style", "reports.words"}
 
 
 def test_no_modules_import_each_other() -> None:

@@ -10,8 +10,7 @@ import pytest
 from reports.charts.ladder import spread_apart
 from reports.ladder import convergence_figure, load_ladder, topic
 from reports.make_page import main as make_page
-from reports.shown import Shown
-from reports.words import relative
+from reports.words import Shown, relative
 from verification.harness.front_table import LINES
 from verification.harness.paths import ROOT
 

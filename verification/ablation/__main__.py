@@ -8,12 +8,10 @@ from typing import Any
 
 from verification.ablation import table as tables
 from verification.ablation.changes import Change, factors_of, ingredients_of, named
-from verification.ablation.measure import Maker, NoBase, left_out, table_of, varied
-from verification.harness.choose import beginnings
-from verification.harness.command import command
+from verification.ablation.table import Maker, NoBase, left_out, table_of, varied
+from verification.harness.command import beginnings, command
 from verification.harness.paths import EXPERIMENTS, RUNS, need_solver
-from verification.harness.plan import affordable, make_all
-from verification.harness.run import Job
+from verification.harness.run import Job, affordable, make_all
 from verification.harness.scenes import MECHANICS, chosen, content_of, mechanics_of, scene_of, scenes_of
 
 ABLATION_RUNS, BUDGET_RUNS = RUNS / "ablation", RUNS / "budget"

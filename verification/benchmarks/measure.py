@@ -17,8 +17,7 @@ from typing import Any
 
 from verification.benchmarks.record import STEP, Figure
 from verification.harness.paths import EXPERIMENTS, ROOT
-from verification.harness.plan import make
-from verification.harness.run import Job
+from verification.harness.run import Job, make
 from verification.harness.scenes import STUDY_VARIANTS, variants_of
 
 # Beyond this working set a step waits for memory rather than for the core (twice a last cache of 32 MB).

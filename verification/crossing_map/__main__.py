@@ -10,10 +10,9 @@ run failed, 2 for bad input.
 import shutil
 import sys
 
-from verification.crossing_map.maps import MAPS, RECORDS
+from verification.crossing_map.verdict import MAPS, RECORDS
 from verification.harness import sweep
-from verification.harness.choose import beginnings, choose
-from verification.harness.command import command
+from verification.harness.command import beginnings, choose, command
 from verification.harness.paths import RUNS
 
 LONGEST_S = 300.0  # a hundred times what a run takes

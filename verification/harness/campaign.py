@@ -13,13 +13,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from verification.harness import claims
-from verification.harness.choose import beginnings, choose
-from verification.harness.command import command
+from verification.harness.command import beginnings, choose, command
 from verification.harness.paths import EXPERIMENTS, ROOT, RUNS
-from verification.harness.plan import Made, make_all, name_of
-from verification.harness.run import Job, done_before
+from verification.harness.run import Job, Made, done_before, duration, make_all, name_of
 from verification.harness.scenes import MECHANICS, mechanics_of, scenes_of, variants_of
-from verification.harness.side_by_side import duration
 
 PAGE = ROOT / "reports" / "make_page.py"  # reads what is there and is not imported here
 

@@ -4,7 +4,7 @@ import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from verification.harness.choose import refuse, twice
+from verification.harness.command import refuse, twice
 from verification.harness.scenes import scenes_of, variants_of
 
 FILE = Path("choices") / "points.toml"  # below the folder of the scenes

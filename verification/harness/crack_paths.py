@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from verification.harness.load import Array, LoadError, Run
+from verification.harness.load import Array, LoadError, Run, Setting, values
 from verification.harness.observables import distances_to
-from verification.harness.reference import Setting, values
 
 INTERFACE_M = 5.0  # to the right of the first crack
 FIRST_TIP_M = 5.0

@@ -21,12 +21,11 @@ from verification.harness.command import command
 from verification.harness.load import Run
 from verification.harness.observables import path_length
 from verification.harness.paths import need_solver
-from verification.harness.plan import affordable, make_all
 from verification.harness.quantities import (
     HEIGHTS_M, NO_ARREST, Quantity, lack_words, lowest_end_m, noise_of, path_gap, quantities_of, turns,
 )  # fmt: skip
 from verification.harness.richardson import Estimate, estimate, estimate_of_changes
-from verification.harness.run import Job, Outcome
+from verification.harness.run import Job, Outcome, affordable, make_all
 from verification.harness.scenes import MECHANICS, chosen, content_of, mechanics_of, scene_of
 
 REFINE_RUNS = paths.RUNS / "refine"

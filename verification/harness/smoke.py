@@ -18,10 +18,8 @@ from verification.harness.command import command
 from verification.harness.load import Run
 from verification.harness.observables import path_length, resample
 from verification.harness.paths import EXPERIMENTS, RUNS
-from verification.harness.plan import make
-from verification.harness.run import Job
+from verification.harness.run import Job, Task, make, side_by_side
 from verification.harness.scenes import MECHANICS, mechanics_of
-from verification.harness.side_by_side import Task, side_by_side
 
 EXPECTED = EXPERIMENTS / "expected"
 SMOKE_RUNS = RUNS / "smoke"

@@ -34,13 +34,10 @@ import numpy as np
 
 from verification.harness import store
 from verification.harness.campaign import result_line
-from verification.harness.choose import claimed
 from verification.harness.command import command
 from verification.harness.load import LoadError, Run, read_history
 from verification.harness.paths import ROOT, RUNS, need_solver, solver
-from verification.harness.plan import Made, make
-from verification.harness.run import CUT_SHORT, FINAL, Job, done_before, load_outcome, summary_in
-from verification.harness.side_by_side import Task, duration, say, side_by_side
+from verification.harness.run import CUT_SHORT, FINAL, Job, Made, Task, claimed, done_before, duration, load_outcome, make, say, side_by_side, summary_in
 
 TRIES = 3  # of runs that are killed each time
 

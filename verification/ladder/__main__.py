@@ -18,13 +18,11 @@ from dataclasses import asdict
 from pathlib import Path
 
 from verification.harness import store
-from verification.harness.choose import beginnings
-from verification.harness.command import aligned, command, count, number
+from verification.harness.command import aligned, beginnings, command, count, number
 from verification.ladder import gates as book
 from verification.ladder.case import Families, about, chosen, families
 from verification.ladder.gates import Gates
-from verification.ladder.judge import Tally, accepted, judged, tally
-from verification.ladder.measure import RUNS, Row, make_all, rows_of, rungs_of
+from verification.ladder.measure import RUNS, Row, Tally, accepted, judged, make_all, rows_of, rungs_of, tally
 
 HEADER = ("case", "quantity", "level", "value", "reference", "error", "order", "cost", "gate", "verdict")
 RIGHT = (3, 4, 5, 6, 7, 8)

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from verification.harness import choose
+from verification.harness.command import choose, folder_name, listed, refuse, twice
 from verification.harness.load import Run
 from verification.ladder import cases as package
 
@@ -124,7 +124,7 @@ Families = dict[str, tuple[Case, ...]]
 
 def families() -> Families:
     """All families by name; raises ValueError for one that is not as it should be."""
-    found = {name: tuple(cases) for name, cases in choose.listed(package, "CASES").items()}
+    found = {name: tuple(cases) for name, cases in listed(package, "CASES").items()}
     for family, members in found.items():
         check(family, members)
     return found
@@ -142,12 +142,12 @@ def about(family: str) -> str:
 def check(family: str, members: Iterable[Case]) -> None:
     """Names are unique, sizes fall from level to level, something is measured; raises ValueError otherwise."""
     members = tuple(members)
-    double = {f"{family}: cases": choose.twice(case.name for case in members)}
+    double = {f"{family}: cases": twice(case.name for case in members)}
     wrong = {}
     for case in members:
         where, labels, sizes = f"{family}/{case.name}", [level.label for level in case.levels], [level.size for level in case.levels]
-        double[f"{where}: levels"] = choose.twice(map(choose.folder_name, labels))
-        double[f"{where}: quantities"] = choose.twice(quantity.name for quantity in case.quantities)
+        double[f"{where}: levels"] = twice(map(folder_name, labels))
+        double[f"{where}: quantities"] = twice(quantity.name for quantity in case.quantities)
         strangers = {label for quantity in case.quantities for label in quantity.no_order_at} - set(labels)
         wrong |= {
             f"{where}: no_order_at names no level: {', '.join(sorted(strangers))}": strangers,
@@ -157,12 +157,12 @@ def check(family: str, members: Iterable[Case]) -> None:
             f"{where}: {case.smoke} smoke levels of {len(case.levels)}": not 1 <= case.smoke <= len(case.levels),
         }
     wrong |= {f"{what} of the same name: {', '.join(names)}": names for what, names in double.items()}
-    choose.refuse(wrong)
+    refuse(wrong)
 
 
 def chosen(known: Families, wanted: Iterable[str] = (), names: Iterable[str] = ()) -> Families:
     """The cases whose families and names begin as is asked (all where nothing is); raises ValueError for a beginning that none has."""
-    own = choose.choose(known, wanted)
-    kept = choose.choose({case.name: case for members in own.values() for case in members}, names, "case")
+    own = choose(known, wanted)
+    kept = choose({case.name: case for members in own.values() for case in members}, names, "case")
     found = {family: tuple(case for case in members if case.name in kept) for family, members in own.items()}
     return {family: members for family, members in found.items() if members}

@@ -8,9 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from verification.harness.given import given, last
-from verification.harness.load import LoadError, Run
-from verification.harness.reference import values
+from verification.harness.load import LoadError, Run, given, last, values
 from verification.ladder.case import Array, Quantity, Sample
 
 # Names in the fields of a run, units, and names in strata-reference.

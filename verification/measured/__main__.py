@@ -14,8 +14,7 @@ import numpy as np
 from verification.harness import paths, store
 from verification.harness.command import aligned, command, number
 from verification.harness.load import Run, load
-from verification.harness.plan import make_all
-from verification.harness.run import Job
+from verification.harness.run import Job, make_all
 from verification.measured import rubin
 
 RUNS = paths.RUNS / "measured"

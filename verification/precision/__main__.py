@@ -16,17 +16,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from verification.benchmarks import machine
-from verification.harness.choose import beginnings, choose
-from verification.harness.command import command
+from verification.harness.command import beginnings, choose, command
 from verification.harness.paths import reference_program, solver
-from verification.harness.plan import about_s
+from verification.harness.run import about_s
 from verification.harness.scenes import content_of
 from verification.ladder.case import Level
-from verification.precision import store
 from verification.precision.measure import LONG_S, REPEATS, RUNS, SOME, WARM_S, key_of, measured
-from verification.precision.problem import Method, Problem, thinned
+from verification.precision.problem import DATA, Method, Point, Problem, Sheet, read_sheet, thinned, write_sheet
 from verification.precision.problems import PROBLEMS
-from verification.precision.store import Point, Sheet
 
 QUICK = RUNS / "quick"
 
@@ -109,7 +106,7 @@ def measure_all(tasks: Sequence[Task], sheets: dict[str, Sheet], folder: Path, r
         name = task.problem.name
         point = measured(task.problem, task.method, task.level, runs, once)
         sheets[name] = sheets[name].with_point(point)
-        store.write(sheets[name], folder, order[name])
+        write_sheet(sheets[name], folder, order[name])
         minutes = sum(one.left_s(once) for one in left[k:]) / 60.0
         print(f"[{k:3d}/{len(left)}, {minutes:.1f} min left] {name}/{task.method.name} {task.level.label}: {words(point)}", flush=True)
 
@@ -131,10 +128,10 @@ def main(arguments: list[str] | None = None) -> int:
     for program in (solver(), reference_program()):
         if not program.is_file():
             parser.error(f"there is no {program}: build it first (ci/chart does)")
-    folder = options.out or (QUICK / "data" if options.quick else store.DATA)
+    folder = options.out or (QUICK / "data" if options.quick else DATA)
     runs = options.out / "runs" if options.out else QUICK if options.quick else RUNS
     once, here = options.quick or options.once, machine.described()
-    known = {problem.name: store.read(problem.name, folder) for problem in problems}
+    known = {problem.name: read_sheet(problem.name, folder) for problem in problems}
     same = {name: sheet is not None and machine.made_here(sheet.machine, here) for name, sheet in known.items()}
     tasks = [task for problem in problems for task in tasks_of(problem, known[problem.name], same[problem.name], options.fresh)]
     if options.list:

@@ -11,8 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from verification.harness.richardson import CLEAN_ORDERS
-from verification.precision.problem import STRATA, Method, Problem, Wanted
-from verification.precision.store import Found, Point, Sheet
+from verification.precision.problem import STRATA, Found, Method, Point, Problem, Sheet, Wanted
 
 TOLERANCES = (0.05, 0.01, 0.001)  # 5, 1 and 0.1 %
 GROUPS = ("any method", "with inertia", "boundary elements")  # the solver's methods, those of them with inertia, strata-reference

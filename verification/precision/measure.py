@@ -17,14 +17,13 @@ from pathlib import Path
 from verification.benchmarks.machine import others_running
 from verification.harness import paths
 from verification.harness import run as harness
-from verification.harness.choose import folder_name
+from verification.harness.command import folder_name
 from verification.harness.load import LoadError, load
 from verification.harness.paths import ROOT, reference_program, solver
 from verification.harness.run import Job, Timed, timed
 from verification.ladder.case import Level, Sample
 from verification.ladder.measure import summarised
-from verification.precision.problem import STRATA, Answer, Method, Problem
-from verification.precision.store import FAILED, OK, REFUSED, TOO_LONG, Found, Point
+from verification.precision.problem import FAILED, OK, REFUSED, STRATA, TOO_LONG, Answer, Found, Method, Point, Problem
 
 RUNS = paths.RUNS / "precision"
 WARM_S, LONG_S = 2.0, 10.0

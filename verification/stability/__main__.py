@@ -11,20 +11,18 @@ import argparse
 import sys
 from dataclasses import replace
 
-from verification.harness.choose import beginnings, choose
-from verification.harness.command import command
+from verification.harness.command import beginnings, choose, command
 from verification.harness.paths import solver
-from verification.harness.side_by_side import say
-from verification.stability import store
+from verification.harness.run import say
+from verification.stability import runner
 from verification.stability.families import families
 from verification.stability.family import Family
-from verification.stability.judge import changes, problems
-from verification.stability.runner import RUNS, walk
+from verification.stability.runner import RUNS, changes, problems, walk
 
 
 def judged(family: Family, options: argparse.Namespace) -> list[str]:
     """Walk a family; what is wrong with it, and with what was recorded of it."""
-    before = store.read(family.name)
+    before = runner.read(family.name)
     now = walk(family, options.smoke, options.runs, tell=say)
     if options.smoke:
         now = replace(now, edge=before.edge if before is not None else None)
@@ -33,7 +31,7 @@ def judged(family: Family, options: argparse.Namespace) -> list[str]:
     for line in told:
         print(f"  {line}")
     if options.accept:
-        store.write(now)
+        runner.write(now)
     else:
         wrong += told
     if now.edge is not None and now.edge.measured is not None:

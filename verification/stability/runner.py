@@ -1,18 +1,73 @@
-"""Runs the points of a family through the command line and says how each ended; what was run before is not run again."""
+"""Runs the points of a family through the command line and says how each ended (what was run before is not run again), keeps what was found as
+verification/stability/records/FAMILY.json (written by ci/atlas --accept, read by page and tests), and judges it: no garbage, the edge where theory says, and
+beyond it what the family declares."""
 
 import json
 import math
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from verification.harness import paths
-from verification.harness.choose import claimed, folder_name
+from verification.harness import paths, store
+from verification.harness.command import folder_name
 from verification.harness.load import OF_SPEEDS, LoadError, Run, load
 from verification.harness.paths import ROOT
-from verification.harness.plan import make
-from verification.harness.run import Job, Outcome
-from verification.harness.side_by_side import Tell
+from verification.harness.run import Job, Outcome, Tell, claimed, make
 from verification.stability.family import FAILED, GARBAGE, MARKED, REFUSED, STABLE, Checked, Family, Point, bisected
-from verification.stability.store import EdgeFound, PointFound, Record
+
+RECORDS = Path(__file__).resolve().parent / "records"
+
+
+@dataclass(frozen=True)
+class PointFound:
+    """How a point ended: outcome, what the check found of a completed run, why (of one that is not stable), and its CPU time (s)."""
+
+    label: str
+    value: float
+    outcome: str
+    checked: Checked | None = None
+    reason: str = ""
+    cpu_s: float = 0.0
+
+
+@dataclass(frozen=True)
+class EdgeFound:
+    """The edge of a family: as predicted, as measured, and the last sound and first unsound value that were tried."""
+
+    predicted: float | None
+    measured: float | None
+    sound: float | None = None
+    unsound: float | None = None
+
+    @property
+    def difference(self) -> float | None:
+        """Measured edge over predicted one less 1; None where one of them is not known."""
+        return None if self.predicted is None or self.measured is None else self.measured / self.predicted - 1.0
+
+
+@dataclass(frozen=True)
+class Record:
+    """All that was found of a family, by which version of strata."""
+
+    family: str
+    version: str
+    edge: EdgeFound | None
+    points: tuple[PointFound, ...]
+
+    def point(self, label: str) -> PointFound | None:
+        """The point of a label."""
+        return next((point for point in self.points if point.label == label), None)
+
+
+def read(family: str, folder: Path = RECORDS) -> Record | None:
+    """A family's record; None where there is none. Raises ValueError for a file that cannot be understood."""
+    return store.read(Record, folder / f"{family}.json")
+
+
+def write(record: Record, folder: Path = RECORDS) -> Path:
+    """Write a family's record, a point a line, what checks found to seven digits."""
+    points = tuple(replace(point, checked=point.checked and point.checked.rounded()) for point in record.points)
+    return store.write(replace(record, points=points), folder / f"{record.family}.json", ("edge", "points"))
+
 
 RUNS = paths.RUNS / "atlas"
 LIMIT_S = 120.0  # a run that takes longer is garbage: nobody knows what it would say
@@ -88,3 +143,84 @@ def walk(family: Family, smoke: bool = False, runs: Path = RUNS, tell: Tell = la
     written = [path for point in family.points if (path := folder_of(family, point, runs) / "summary.json").is_file()]
     version = str(json.loads(written[0].read_text(encoding="utf-8"))["version"]) if written else ""
     return Record(family.name, version, edge, tuple(points))
+
+
+def side(family: Family, point: Point, record: Record) -> bool | None:
+    """Whether a point is beyond the family's edge; None where it is so near (the edge's tolerance, or between its bounds) that it may be either.
+    Without an edge all points are beyond: what is declared must hold everywhere."""
+    if point.beyond is not None:
+        return point.beyond
+    if family.edge is None or record.edge is None:
+        return True
+    place = record.edge.measured if record.edge.predicted is None else record.edge.predicted
+    if place is None:
+        return None
+    if abs(point.value - place) <= family.edge.tolerance * abs(place):
+        return None
+    return (point.value > place) == family.edge.unsound_above
+
+
+def problem_of_point(family: Family, point: Point, record: Record) -> str:
+    """What is wrong with a point's outcome, or nothing."""
+    found = record.point(point.label)
+    if found is None:
+        return "not measured"
+    if found.outcome == GARBAGE:
+        return f"garbage: {found.reason or (found.checked.words if found.checked else '')}"
+    beyond = side(family, point, record)
+    allowed = {True: family.beyond, False: family.before, None: (*family.before, *family.beyond)}[beyond]
+    if found.outcome in allowed:
+        return ""
+    where = {True: "beyond the edge", False: "before the edge", None: "at the edge"}[beyond]
+    return f"{found.outcome} {where}, where it is to be {' or '.join(allowed)}"
+
+
+def problems_of_edge(family: Family, record: Record) -> list[str]:
+    """What is wrong with a family's edge."""
+    edge, found = family.edge, record.edge
+    if edge is None:
+        return [] if found is None else ["an edge was measured that the family does not have"]
+    if found is None or found.measured is None:
+        return ["the edge was not found"]
+    if edge.predicted is not None and found.difference is None:
+        return ["the predicted edge was not computed"]
+    if found.difference is not None and not abs(found.difference) <= edge.tolerance:
+        return [f"the edge is {100.0 * found.difference:+.1f} % off what theory says ({found.measured:.4g} for {found.predicted:.4g})"]
+    sides = {side(family, point, record) for point in family.points}
+    return [] if True in sides and len(sides) > 1 else ["no points on both sides of the edge"]
+
+
+def problems(family: Family, record: Record | None, smoke: bool = False) -> list[str]:
+    """All that is wrong with a family; of a smoke run its smoke points alone, by the edge of `record`."""
+    if record is None:
+        return ["never measured: ci/atlas --accept"]
+    told = {point.label: problem_of_point(family, point, record) for point in family.points if point.smoke or not smoke}
+    labels = {point.label for point in family.points}
+    gone = [f"{found.label}: no point of the family any more" for found in record.points if found.label not in labels]
+    return [f"{label}: {problem}" for label, problem in told.items() if problem] + gone + ([] if smoke else problems_of_edge(family, record))
+
+
+def changes(before: Record | None, now: Record) -> list[str]:
+    """What is not as it was accepted: outcomes, errors by more than a fifth, edges by more than a hundredth."""
+    if before is None:
+        return [f"{now.family}: new"]
+    told = []
+    for point in now.points:
+        old = before.point(point.label)
+        if old is None:
+            told.append(f"{now.family}, {point.label}: new, {point.outcome}")
+        elif old.outcome != point.outcome:
+            told.append(f"{now.family}, {point.label}: {old.outcome} before, {point.outcome} now")
+        elif old.checked and point.checked and differs(old.checked.error, point.checked.error):
+            told.append(f"{now.family}, {point.label}: error {old.checked.error:.3g} before, {point.checked.error:.3g} now")
+    if before.edge and now.edge and before.edge.measured and now.edge.measured:
+        if abs(now.edge.measured / before.edge.measured - 1.0) > 0.01:
+            told.append(f"{now.family}: edge {before.edge.measured:.5g} before, {now.edge.measured:.5g} now")
+    return told
+
+
+def differs(before: float, now: float, share: float = 0.2, floor: float = 1e-6) -> bool:
+    """Whether an error has changed by more than a share of itself and more than rounding makes of it; nan stays nan where a run tells no number."""
+    if math.isnan(before) and math.isnan(now):
+        return False
+    return not abs(now - before) <= share * abs(before) + floor

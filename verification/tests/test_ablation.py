@@ -16,14 +16,14 @@ import pytest
 
 from verification.ablation.__main__ import BUDGETED, EVERYTHING, budget
 from verification.ablation.changes import Change, View, factors_of, ingredients_of, mirrored, named, toml
-from verification.ablation.measure import NoBase, effects_of, left_out, table_of, varied
-from verification.ablation.table import CHANGES, NEEDED, NOTHING, SPARED, Table, Tried, read_all, reasons, words, write
+from verification.ablation.table import (
+    CHANGES, NEEDED, NOTHING, SPARED, NoBase, Table, Tried, effects_of, left_out, read_all, reasons, table_of, varied, words, write,
+)  # fmt: skip
 from verification.harness.load import Run, load
 from verification.harness.paths import EXPERIMENTS
-from verification.harness.plan import Made, make_all
 from verification.harness.quantities import Effect, quantities_of
 from verification.harness.refine import REFINE_RUNS
-from verification.harness.run import Job, Outcome
+from verification.harness.run import Job, Made, Outcome, make_all
 from verification.harness.scenes import content_of, scenes_of, variants_of
 from verification.tests.fake_run import climb, write_run
 

@@ -12,8 +12,7 @@ from verification.harness import choices, store
 from verification.harness.campaign import jobs_of, main
 from verification.harness.choices import read_points
 from verification.harness.paths import EXPERIMENTS
-from verification.harness.plan import expected_s
-from verification.harness.run import Outcome, load_outcome
+from verification.harness.run import Outcome, expected_s, load_outcome
 from verification.harness.scenes import MECHANICS, STUDY_VARIANTS, content_of, mechanics_of, scene_of, scenes_of, variants_of
 from verification.tests.cases import wait_for
 from verification.tests.fake_run import climb, program, write_run

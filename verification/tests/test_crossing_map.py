@@ -13,8 +13,7 @@ import pytest
 
 from verification.crossing_map import criteria
 from verification.crossing_map.__main__ import main
-from verification.crossing_map.maps import MAPS, bears, read_table
-from verification.crossing_map.verdict import CROSSES, GIVES_WAY, STOPS, Verdict, verdict_of
+from verification.crossing_map.verdict import CROSSES, GIVES_WAY, MAPS, STOPS, Verdict, bears, read_table, verdict_of
 from verification.harness import sweep
 from verification.harness.load import load
 from verification.tests.fake_run import climb, write_run

@@ -10,10 +10,9 @@ from pathlib import Path
 import pytest
 
 from verification.harness import paths
-from verification.harness.choose import claimed
 from verification.harness.paths import EXPERIMENTS, ROOT, solver
-from verification.tests.cases import summary_of
-from verification.tests.terminal import on_terminal
+from verification.harness.run import claimed
+from verification.tests.cases import on_terminal, summary_of
 
 TREE = paths.RUNS / "moved tree"
 

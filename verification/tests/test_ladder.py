@@ -6,9 +6,8 @@ import pytest
 
 from verification.ladder import gates
 from verification.ladder.case import Case, families
-from verification.ladder.judge import judged, tally
-from verification.ladder.measure import make_one, rows_of, rungs_of
 from verification.ladder.__main__ import text
+from verification.ladder.measure import judged, make_one, rows_of, rungs_of, tally
 
 pytestmark = pytest.mark.smoke
 FAMILIES = families()

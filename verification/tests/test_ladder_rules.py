@@ -13,9 +13,8 @@ from verification.ladder import case as catalogue
 from verification.ladder import gates
 from verification.ladder.case import Case, Families, Level, Quantity, Sample, cell_levels
 from verification.ladder.gates import CannotAccept, Gate
-from verification.ladder.judge import HALF_AN_ORDER, accepted, judged, mutants_of, tally
-from verification.ladder.measure import Row, make_all, order_of, rows_of, rungs_of
 from verification.ladder.__main__ import text
+from verification.ladder.measure import HALF_AN_ORDER, Row, accepted, judged, make_all, mutants_of, order_of, rows_of, rungs_of, tally
 from verification.tests.fake_run import changed, program, write_run
 
 MUTANTS = {"zero": -1.0, "twice": 1.02, "flipped sign": -2.0}

@@ -9,9 +9,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from verification.harness.load import value
 from verification.harness.paths import RUNS
-from verification.harness.plan import make
-from verification.harness.reference import value
+from verification.harness.run import make
 from verification.harness.scenes import read_scene
 from verification.measured import rubin
 from verification.measured.__main__ import COARSE_M, FINE_M, differences, job

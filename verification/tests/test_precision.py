@@ -9,12 +9,13 @@ import pytest
 from verification.harness.load import LoadError, Run
 from verification.harness.paths import ANALYTIC
 from verification.ladder.case import Level, Sample
-from verification.precision import measure, store
+from verification.precision import measure
 from verification.precision.__main__ import main
 from verification.precision.judge import GROUPS, TOLERANCES, Panel, cheapest, choice_for, judged, nearest, panel_of, pareto, run_at
-from verification.precision.problem import ELEMENTS, STRATA, Method, Problem, Setting, Wanted, checked
+from verification.precision.problem import (
+    ELEMENTS, FAILED, OK, REFUSED, STRATA, TOO_LONG, Found, Method, Point, Problem, Setting, Sheet, Wanted, checked, read_sheet, write_sheet,
+)  # fmt: skip
 from verification.precision.problems import PROBLEMS
-from verification.precision.store import FAILED, OK, REFUSED, Found, Point, Sheet
 
 SCENE = ANALYTIC / "static_quasistatic.toml"
 MACHINE = {"processor": "a processor", "cores": 2, "caches": "L1 1K", "version": "0"}
@@ -172,8 +173,8 @@ def test_short_runs_are_warmed_up_and_long_ones_made_once() -> None:
 
 def test_sheets_are_read_as_they_were_written(tmp_path: Path) -> None:
     sheet = Sheet("made_up", MACHINE, (point("b", 1.0, 0.01, 1.5), point("a", 2.0, None, 0.5, FAILED), point("a", 1.0, None, 0.5)))
-    store.write(sheet, tmp_path, ["a", "b"])
-    back = store.read("made_up", tmp_path)
+    write_sheet(sheet, tmp_path, ["a", "b"])
+    back = read_sheet("made_up", tmp_path)
     assert back is not None and back.points == (sheet.points[1], sheet.points[2], sheet.points[0]) and back.machine == sheet.machine
 
 
@@ -188,7 +189,7 @@ def test_problems_are_as_the_chart_relies_on() -> None:
 def test_one_problem_from_the_command_to_the_data(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     command = ["--quick", "--only", "block", "--out", str(tmp_path)]
     assert main(command) == 0
-    sheet = store.read("block", tmp_path)
+    sheet = read_sheet("block", tmp_path)
     assert sheet is not None and {point.method for point in sheet.points} >= {"qs_graded", "ex_updated", "ex_total"}
     for one in sheet.points:
         assert one.ok and one.time_s > 0.0 and min(one.cpu_s) > 0.0, one.reason
@@ -222,4 +223,4 @@ def test_a_run_that_takes_too_long_is_a_point(tmp_path: Path) -> None:
     one = replace(method("slow", 0.125), levels=(Level("0.125 m", 0.125, ("numerics.mechanics=quasistatic", "numerics.cell_m=0.125")),))
     problem = Problem("slow", "slow", (wanted(),), (one,), limit_s=0.2)
     found = measure.measured(problem, one, one.levels[0], tmp_path)
-    assert found.status == store.TOO_LONG and "not done after 0.2 s" in found.reason
+    assert found.status == TOO_LONG and "not done after 0.2 s" in found.reason

@@ -10,10 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from verification.harness.given import energy, given, last, net_Pa, start_of, tip
-from verification.harness.load import LoadError, Run
+from verification.harness.load import LoadError, Run, energy, given, last, net_Pa, start_of, tip, value, values
 from verification.harness.paths import ANALYTIC
-from verification.harness.reference import value, values
 from verification.ladder.case import Case, Keys, Level, Quantity, Sample, case_of, cell_levels
 
 SETTLED, AT_REST, INCLINED = (ANALYTIC / f"{name}.toml" for name in ("static_crack", "static_quasistatic", "inclined_crack"))

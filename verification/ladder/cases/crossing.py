@@ -12,10 +12,8 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from verification.harness.given import crack_ends, energy, first_failed_Pa, given, last, net_Pa, rock, start_of, tip
-from verification.harness.load import LoadError, Run, frames
+from verification.harness.load import LoadError, Run, crack_ends, energy, first_failed_Pa, frames, given, last, net_Pa, rock, start_of, tip, value
 from verification.harness.paths import ANALYTIC
-from verification.harness.reference import value
 from verification.ladder.case import Case, Keys, Level, Quantity, case_of, cell_levels
 
 SCENE = ANALYTIC / "crossing.toml"

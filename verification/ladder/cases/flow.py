@@ -2,10 +2,8 @@
 
 import numpy as np
 
-from verification.harness.given import given, last
-from verification.harness.load import LoadError, Run
+from verification.harness.load import LoadError, Run, given, last, value, values
 from verification.harness.paths import ANALYTIC
-from verification.harness.reference import value, values
 from verification.ladder.case import Array, Level, Quantity, Sample, case_of, cell_levels
 
 SCENE = ANALYTIC / "channel.toml"

@@ -5,10 +5,8 @@ from functools import lru_cache
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
 
-from verification.harness.given import E_prime, given, net_Pa
-from verification.harness.load import LoadError, Run
+from verification.harness.load import E_prime, LoadError, Run, given, net_Pa, value, values
 from verification.harness.paths import ANALYTIC
-from verification.harness.reference import value, values
 from verification.ladder.case import Array, Case, Quantity, Sample, cell_levels
 
 SCENE = ANALYTIC / "freund.toml"

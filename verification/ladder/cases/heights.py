@@ -9,11 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from verification.harness.column import column, pressure_beyond
-from verification.harness.given import energy, given, half_length, last, lower, tip, upper
-from verification.harness.load import Run
+from verification.harness.load import Run, column, energy, given, half_length, last, lower, pressure_beyond, tip, upper, values
 from verification.harness.paths import ANALYTIC
-from verification.harness.reference import values
 from verification.ladder.case import Quantity, Sample, case_of, cell_levels
 
 SCENE = ANALYTIC / "stress_by_layer.toml"

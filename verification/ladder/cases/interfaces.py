@@ -8,10 +8,8 @@ are apart, and than 2 to another rock, there is none.
 from collections.abc import Callable
 from typing import Any
 
-from verification.harness.given import crack_ends, first_failed_Pa, given, half_length, lower, net_Pa, rock, tip, upper
-from verification.harness.load import Run
+from verification.harness.load import Run, crack_ends, first_failed_Pa, given, half_length, lower, net_Pa, rock, tip, upper, value
 from verification.harness.paths import ANALYTIC
-from verification.harness.reference import value
 from verification.ladder.case import Case, Level, Quantity, case_of
 
 BONDED, SPRINGS, FRICTION = (ANALYTIC / f"near_{name}.toml" for name in ("bonded", "springs", "friction"))

@@ -7,8 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from verification.harness.given import given, last
-from verification.harness.load import Array, Run
+from verification.harness.load import Array, Run, given, last
 from verification.harness.paths import ANALYTIC
 from verification.ladder.case import Quantity, Sample, case_of, cell_levels
 

@@ -6,10 +6,8 @@ from operator import attrgetter
 
 import numpy as np
 
-from verification.harness.given import given
-from verification.harness.load import LoadError, Run
+from verification.harness.load import LoadError, Run, given, value
 from verification.harness.paths import ANALYTIC
-from verification.harness.reference import value
 from verification.ladder.case import Array, Case, Quantity, Sample, cell_levels
 
 SCENE, LEAKY = ANALYTIC / "kgd.toml", ANALYTIC / "kgd_leakoff.toml"

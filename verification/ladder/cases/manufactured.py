@@ -10,8 +10,7 @@ cells' square, and there are as many steps as cells.
 
 import math
 
-from verification.harness.given import rock
-from verification.harness.load import Run
+from verification.harness.load import Run, rock
 from verification.harness.paths import ROOT
 from verification.ladder.case import Array, Case, cell_levels
 from verification.ladder.fields import DISPLACEMENT, STRESS, VELOCITY, End, Exact, at_points, field_quantity

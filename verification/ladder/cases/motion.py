@@ -5,10 +5,8 @@ from functools import partial
 
 import numpy as np
 
-from verification.harness.given import given, last, rock
-from verification.harness.load import Run
+from verification.harness.load import Run, given, last, rock, values
 from verification.harness.paths import ANALYTIC
-from verification.harness.reference import values
 from verification.ladder.case import Array, Case, Level, Quantity, Sample, cell_levels
 
 ROUND_OFF = "round-off: exact at every size"

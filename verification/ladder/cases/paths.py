@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from verification.harness.crack_paths import exact_path, farthest, first_kink_deg, grown, rise_at
-from verification.harness.given import given
-from verification.harness.load import LoadError, Run
+from verification.harness.load import LoadError, Run, given
 from verification.harness.paths import ANALYTIC
 from verification.ladder.case import Array, Case, Level, Quantity, Sample, cell_levels
 

@@ -4,8 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from verification.harness.given import given, rock
-from verification.harness.load import Run
+from verification.harness.load import Run, given, rock
 from verification.harness.paths import ROOT
 from verification.ladder.case import Array, Case, Level, cell_levels
 from verification.ladder.fields import End, at_points, field_quantity

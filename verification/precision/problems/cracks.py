@@ -3,12 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from verification.harness.load import Run
-from verification.harness.reference import relative_error, settings_of, value
+from verification.harness.load import Run, relative_error, settings_of, value
 from verification.ladder.case import Level, Sample
 from verification.ladder.cases import cracks, interfaces
-from verification.precision.methods import endless, with_inertia, without_inertia
-from verification.precision.problem import Answer, Method, Problem, Setting, Wanted, methods
+from verification.precision.problem import Answer, Method, Problem, Setting, Wanted, endless, methods, with_inertia, without_inertia
 
 # All have the tip on a grid line, 5 m up, and divide the block of 80 m.
 FINE_M = (2.5, 1.25, 1.0, 0.625, 0.5, 0.25, 0.125)

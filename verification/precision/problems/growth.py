@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 
 from verification.harness.crack_paths import INTERFACE_M, exact_path, farthest, grown, path_settings
-from verification.harness.load import LoadError, Run
+from verification.harness.load import LoadError, Run, settings_of, value
 from verification.harness.paths import ANALYTIC, EXPERIMENTS
-from verification.harness.reference import settings_of, value
 from verification.ladder.case import Array, Level, Sample
 from verification.ladder.cases import kgd, paths
-from verification.precision.methods import FAR, MOVING, RESTING, STILL, endless, with_inertia, without_inertia
-from verification.precision.problem import Answer, Base, Method, Problem, Setting, Wanted, methods
+from verification.precision.problem import (
+    FAR, MOVING, RESTING, STILL, Answer, Base, Method, Problem, Setting, Wanted, endless, methods, with_inertia, without_inertia,
+)  # fmt: skip
 
 SHIPPED = ("ex_total_graded", "1 m"), ("ex_total", "1 m")  # what the scenes of Experiments 1 and 6 ask for
 

@@ -2,7 +2,7 @@
 
 import sys
 
-from verification.harness.choose import folder_name, listed, refuse, twice
+from verification.harness.command import folder_name, listed, refuse, twice
 from verification.stability.family import MARKED, SAFE, STABLE, Family
 
 

@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from verification.harness.given import given
-from verification.harness.load import LoadError, Run, frames
+from verification.harness.load import LoadError, Run, frames, given
 from verification.stability.family import SCENES, STABLE, At, Checked, Edge, Family, Parameter, at_values, close, walked
 from verification.stability.theory.swing import Chain, carried, damping_for, most
 

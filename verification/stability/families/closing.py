@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from verification.harness.given import given
-from verification.harness.load import LoadError, Run, frames
+from verification.harness.load import LoadError, Run, frames, given
 from verification.stability.family import MARKED, SCENES, STABLE, Checked, Family, Parameter, Point, at_most, at_values, walked
 
 SCENE = SCENES / "closing.toml"

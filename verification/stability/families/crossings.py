@@ -4,11 +4,12 @@ import math
 
 import numpy as np
 
-from verification.harness.given import given, last, path_key, rock
-from verification.harness.load import LoadError, Run
+from verification.harness.load import LoadError, Run, given, last, path_key, rock
 from verification.harness.paths import ANALYTIC
-from verification.stability.cracks import AT_REST, CRACK, MIDDLE_M, farthest_off, griffith_K, layers_setting, parted, upright
-from verification.stability.family import MARKED, REFUSED, STABLE, Checked, Family, Parameter, at_most, at_values, close, tip_is_near, walked
+from verification.stability.family import (
+    AT_REST, CRACK, MARKED, MIDDLE_M, REFUSED, STABLE, Checked, Family, Parameter, at_most, at_values, close, farthest_off, griffith_K,
+    layers_setting, parted, tip_is_near, upright, walked,
+)  # fmt: skip
 
 SECTION = "Fractures that cross interfaces, corners, edges"
 CROSSING_M = 13.0  # half length of these cracks: at 20 degrees their tips are 4.4 cells from the interface

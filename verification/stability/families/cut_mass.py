@@ -3,9 +3,7 @@
 import math
 from functools import partial
 
-from verification.harness.given import given
-from verification.harness.load import Run
-from verification.harness.reference import value
+from verification.harness.load import Run, given, value
 from verification.stability.family import FAILED, KINEMATICS, SCENES, STABLE, Checked, Edge, Family, Parameter, at_values, close, walked
 from verification.stability.theory.step_limit import Block, courant_limit, damped_limit
 

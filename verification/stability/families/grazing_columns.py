@@ -1,9 +1,10 @@
 """A fracture that passes a column of particles at a small angle: what is left of a node's rock on one side is a particle or two."""
 
-from verification.harness.given import E_prime, path_key
-from verification.harness.load import Run
-from verification.stability.cracks import AT_REST, CRACK, HALF_LENGTH_M, MIDDLE_M, SETTLING, farthest_off, griffith_K, sneddon_opening
-from verification.stability.family import Checked, Family, Parameter, at_values, close, walked
+from verification.harness.load import E_prime, Run, path_key
+from verification.stability.family import (
+    AT_REST, CRACK, HALF_LENGTH_M, MIDDLE_M, SETTLING, Checked, Family, Parameter, at_values, close, farthest_off, griffith_K, sneddon_opening,
+    walked,
+)  # fmt: skip
 
 # Of the crack's middle from a grid line: columns of particles, 4 x 4 in cells of 1 m, are at 0.125 and 0.375. As many of these places as
 # not made a crack open 1.2 to 30 times too far before light copies took no load.

@@ -3,8 +3,7 @@
 import numpy as np
 
 from verification.harness.crack_paths import exact_path, farthest, grown
-from verification.harness.given import given
-from verification.harness.load import Run
+from verification.harness.load import Run, given
 from verification.harness.paths import ANALYTIC
 from verification.stability.family import MARKED, STABLE, Checked, Family, Parameter, at_most, at_values, walked
 

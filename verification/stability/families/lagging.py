@@ -4,10 +4,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from verification.harness.given import given
-from verification.harness.load import LoadError, Run, frames
-from verification.stability.cracks import CRACK
-from verification.stability.family import STABLE, Checked, Family, Parameter, Point, at_values, close, walked
+from verification.harness.load import LoadError, Run, frames, given
+from verification.stability.family import CRACK, STABLE, Checked, Family, Parameter, Point, at_values, close, walked
 from verification.stability.theory.flow import compliance, paper, reynolds
 
 

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from verification.harness.given import given, last
-from verification.harness.load import Run
+from verification.harness.load import Run, given, last
 from verification.harness.paths import ANALYTIC
 from verification.stability.family import FAILED, KINEMATICS, SCENES, STABLE, Checked, Family, Parameter, Point, at_most, close
 

@@ -1,11 +1,9 @@
 """Rings for J that would reach over an interface: bonded to another rock, sliding, soft."""
 
-from verification.harness.given import E_prime, given
-from verification.harness.load import Run
+from verification.harness.load import E_prime, Run, given
 from verification.ladder.cases.interfaces import Reference, bonded, springs
-from verification.stability.cracks import AT_REST, CRACK
 from verification.stability.families.tip_places import LAYERS, near_K, near_setting
-from verification.stability.family import REFUSED, Check, Checked, Family, Parameter, at_values, close, walked
+from verification.stability.family import AT_REST, CRACK, REFUSED, Check, Checked, Family, Parameter, at_values, close, walked
 
 GAP_CELLS = 6.0
 

@@ -4,15 +4,15 @@ from pathlib import Path
 
 import numpy as np
 
-from verification.harness.given import given, last, lower, upper
-from verification.harness.load import Run
+from verification.harness.load import Run, given, last, lower, upper, value
 from verification.harness.paths import ANALYTIC
-from verification.harness.reference import value
 from verification.ladder.cases.interfaces import bonded
 from verification.ladder.cases.motion import laminate
-from verification.stability.cracks import AT_REST, CRACK, SETTLING, farthest_off, griffith_K, parted, sneddon_opening, worse
 from verification.stability.families.tip_places import near_setting
-from verification.stability.family import MARKED, Check, Checked, Family, Parameter, Point, at_values, close, walked
+from verification.stability.family import (
+    AT_REST, CRACK, MARKED, SETTLING, Check, Checked, Family, Parameter, Point, at_values, close, farthest_off, griffith_K, parted, sneddon_opening,
+    walked, worse,
+)  # fmt: skip
 
 SECTION = "Rock: Poisson's ratio to 0.4999, stiffness contrast to 1e4"
 

@@ -4,8 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from verification.harness.given import given
-from verification.harness.load import LoadError, Run
+from verification.harness.load import LoadError, Run, given
 from verification.stability.family import KINEMATICS, SCENES, STABLE, Checked, Edge, Family, Parameter, at_values, close, walked
 
 NORMAL_PA, HEIGHT_M, WIDTH_M, DENSITY = 1.0e6, 16.0, 2.0, 2500.0  # of the scene, a block's width

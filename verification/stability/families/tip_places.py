@@ -2,12 +2,12 @@
 
 from typing import Any
 
-from verification.harness.given import crack_ends, given, half_length, path_key, rock, upper
-from verification.harness.load import Run
-from verification.harness.reference import value
+from verification.harness.load import Run, crack_ends, given, half_length, path_key, rock, upper, value
 from verification.ladder.cases.interfaces import Reference, bonded, springs
-from verification.stability.cracks import AT_REST, CRACK, MIDDLE_M, NET_PA, SETTLING, griffith_K, parted, upright
-from verification.stability.family import MARKED, At, Check, Edge, Family, Parameter, at_values, close, tip_is_near, walked
+from verification.stability.family import (
+    AT_REST, CRACK, MARKED, MIDDLE_M, NET_PA, SETTLING, At, Check, Edge, Family, Parameter, at_values, close, griffith_K, parted, tip_is_near,
+    upright, walked,
+)  # fmt: skip
 
 SECTION = "Tips: within a cell, near an interface, near an edge"
 

@@ -4,9 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from verification.harness.given import net_Pa
-from verification.harness.load import LoadError, Run
-from verification.harness.reference import value
+from verification.harness.load import LoadError, Run, net_Pa, value
 from verification.ladder.cases.crossing import LINE_M, SCENE, block, critical_Pa, cut, fracture_setting, fresh_m
 from verification.stability.family import MARKED, STABLE, At, Checked, Edge, Family, Parameter, at_most, at_values, close, tip_is_near, walked
 
