@@ -14,8 +14,10 @@ from reports.charts.records import draw_crossing_map
 from reports.charts.style import TWO_COLUMNS, save
 from reports.figures import Figure, Table, Topic, words_of
 from reports.words import Shown
-from verification.crossing_map.criteria import blanton, first_slip, griffith_means, gu_weng, mean_slip, renshaw_pollard
-from verification.crossing_map.verdict import CROSSES, MAPS, RECORDS, WAY_M, INCLINED_MPa, Verdicts, bears, read_table
+from verification.crossing_map.verdict import (
+    CROSSES, MAPS, RECORDS, WAY_M, INCLINED_MPa, Verdicts, bears, blanton, first_slip, griffith_means, gu_weng, mean_slip, read_table,
+    renshaw_pollard,
+)  # fmt: skip
 
 # The strength of rock that goes with K_Ic = 1.45 and an increment of 1 m: a crack of 1 m from a free face, K = 1.1215 T0 sqrt(pi d), releases as much.
 STRENGTH_MPa = 1.45 / (1.1215 * math.sqrt(0.5 * math.pi))

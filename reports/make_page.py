@@ -11,14 +11,13 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
 from reports.animation import animations  # noqa: E402  (after the path to the project is known)
-from reports.catalogue import catalogue  # noqa: E402
+from reports.curves import catalogue  # noqa: E402
 from reports.figures import OUT, make  # noqa: E402
+from reports.ladder import write_verification  # noqa: E402
 from reports.page import topic_shown, topics, write_index  # noqa: E402
 from reports.runs import add_missing, load_runs  # noqa: E402
 from reports.stability import write_stability  # noqa: E402
-from reports.verification import write_verification  # noqa: E402
-from verification.harness.choices import read_points  # noqa: E402
-from verification.harness.claim_data import read_claims  # noqa: E402
+from verification.harness.claim_data import read_claims, read_points  # noqa: E402
 from verification.harness.paths import RUNS  # noqa: E402
 from verification.precision.problem import DATA  # noqa: E402
 from verification.stability.runner import RECORDS  # noqa: E402

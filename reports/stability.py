@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from reports.charts.stability import draw_edges, draw_part
+from reports.charts.records import draw_edges, draw_part
 from reports.figures import Figure, make, told_of, write_page
 from reports.words import NONE, Shown, general, minus, span
 from verification.stability import runner

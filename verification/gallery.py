@@ -42,11 +42,6 @@ def fed(run: Run) -> dict[str, float]:
                            "rate_m2_s": given(run, "fluid.inlet.rate_m2_s")}
 
 
-def kgd(run: Run) -> Pair:
-    """Half length at the end."""
-    return upper(run).y_m, value("kgd", "half_length_m", time_s=run.summary.time_s, **fed(run))
-
-
 def layers(run: Run) -> Pair:
     """Growth of the upper tip by the end."""
     start = crack_ends(run)[1][1]
@@ -84,11 +79,6 @@ def shut_in_settings(run: Run) -> dict[str, float]:
     return rock(run, 0) | own | {"rate_m2_s": rows[0][1], "shut_in_s": rows[1][0]}
 
 
-def shut_in(run: Run) -> Pair:
-    """Pressure above the closing stress at the end."""
-    return net_Pa(run), value("shut_in", "inlet_pressure_Pa", time_s=run.summary.time_s, **shut_in_settings(run))
-
-
 def fault_slip(run: Run) -> tuple[float, float]:
     """Half length of the fault, m, and its largest slip alone under the in-situ stress, 4 a (t - mu s)/E' (a crack under shear), m."""
     place = run.scene["strata"]["interfaces"][0]
@@ -110,7 +100,8 @@ def sudden(run: Run) -> Pair:
 
 
 SCENES = (
-    Scene("kgd", "A fracture fed at a constant rate (KGD): how long is it?", "half length at 100 s", "m", 1.0, "strata-reference kgd", 0.03, kgd),
+    Scene("kgd", "A fracture fed at a constant rate (KGD): how long is it?", "half length at 100 s", "m", 1.0, "strata-reference kgd", 0.03,
+          lambda run: (upper(run).y_m, value("kgd", "half_length_m", time_s=run.summary.time_s, **fed(run)))),
     Scene("layers", "Height growth in a log: how high does a pressure drive it?", "growth of the upper tip by 41.1 MPa", "m", 1.0,
           "strata-reference layered_height", 0.034, layers),
     Scene("junction", "T-junction: how far does a crack with friction slide where a fracture ends on it?", "slip 5 m from the junction", "mm", 1e3,
@@ -120,7 +111,8 @@ SCENES = (
     Scene("barrier", "A stress barrier: which pressure drives it how far into it?", "net pressure that holds a height of 80 m", "MPa", 1e-6,
           "strata-reference layered_height", 0.005, barrier),
     Scene("shut_in", "Shut-in with leak-off: how fast does the pressure fall?", "net pressure 700 s after shut-in", "kPa", 1e-3,
-          "strata-reference shut_in", 0.03, shut_in),
+          "strata-reference shut_in", 0.03,
+          lambda run: (net_Pa(run), value("shut_in", "inlet_pressure_Pa", time_s=run.summary.time_s, **shut_in_settings(run)))),
     Scene("fault", "A fracture near a fault: how far does the fault slide?", "largest slip of the fault alone", "mm", 1e3,
           "closed form, 4 a (shear - friction x normal stress)/E'", 0.01, fault),
     Scene("sudden", "A suddenly loaded crack: how does K_I rise?", "K_I at 25 ms", "MPa sqrt(m)", 1e-6, "strata-reference freund_step_pressure", 0.01, sudden),

@@ -1,19 +1,37 @@
-"""Pages beside that of the experiments: the stability atlas and the work-precision chart, from data that are there, wrong, and not there."""
+"""Pages and sections beside those of the experiments: the stability atlas and the work-precision chart, from data that are there, wrong, and not there; what each
+experiment needs; beside measurements; the gallery's pictures and rows. Animations show what the runs hold, a frame an output time, and say so in words."""
 
 import html
+import json
 import shutil
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image
 
-from reports import precision, stability
+from reports import kept, stability
+from reports.kept import ablation_figure, beside_topic, needs_topic, wu_fronts
+from reports.animation import animations, chosen, largest_principal, main as animate, movie
+from reports.charts.animation import write_animation
+from reports.charts.records import draw_gallery
+from reports.charts.style import save
+from reports.gallery import row, shown
 from reports.make_page import main
 from reports.page import topics
+from reports.runs import load_run, load_runs
+from reports.tests.synthetic import OUTPUTS, Plan, write_run
+from reports.words import Shown
+from verification.ablation.table import RECORDS, read_all
+from verification.gallery import FOLDER, SCENES, Scene
+from verification.harness import store
+from verification.measured import rubin
 from verification.precision.problem import FAILED, OK, REFUSED, Found, Point, Problem, Sheet, read_sheet, write_sheet
 from verification.precision.problems import PROBLEMS
 from verification.stability import runner as atlas
 from verification.stability.family import GARBAGE
+from verification.tests.cases import completed
 
 
 @pytest.mark.parametrize("name", ["stability", "verification"])
@@ -26,8 +44,6 @@ def test_without_data_the_reason_is_told(tmp_path: Path, capsys: pytest.CaptureF
 
 
 # --- the stability atlas
-
-
 def test_the_page_shows_every_walk_with_its_edge(tmp_path: Path) -> None:
     """Every family's title, a figure a section, and no word of garbage but the one that explains it."""
     front = stability.write_stability(tmp_path)
@@ -67,7 +83,6 @@ def test_a_torn_record_is_told(tmp_path: Path) -> None:
 
 
 # --- the work-precision chart
-
 MACHINE = {
     "processor": "a processor", "cores": 2, "caches": "L1 1K", "memory_GB": 8.0, "system": "a system", "compiler": "a compiler",
     "flags": "-O3", "version": "0", "revision": "abc",
@@ -98,7 +113,7 @@ def data(tmp_path: Path) -> Path:
 
 def test_the_chart_has_every_quantity_and_the_table(data: Path) -> None:
     """Nothing that was measured is missing from the section."""
-    section = precision.topic(data)
+    section = kept.chart_topic(data)
     assert section is not None and section.figure is not None and section.version == "0"
     titles = [one.title for problem in PROBLEMS for one in problem.wanted]
     assert list(dict.fromkeys(row[0] for row in section.tables[0].rows)) == titles == [panel.heading for panel in section.figure.data.panels]
@@ -119,7 +134,7 @@ def test_odd_measurements_are_told(data: Path) -> None:
     assert sheet is not None
     write_sheet(replace(sheet, points=(replace(sheet.points[0], disturbed=True, once=True), *sheet.points[1:])), data)
     (data / "soft.json").unlink()
-    found = precision.measurements(data)
+    found = kept.measurements(data)
     assert found is not None
     assert any("1 of" in note and "disturbed" in note for note in found.notes) and any("single run" in note for note in found.notes)
     assert any("not measured: soft" in note for note in found.notes)
@@ -127,31 +142,140 @@ def test_odd_measurements_are_told(data: Path) -> None:
 
 def test_what_is_drawn_is_what_is_judged(data: Path) -> None:
     """Every dot and every failure is drawn, and the front falls."""
-    found = precision.measurements(data)
+    found = kept.measurements(data)
     assert found is not None
     for panel in found.panels:
-        shown = precision.panel_shown(panel)
+        shown = kept.panel_shown(panel)
         assert len(shown.lacks) == len(panel.lacks) > 0 and "failed" in shown.lacks_words and "refused" in shown.lacks_words
         assert sum(len(curve.times_s) for curve in shown.curves) == len(panel.dots)
         assert list(shown.front[1]) == sorted(shown.front[1], reverse=True) and list(shown.front[0]) == sorted(shown.front[0])
-    assert precision.front_figure(found.panels).title == precision.finding(found.panels)
+    assert kept.front_figure(found.panels).title == kept.chart_finding(found.panels)
 
 
 def test_the_table_says_where_none_reaches(tmp_path: Path) -> None:
     """A tolerance that no method reaches has no advice."""
     write_sheet(made_up(PROBLEMS[0], error=3.0), tmp_path)
-    found = precision.measurements(tmp_path)
+    found = kept.measurements(tmp_path)
     assert found is not None
-    row = precision.table_of(found.panels)[0]
+    row = kept.chart_table(found.panels)[0]
     assert all("none reaches it; best" in cell for cell in row[2:])
-    assert precision.finding(found.panels).startswith("No quantity")
+    assert kept.chart_finding(found.panels).startswith("No quantity")
 
 
 def test_recommendations_come_from_the_data(data: Path) -> None:
     """A sentence for each group of experiments, with what the scenes ask for."""
-    found = precision.measurements(data)
+    found = kept.measurements(data)
     assert found is not None
-    words = precision.recommendations(found.panels)
+    words = kept.recommendations(found.panels)
     assert len(words) == 2 and words[0].startswith("Experiments 1, 2, 3 and 4:") and words[1].startswith("Experiments 5 and 6:")
     own = ("explicit, total, graded", "explicit, total")
     assert all(f"The scenes' own setting, with inertia ({setting}, 1 m)" in line for setting, line in zip(own, words))
+
+
+def test_the_section_has_a_column_a_scene_and_what_each_needs(tmp_path: Path) -> None:
+    """The chart has a column for each whole table, the table a row for each; without records there is no section."""
+    kept, found = read_all(RECORDS), needs_topic(RECORDS)
+    assert found is not None and needs_topic(tmp_path) is None and len(found.tables[0].rows) == len(kept) > 6
+    assert len(ablation_figure(kept).columns) == sum(one.extent != "interfaces" for one in kept)
+    needed = [one for one in kept if one.needs()]
+    assert needed and needed[0].needs()[0].label in str(found.tables[0].rows[kept.index(needed[0])][1])
+
+
+def test_the_section_has_points_curves_and_a_row_a_run(tmp_path: Path) -> None:
+    """Twelve points a panel, a curve for each run that is drawn, a row a result and one of GEOS; the finding follows the record."""
+    kept, section = rubin.kept(), beside_topic(rubin.RECORD)
+    assert kept is not None and section is not None and section.figure is not None and beside_topic(tmp_path / "none.json") is None
+    data, table = section.figure.data, section.tables[0]
+    assert [len(panel.points) for panel in data.panels] == [12, 12, 12] and all(len(panel.curves) == 3 for panel in data.panels)
+    assert len(table.rows) == len(kept.results) + 1 and table.rows[-1][0] == "GEOS"
+    plain = kept.results[-2]
+    worse = replace(plain, errors=plain.errors | {rubin.LENGTH: replace(plain.errors[rubin.LENGTH], late=0.5)})
+    store.write(replace(kept, results=(*kept.results[:-2], worse, kept.results[-1])), tmp_path / "rubin.json")
+    assert "length 50\u00a0%" in beside_topic(tmp_path / "rubin.json").says[0] and "length 50\u00a0%" not in section.says[0]
+
+
+def test_wu_s_fronts_go_on_where_the_stress_is_less() -> None:
+    """Four fronts in the order of time: as verification/measured/README.md has them."""
+    found = wu_fronts()
+    assert [round(one.bottom_mm) for one in found] == [-46, -95, -133, -164] and all(one.up_Pa - one.down_Pa > 2.0e6 for one in found)
+
+
+@pytest.mark.smoke
+@pytest.mark.parametrize("scene", SCENES, ids=[scene.name for scene in SCENES])
+def test_a_scene_has_its_picture_and_its_row(tmp_path: Path, scene: Scene) -> None:
+    """A source and a run of finite values over the same range; the row tells the expected number before the one that was got."""
+    runs = [completed(FOLDER / f"{scene.name}.toml", variant) for variant in ("", *scene.variants)]
+    data = shown(scene.name, runs)
+    assert [curve[1] for curve in data.curves] == ["source", "run", "other"][: len(data.curves)] and len(data.curves) > len(scene.variants) + 1
+    assert all(len(x) == len(y) > 1 and np.isfinite(x).all() and np.isfinite(y).all() for _, _, x, y, _ in data.curves)
+    (source, run) = (y for _, _, _, y, _ in data.curves[:2])
+    assert 0.6 < np.ptp(run) / np.ptp(source) < 1.6 or scene.name == "shut_in"  # which begins with the pressure that breaks its first metre
+    save(draw_gallery(data), tmp_path / f"{scene.name}.svg")
+    assert (tmp_path / f"{scene.name}.svg").stat().st_size < 60_000
+    got, expected = scene.pair(runs[0])
+    assert f"{scene.number}: {scene.told(expected)} ({scene.source}) | {scene.told(got)}, " in row(scene, runs[0], 1.0)
+
+
+SOFT = Plan("soft", ("soft",), stop_at_m=10.0, restart_Pa=3.2e6)
+
+
+def test_principal_stress_by_hand() -> None:
+    """Mohr's circle: uniaxial tension 3, pure shear 2, and (1, -1) with shear 0 on any axes."""
+    cases = [((3.0, 0.0, 0.0), 3.0), ((0.0, 0.0, 2.0), 2.0), ((0.0, 0.0, -2.0), 2.0), ((-5.0, -3.0, 0.0), -3.0), ((6.0, 0.0, 4.0), 8.0)]
+    points = {name: np.array([stress[k] for stress, _ in cases]) for k, name in enumerate(("s_xx_Pa", "s_yy_Pa", "s_xy_Pa"))}
+    assert largest_principal(points) == pytest.approx([expected for _, expected in cases])
+
+
+def test_frames_are_the_output_times(tmp_path: Path) -> None:
+    """Time, pressure, opening and stress of each are those of the made-up fields."""
+    data = movie(load_run(write_run(tmp_path, 1, SOFT)))
+    assert len(data.frames) == OUTPUTS and data.frames[0].height_m == 5.0
+    assert [frame.time_s for frame in data.frames] == sorted(frame.time_s for frame in data.frames)
+    for frame in data.frames:
+        # By the made-up field: the pressure falls to half the inlet's at the tip, the opening is 0.1 mm sqrt(h^2 - s^2).
+        assert frame.pressure_MPa[0] == pytest.approx(frame.inlet_MPa) and frame.pressure_MPa[-1] == pytest.approx(0.5 * frame.inlet_MPa)
+        assert frame.opening_mm[0] == pytest.approx(0.1 * frame.height_m)
+        row, column = np.unravel_index(np.argmax(frame.stress_MPa), frame.stress_MPa.shape)
+        assert abs((row + 0.5) * 80 / 120 - frame.height_m) < 1.5 and abs((column + 0.5) * 80 / 120 - 40.0) < 1.5, "largest at the tip; points are 1 m apart"
+    last = f"{data.frames[-1].height_m:.0f} m"
+    assert last in data.caption and last in data.alt and "interface at 10 m" in data.alt
+
+
+def test_the_soft_interface_without_inertia_comes_first(tmp_path: Path) -> None:
+    """One run an experiment."""
+    for number, plan in ((1, SOFT), (1, Plan("soft", ("soft",), mechanics="quasistatic")), (1, Plan("weak", ("weak",))), (3, Plan("weak_soft", ("weak", "soft")))):
+        write_run(tmp_path, number, plan)
+    assert [(run.number, run.variant, run.mechanics) for run in chosen(load_runs(tmp_path))] == [(1, "soft", "quasistatic"), (3, "weak_soft", "explicit")]
+
+
+def test_a_gif_moves_and_its_words_stand_beside_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """First and last frame differ; a run that cannot be read is told and left out."""
+    write_run(tmp_path, 1, SOFT)
+    (write_run(tmp_path, 2, SOFT) / "result.h5").write_bytes(b"torn")
+    assert animate(["--runs", str(tmp_path), "--out", str(tmp_path / "out")]) == 0
+    assert "no animation of exp2_soft_above/soft: " in capsys.readouterr().err
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["exp1_single_interface.gif", "exp1_single_interface.json"]
+    with Image.open(tmp_path / "out" / "exp1_single_interface.gif") as picture:
+        assert picture.n_frames == OUTPUTS
+        first = np.asarray(picture.convert("RGB"))
+        picture.seek(OUTPUTS - 1)
+        assert np.mean(np.any(first != np.asarray(picture.convert("RGB")), axis=-1)) > 0.01
+    assert (tmp_path / "out" / "exp1_single_interface.gif").stat().st_size < 1e6
+    assert set(json.loads((tmp_path / "out" / "exp1_single_interface.json").read_text())) == {"caption", "alt"}
+
+
+@pytest.mark.parametrize("name", ["stress_MPa", "pressure_MPa", "opening_mm", "y_m", "height_m", "time_s"])
+def test_whatever_changes_is_seen(tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Frames that differ in one thing are two pictures; equal ones are one."""
+    monkeypatch.setattr("reports.charts.animation.HOLD", 0)
+    data = movie(load_run(write_run(tmp_path, 1, SOFT)))
+    first = data.frames[4]
+    for shift, pictures in ((0.0, 1), (1.0, 2)):
+        data.frames = [first, Shown(**{**vars(first), name: getattr(first, name) + shift})]
+        with Image.open(write_animation(data, tmp_path / "two.gif")) as picture:
+            assert picture.n_frames == pictures
+
+
+def test_nothing_to_animate_is_said(tmp_path: Path) -> None:
+    """By the exit status."""
+    assert animations([], tmp_path / "out") == [] and animate(["--runs", str(tmp_path), "--out", str(tmp_path / "out")]) == 1

@@ -6,20 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reports.catalogue import catalogue
-from reports.choices import choice_rows
-from reports.claims import claim_rows, sensitivity
-from reports.comparison import comparisons, inertia_words, path_distance
-from reports.crack import sampled, side_of
-from reports.curves import height_figure, largest_turn, path_figure, profile_figure
+from reports.claims import choice_rows, claim_rows, sensitivity
+from reports.curves import catalogue, height_figure, largest_turn, path_figure, profile_figure, sampled, side_of
 from reports.figures import make, suspect_words
-from reports.outcome import finding, outcome_of, outcomes_of
-from reports.run_rows import base_of, closure_of, differences, suspicions
+from reports.outcome import comparisons, finding, inertia_words, outcome_of, outcomes_of, path_distance
+from reports.page import base_of, closure_of, differences, suspicions
 from reports.runs import layout_of, load_run, load_runs
 from reports.tests.synthetic import STEMS, Plan, claims, write_both, write_run
 from reports.words import number, quantity
-from verification.harness.choices import Choice, Point
-from verification.harness.claim_data import NOT_REPRODUCED, Case, CaseResult, ClaimResult
+from verification.harness.claim_data import NOT_REPRODUCED, Case, CaseResult, Choice, ClaimResult, Point
 
 
 def test_sides_are_signs_about_the_extended_crack() -> None:
@@ -144,7 +139,6 @@ def test_numbers_in_words() -> None:
 
 
 # --- both mechanics
-
 WEAK = Plan("weak", ("weak",), stop_at_m=10.0, restart_Pa=3.2e6)
 
 
@@ -251,7 +245,6 @@ def test_a_figure_s_caption_tells_of_its_suspect_runs_alone(tmp_path: Path) -> N
 
 
 # --- open points
-
 POINT = Point("flow", "flow law", "the study's", (
     Choice("uniform", "flow law: uniform", "uniform", {STEMS[1]: {"perfect": "uniform", "weak": "weak"}}),
     Choice("other", "flow law: other", "other", {STEMS[1]: {"weak": "flow"}, STEMS[5]: {"perfect": "near"}}),

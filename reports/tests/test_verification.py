@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from reports.charts.ladder import spread_apart
+from reports.charts.precision import spread_apart
 from reports.ladder import convergence_figure, load_ladder, topic
 from reports.make_page import main as make_page
 from reports.words import Shown, relative

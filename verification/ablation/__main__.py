@@ -79,7 +79,7 @@ def ablate(arguments: list[str] | None = None) -> int:
         return content, extent, changes, *left_out(scene, variant, options.settings, changes, options.runs.resolve())
 
     def tell(table: tables.Table) -> None:
-        parts = [f"{words} {tables.named(lines)}" for words, lines in (("needs", table.needs()), ("not", table.spared(True))) if lines]
+        parts = [f"{words} {', '.join(line.label for line in lines)}" for words, lines in (("needs", table.needs()), ("not", table.spared(True))) if lines]
         print(f"{tables.words(table)}\n  for 1 %: {'; '.join(parts) or 'nothing that costs time'}\n", flush=True)
         if not only and (not options.settings or options.out != tables.RECORDS):
             tables.write(table, options.out)

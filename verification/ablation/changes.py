@@ -89,8 +89,6 @@ def named(found: Sequence[Change], names: Sequence[str]) -> list[Change]:
 
 
 # --- ingredients
-
-
 def ingredients_of(content: dict[str, Any]) -> list[Change]:
     """All ingredients of an explicit scene, its keys with a variant's in place."""
     numerics, fracture = content["numerics"], content["fracture"]
@@ -184,8 +182,6 @@ def mirrored(strata: dict[str, Any], height_m: float) -> dict[str, Any]:
 
 
 # --- factors
-
-
 def factors_of(content: dict[str, Any], mechanics: str) -> list[Change]:
     """All factors of a scene (its keys as used) in a mechanics, each by other values of it."""
     numerics, inlet = content["numerics"], content["fluid"]["inlet"]

@@ -164,11 +164,6 @@ def reason_for(line: Tried, experiment: str, why: Reasons) -> str:
     return why.get(experiment, {}).get(name) or why.get("all", {}).get(name, "")
 
 
-def named(lines: Sequence[Tried]) -> str:
-    """Labels one after the other."""
-    return ", ".join(line.label for line in lines)
-
-
 Effects = tuple[dict[str, Effect], dict[str, float]]  # in their units, and as shares
 Maker = Callable[[Sequence[Job]], list[Made]]
 

@@ -9,9 +9,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from verification.benchmarks import measure, record
-from verification.benchmarks.machine import Load, busy_processors, this_build, this_machine
-from verification.benchmarks.record import BAD, BAND, NEW, SLOWER, STEP, Figure, Line, Record, compare, marks
+from verification.benchmarks import machine, measure
+from verification.benchmarks.machine import BAD, BAND, NEW, SLOWER, STEP, Figure, Line, Load, Record, busy_processors, compare, marks, this_build, this_machine
 from verification.harness.command import aligned, command
 from verification.harness.paths import RUNS
 
@@ -58,8 +57,6 @@ def measured(options: argparse.Namespace) -> Record:
 
 
 # --- words
-
-
 def told(value: float, unit: str) -> str:
     """A value with three digits and a unit that suits it."""
     if not math.isfinite(value):
@@ -77,7 +74,7 @@ def share(value: float | None) -> str:
 
 def figure_row(figure: Figure, line: Line | None) -> list[str]:
     """The cells of a figure: name, cost (particle-steps as a rate), spread, shares of core and memory, ratio to the last record, verdict."""
-    cost = "-" if not figure.values else f"{record.rate(figure):.1f} M/s" if figure.per == STEP else told(figure.median, figure.unit)
+    cost = "-" if not figure.values else f"{machine.rate(figure):.1f} M/s" if figure.per == STEP else told(figure.median, figure.unit)
     ratio = "" if line is None or not math.isfinite(line.ratio) else f"{line.ratio:.2f}"
     verdict = figure.problem[:60] or ("" if line is None or line.verdict == NEW else line.verdict)
     return [figure.name, cost, share(figure.spread if len(figure.values) > 1 else None), share(figure.share_of_peak),
@@ -135,13 +132,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return WRONG_USE
     then = None
     try:
-        then = record.last_of(now.machine)
+        then = machine.last_of(now.machine)
     except ValueError as error:
         print(f"ci/bench: not compared: {error}", file=sys.stderr)
     lines = compare(now, then) if then else []
     print("\n".join(report(now, lines, then)))
     options.out.parent.mkdir(parents=True, exist_ok=True)
-    options.out.write_text(record.as_json(now) + "\n", encoding="utf-8")
+    options.out.write_text(machine.as_json(now) + "\n", encoding="utf-8")
     print(f"figures: {options.out}")
     noisy, reasons, kept = now.load.noisy, now.why_not_kept(), OK
     if noisy:
@@ -150,7 +147,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"ci/bench: not recorded: {'; '.join(reasons)}", file=sys.stderr)
         kept = NOT_RECORDED
     elif options.record:
-        print(f"recorded: {record.append(now)}")
+        print(f"recorded: {machine.append(now)}")
     worse = any(line.verdict in BAD and (not noisy or line.verdict != SLOWER) for line in lines)
     return WORSE if worse or now.broken() else kept
 

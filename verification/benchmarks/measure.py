@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from verification.benchmarks.record import STEP, Figure
+from verification.benchmarks.machine import STEP, Figure
 from verification.harness.paths import EXPERIMENTS, ROOT
 from verification.harness.run import Job, make
 from verification.harness.scenes import STUDY_VARIANTS, variants_of
@@ -38,8 +38,6 @@ class NoBenchmark(Exception):
 
 
 # --- kernels
-
-
 def _bench(*options: str, shown: bool = False) -> str:
     """What strata_bench ($STRATA_BENCH, or that of the release build) says; `shown`: tell each benchmark as it is done."""
     program = os.environ.get("STRATA_BENCH", str(ROOT / "build" / "release" / "strata_bench"))
@@ -118,7 +116,6 @@ def rates(threads: int) -> tuple[float, float]:
 
 
 # --- whole runs
-
 JOBS = min(2, os.cpu_count() or 1)  # side by side: two, as the marks are for two cores
 SHIPPED_M = 1.0  # cells of the experiments, m
 TURNING = ("exp5_parallel_interface", "exp6_stress_reversal")  # paths that turn: the scenes say where fine cells end

@@ -16,9 +16,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from verification.harness.choices import Choice, read_points
 from verification.harness.claim_data import (
-    NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, Case, CaseResult, ClaimResult, Reading, read_claims, write_claims,
+    NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, Case, CaseResult, Choice, ClaimResult, Reading, read_claims, read_points,
+    write_claims,
 )  # fmt: skip
 from verification.harness.command import command
 from verification.harness.load import OF_SPEEDS, LoadError, Run, load

@@ -5,7 +5,6 @@ import json
 import math
 import subprocess
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import cache, reduce
 from operator import getitem
 from typing import Any
@@ -26,12 +25,8 @@ def frames(run: Run, group: str) -> list[tuple[float, dict[str, Array]]]:
     """Output times (s) of a group of result.h5, such as 'fracture', with the arrays stored at each, by their names."""
     with opened(run) as store:
         times = store["times"][()]
-        return [(float(times[int(name)]), arrays_of(item)) for name, item in sorted(store[group].items()) if name.isdigit()]
-
-
-def arrays_of(group: h5py.Group) -> dict[str, Array]:
-    """All data sets below a group, by their names from it."""
-    return {name: item[()] for name, item in items_below(group) if isinstance(item, h5py.Dataset)}
+        return [(float(times[int(name)]), {path: item[()] for path, item in items_below(below) if isinstance(item, h5py.Dataset)})
+                for name, below in sorted(store[group].items()) if name.isdigit()]  # fmt: skip
 
 
 Point = tuple[float, float]
@@ -126,14 +121,6 @@ class NoReference(Exception):
     """The reference program does not know what it was asked, or failed; the message is its own."""
 
 
-@dataclass(frozen=True)
-class Value:
-    """A reference value with its unit."""
-
-    value: float
-    unit: str
-
-
 Setting = float | str | list[float]
 
 
@@ -155,12 +142,6 @@ def settings_of(settings: Mapping[str, Any]) -> tuple[str, ...]:
 def _ask(name: str, settings: Mapping[str, Setting]) -> dict[str, Any]:
     """The same for settings by their names."""
     return _answer(name, settings_of(settings))
-
-
-def reference(name: str, **settings: Setting) -> dict[str, Value]:
-    """The values of a named reference solution for its settings, in the units they state; those that are lists or words left out."""
-    values = _ask(name, settings)["values"]
-    return {key: Value(float(item["value"]), str(item.get("unit", ""))) for key, item in values.items() if not isinstance(item["value"], (list, str))}
 
 
 def values(name: str, quantity: str, **settings: Setting) -> np.ndarray:

@@ -22,7 +22,7 @@ from verification.harness.run import about_s
 from verification.harness.scenes import content_of
 from verification.ladder.case import Level
 from verification.precision.measure import LONG_S, REPEATS, RUNS, SOME, WARM_S, key_of, measured
-from verification.precision.problem import DATA, Method, Point, Problem, Sheet, read_sheet, thinned, write_sheet
+from verification.precision.problem import DATA, Method, Point, Problem, Sheet, read_sheet, write_sheet
 from verification.precision.problems import PROBLEMS
 
 QUICK = RUNS / "quick"
@@ -57,7 +57,9 @@ class Task:
 
 def chosen(only: str, methods: str, quick: bool) -> list[Problem]:
     """The problems and methods that are asked for; raises ValueError for names that are not there."""
-    found = choose({one.name: thinned(one) if quick else one for one in PROBLEMS}, beginnings(only), "problem")
+    # To try the chart out, those methods and coarse levels alone that are enough.
+    thin = [replace(one, methods=tuple(replace(method, levels=method.levels[: method.quick]) for method in one.methods if method.quick > 0)) for one in PROBLEMS]
+    found = choose({one.name: one for one in (thin if quick else PROBLEMS)}, beginnings(only), "problem")
     named = choose({method.name: method for one in found.values() for method in one.methods}, beginnings(methods), "method")
     return [replace(one, methods=tuple(method for method in one.methods if method.name in named)) for one in found.values()]
 

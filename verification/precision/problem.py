@@ -138,11 +138,6 @@ def checked(problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
     return problems
 
 
-def thinned(problem: Problem) -> Problem:
-    """A problem with those methods and coarse levels alone that are enough to try the chart out."""
-    return replace(problem, methods=tuple(replace(one, levels=one.levels[: one.quick]) for one in problem.methods if one.quick > 0))
-
-
 FAR = 8.0  # cells far away against those around the fracture, where the grid is graded
 
 STILL = Setting("quasistatic")

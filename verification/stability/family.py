@@ -27,7 +27,6 @@ GARBAGE = "garbage"  # completed, not marked, and the check does not hold (or a 
 OUTCOMES = (STABLE, MARKED, REFUSED, FAILED, GARBAGE)
 SAFE = (STABLE, MARKED, REFUSED, FAILED)  # what a family may declare of its points beyond the edge
 
-
 KINEMATICS = {"total": "points in their places", "updated": "points that move"}
 
 LEAST_REFUSED = 0.9  # no check may hold for a value that is off by more than this: zero and twice must fail

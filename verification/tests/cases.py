@@ -20,15 +20,10 @@ from verification.harness.run import Job, Outcome, claimed, run
 RUNS = paths.RUNS / "tests"
 
 
-def folder_of(scene: Path, variant: str, settings: tuple[str, ...]) -> Path:
-    """A folder for a run, different for different settings."""
-    tag = hashlib.sha256("\n".join(settings).encode()).hexdigest()[:8] if settings else "as_is"
-    return RUNS / scene.stem / f"{variant or 'base'}_{tag}"
-
-
 def make(scene: Path, variant: str = "", settings: tuple[str, ...] = ()) -> tuple[Outcome, Path]:
-    """Make a run unless it is there; its outcome and folder."""
-    folder = folder_of(scene, variant, settings)
+    """Make a run unless it is there; its outcome and folder, another one for other settings."""
+    tag = hashlib.sha256("\n".join(settings).encode()).hexdigest()[:8] if settings else "as_is"
+    folder = RUNS / scene.stem / f"{variant or 'base'}_{tag}"
     with claimed(folder):
         return run(Job(scene, variant, folder, settings)), folder
 

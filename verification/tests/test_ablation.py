@@ -189,8 +189,6 @@ def test_every_reason_is_of_an_ingredient() -> None:
 
 
 # --- factors
-
-
 @pytest.mark.parametrize("scene", scenes_of(EXPERIMENTS), ids=lambda path: path.stem)
 @pytest.mark.parametrize("mechanics", ["explicit", "quasistatic"])
 def test_every_factor_varies_its_own_keys_and_something_of_them(scene: Path, mechanics: str) -> None:

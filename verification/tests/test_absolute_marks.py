@@ -6,11 +6,11 @@ import re
 import numpy as np
 import pytest
 
-from verification.harness.crack_paths import farthest, rise_at
 from verification.harness.load import LoadError, value, values
 from verification.ladder import gates
+from verification.ladder.case import at_points, lattice
 from verification.ladder.cases import crossing, freund, heights, interfaces, junction, paths
-from verification.ladder.fields import at_points, lattice
+from verification.ladder.cases.paths import farthest, rise_at
 
 BONDED, SPRINGS = {"4 cells": 0.01, "8 cells": 0.005, "16 cells": 0.005}, {"4 cells": 0.01, "8 cells": 0.01}
 MARKS = (

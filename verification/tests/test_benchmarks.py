@@ -9,12 +9,11 @@ from typing import Any
 
 import pytest
 
-from verification.benchmarks import machine, measure, record
+from verification.benchmarks import machine, measure
 from verification.benchmarks.__main__ import NOT_RECORDED, OK, WORSE, WRONG_USE, main, report, told
-from verification.benchmarks.machine import Build, Load, Machine
-from verification.benchmarks.record import (
-    BROKEN, FASTER, GONE, NEW, SAME, SLOWER, UNJUDGED, Figure, Record, append, as_json, compare, compare_figure, costs, exponent, mark,
-    marks, records_in,
+from verification.benchmarks.machine import (
+    BROKEN, FASTER, GONE, NEW, SAME, SLOWER, UNJUDGED, Build, Figure, Load, Machine, Record, append, as_json, compare, compare_figure, costs,
+    exponent, mark, marks, records_in,
 )  # fmt: skip
 from verification.harness.paths import ANALYTIC
 from verification.harness.run import Job
@@ -52,8 +51,6 @@ def an_entry(name: str, real_time: float, **more: Any) -> dict[str, Any]:
 
 
 # --- figures
-
-
 def test_a_cost_is_taken_relative_to_the_rate_beside_each_repetition() -> None:
     """A machine that is half as fast in some repetitions changes the cost and not the calibrated cost."""
     even = a_figure(peak_flop_s=(50e9,) * 5)
@@ -83,8 +80,6 @@ def test_exponents() -> None:
 
 
 # --- what strata_bench says
-
-
 def test_repetitions_of_google_benchmark_become_one_figure() -> None:
     """Seconds a unit in the unit of time that is said; means and medians of its own are left out; large blocks wait for memory."""
     name = "step/updated/x/iterations:5"
@@ -105,8 +100,6 @@ def test_repetitions_of_google_benchmark_become_one_figure() -> None:
 
 
 # --- now and then
-
-
 @pytest.mark.parametrize(
     "factor, verdict", [(1.0, SAME), (1.2, SAME), (1.3, SLOWER), (2.0, SLOWER), (0.9, SAME), (0.5, FASTER), (0.0, BROKEN), (-1.0, BROKEN)]
 )
@@ -149,19 +142,17 @@ def test_few_repetitions_missing_figures_and_failures_are_told_apart() -> None:
 
 
 # --- records
-
-
 def test_records_come_back_as_they_were(tmp_path: Path) -> None:
     """Written, read, and written after it another; the last of the machine counts, whatever file another's is in."""
     first = a_record(a_figure(), Figure("experiments/a", "run", (), problem="timed out"))
     second = replace(first, date="2026-02-02T03:04:05+00:00")
-    assert record.last_of(HERE, tmp_path) is None
+    assert machine.last_of(HERE, tmp_path) is None
     path = [append(one, tmp_path) for one in (first, second)][0]
-    assert record.last_of(HERE, tmp_path) == second and records_in(path) == [first, second]
+    assert machine.last_of(HERE, tmp_path) == second and records_in(path) == [first, second]
     for other in (replace(HERE, cpu="Other"), replace(HERE, cores=4), replace(HERE, caches="L1 32K")):
-        assert record.last_of(other, tmp_path) is None and other.key != HERE.key
+        assert machine.last_of(other, tmp_path) is None and other.key != HERE.key
         append(replace(first, machine=other), tmp_path).rename(path)
-        assert record.last_of(HERE, tmp_path) is None
+        assert machine.last_of(HERE, tmp_path) is None
     for text, said in (('{"format": 1, "machine"', "jsonl:1"), (as_json(first).replace('"format": 1', '"format": 99'), "format 99")):
         path.write_text(text, encoding="utf-8")
         with pytest.raises(ValueError, match=said):
@@ -170,8 +161,8 @@ def test_records_come_back_as_they_were(tmp_path: Path) -> None:
 
 def test_kept_records_can_be_read() -> None:
     """Those that come with the project, whichever version wrote them."""
-    kept = [one for path in record.RECORDS.glob("*.jsonl") for one in records_in(path)]
-    assert kept and all(costs(one.figures, record.GROWTH[0][1]) and one.marks for one in kept)
+    kept = [one for path in machine.RECORDS.glob("*.jsonl") for one in records_in(path)]
+    assert kept and all(costs(one.figures, machine.GROWTH[0][1]) and one.marks for one in kept)
 
 
 @pytest.mark.parametrize("figure, more, said", [
@@ -200,8 +191,6 @@ def test_the_machine_is_described(tmp_path: Path) -> None:
 
 
 # --- marks and words
-
-
 def a_full_record(seconds: float) -> Record:
     """Figures on which all marks but those on experiments stand."""
     steps = [a_figure(f"{BLOCK}/threads{n}", seconds / n) for n in (1, 2)]
@@ -221,7 +210,7 @@ def test_marks_are_reached_or_not() -> None:
     assert sum(not one["reached"] for one in marks(a_full_record(1.0 / 35e6))) == 5
     for value in (0.0, math.nan, -1.0):
         assert not mark("a", 10.0, value)["reached"] and not mark("a", 10.0, value, at_least=True)["reached"]
-    sizes = costs(a_full_record(1e-8).figures, record.GROWTH[0][1])
+    sizes = costs(a_full_record(1e-8).figures, machine.GROWTH[0][1])
     assert [points for points, _ in sizes] == [1e4, 25600.0, 409600.0, 4e6] and sizes[-1][1] == pytest.approx(0.04)
     failed = a_record(Figure("experiments/quasistatic/cell1m", "all variants", (), problem="2 of 23 runs"))
     assert [one["reached"] for one in marks(failed)] == [False]
@@ -239,8 +228,6 @@ def test_the_table_says_all() -> None:
 
 
 # --- whole runs
-
-
 def test_batches_are_all_default_variants() -> None:
     """23 runs, each a variant that its scene has; below the scenes' cells weak interfaces are fine along all their length."""
     jobs = measure.batch("quasistatic", 1.0, 1, 10.0).jobs
@@ -266,12 +253,10 @@ def test_runs_are_timed_and_those_that_fail_or_take_too_long_are_told() -> None:
 
 
 # --- the whole of it, at its quickest
-
-
 def test_the_quickest_benchmark_runs_and_is_judged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     """One kernel through the command line: measured, kept, compared with itself; a record mutated to half its cost is a failure."""
-    monkeypatch.setattr(record, "append", lambda one: append(one, tmp_path))
-    monkeypatch.setattr(record, "last_of", lambda there, own=record.last_of: own(there, tmp_path))
+    monkeypatch.setattr(machine, "append", lambda one: append(one, tmp_path))
+    monkeypatch.setattr(machine, "last_of", lambda there, own=machine.last_of: own(there, tmp_path))
     monkeypatch.setattr("verification.benchmarks.__main__.busy_processors", lambda: 0.0)
     out = tmp_path / "last.json"
     options = ["--kernels", "--only", "^stage/surfaces", "--load", "0", "--out", str(out)]

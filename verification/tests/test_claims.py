@@ -1,18 +1,22 @@
-"""Verdicts: each claim of the experiments can be reproduced and can fail; what is missing is not judged."""
+"""Verdicts: each claim of the experiments can be reproduced and can fail; what is missing is not judged. Observables of made-up runs whose answers are known, and
+of mutations of them that must be told apart; run folders are read as the contract has them, and what is missing is named."""
 
 import json
+import math
 import shutil
 import tomllib
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
-from verification.harness.choices import Choice
-from verification.harness.claim_data import NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, read_claims, write_claims
+from verification.harness.claim_data import NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, Choice, read_claims, write_claims
 from verification.harness.claims import Runs, case_of, claims_of, evaluate, evaluate_all, evaluate_each, record_finer
+from verification.harness.load import LoadError, Run, frames, load
+from verification.harness.observables import Measured, failed_length_m, measure
 from verification.harness.paths import EXPERIMENTS
-from verification.tests.fake_run import changed, climb, write_run
+from verification.tests.fake_run import Step, changed, climb, write_run
 
 MPA = 1.0e6
 SCENES = sorted(EXPERIMENTS.glob("*.toml"))
@@ -220,3 +224,176 @@ def test_cells_of_half_the_size_have_verdicts_of_their_own_run_or_recorded(tmp_p
     _, recorded = evaluate_each(folder, runs)
     assert (recorded.verdict, recorded.cases) == (at_half.verdict, at_half.cases)
     assert recorded.flags[0].startswith("recorded by strata")
+
+
+APPROX = {"rel": 1e-6, "abs": 1e-9}
+
+
+def bent(degrees: float) -> list[Step]:
+    """A path of 30 m that leaves the vertical by an angle (clockwise positive) at 5 m."""
+    angle = math.radians(degrees)
+    return [(2.4 * MPA + s, 40.0 + s * math.sin(angle), 5.0 + s * math.cos(angle)) for s in range(1, 31)]
+
+
+FAILS, HOLDS = [(2.0 * MPA, 0.0), (2.4 * MPA, 1.0), (2.5 * MPA, 4.0)], [(2.0 * MPA, 0.0)]
+HIGHER = '[{rock = "stiff", thickness_m = 15.0}, {rock = "stiff", thickness_m = 65.0}]'
+RUNS: dict[str, tuple[list[Step], dict[str, Any]]] = {
+    "plain": (climb(), {}), "late": (climb(2.40 * MPA), {}), "never": ([], {"end_Pa": 4.0 * MPA}), "to_4_MPa": (climb(to_m=10.0), {"end_Pa": 4.0 * MPA}),
+    "low": (climb(to_m=7.0), {}), "stuck": (climb(to_m=12.0), {}), "half": (climb(to_m=14.0), {}), "half_late": (climb(2.40 * MPA, to_m=14.0), {}),
+    "higher": (climb(to_m=14.0), {"layers": HIGHER}), "straight": (climb(to_m=35.0), {}), "right": (bent(30.0), {}), "left": (bent(-30.0), {}),
+    "fails": (climb(), {"friction_J": 65.0, "failed_m": FAILS}), "holds": (climb(), {"failed_m": HOLDS}), "brief": (climb(), {"end_Pa": 2.7 * MPA}),
+    **{f"{rise:g}_at_{height:g}": (climb(plateaus={height: rise * MPA}), {})
+       for height, rise in ((9.0, 0.2), (10.0, 0.2), (11.0, 0.2), (14.0, 0.2), (8.0, 0.2), (15.0, 0.2), (10.0, 0.02), (10.0, 0.195), (10.0, 0.095), (15.0, 0.07))},
+    **{f"arrest_{height:g}": (climb(plateaus={height: 0.1 * MPA}), {"end_Pa": 2.8 * MPA}) for height in (7.0, 20.0)},
+}  # fmt: skip
+
+
+def made_up(folder: Path, name: str) -> Run:
+    """A made-up run, loaded."""
+    steps, options = RUNS[name]
+    return load(write_run(folder / "exp" / name, steps, **options))
+
+
+AT, TO_30, ABOVE = {"interface": 1}, {"from_m": 6, "to_m": 30}, {"height_m": {"interface": 1, "plus_m": 2}}
+NEAR_PA = 2.36 * MPA + 3 * 5.0e3  # the tip is at 9 m, the first step within 1.5 increments of the interface
+
+
+@pytest.mark.parametrize(("name", "parameters", "run", "against", "expected"), [
+    ("start_Pa", {}, "late", None, 2.40 * MPA), ("start_shift_Pa", {}, "late", "plain", 0.04 * MPA), ("start_shift_Pa", {}, "plain", "late", -0.04 * MPA),
+    ("start_shift_Pa", {}, "never", "plain", (1.64 * MPA, math.inf)),
+    *(("plateau_Pa", AT, f"0.2_at_{height}", None, 0.205 * MPA) for height in (9, 10, 11, 14)),
+    *(("plateau_Pa", AT, run, None, 0.0) for run in ("0.2_at_8", "0.2_at_15", "0.02_at_10")),  # elsewhere, or less than an arrest
+    ("plateau_Pa", AT, "to_4_MPa", None, (1.62 * MPA, math.inf)), ("plateau_Pa", AT, "low", None, None),  # without end; out of reach
+    ("plateau_ratio", AT, "0.195_at_10", "0.095_at_10", 2.0), ("plateau_ratio", AT, "plain", "0.195_at_10", 0.0),
+    ("pressure_shift_Pa", TO_30, "plain", "plain", 0.0), ("pressure_shift_Pa", TO_30, "0.07_at_15", "plain", 0.07 * MPA),
+    ("pressure_shift_Pa", TO_30, "plain", "0.07_at_15", 0.07 * MPA), ("pressure_shift_Pa", {"from_m": 6, "to_m": 15}, "0.07_at_15", "plain", 0.0),
+    ("pressure_shift_Pa", TO_30, "stuck", "plain", (3.0 * MPA - (2.36 * MPA + 7 * 5.0e3), math.inf)),
+    ("height_ratio", {"height_m": 60}, "stuck", "plain", 0.2), ("height_ratio", {"height_m": 60}, "plain", "plain", 1.0),
+    ("height_ratio", {"height_m": 60}, "plain", "stuck", None),
+    ("pressure_at_height_difference_Pa", {"height_m": 22}, "stuck", "plain", (3.0 * MPA - 2.44 * MPA, math.inf)),
+    ("pressure_at_height_difference_Pa", ABOVE, "half_late", "half", 0.04 * MPA),
+    ("arrests", {"from_m": 8}, "brief", None, 0.0), ("arrests", {"from_m": 8}, "arrest_20", None, 1.0), ("arrests", {"from_m": 8}, "arrest_7", None, 0.0),
+    ("lateral_deflection_m", {}, "right", None, 15.0), ("lateral_deflection_m", {}, "left", None, -15.0),
+    ("final_angle_deg", {}, "right", None, 60.0), ("final_angle_deg", {}, "left", None, 60.0),
+    ("path_change", {}, "right", "right", 0.0), ("path_change", {}, "right", "straight", None),
+    ("interface_failure_excess_Pa", AT, "fails", None, 2.5 * MPA - NEAR_PA),
+    ("interface_energy_difference_J", {"height_m": 22}, "fails", "holds", 17.0), ("interface_energy_difference_J", {"height_m": 22}, "holds", "fails", -17.0),
+    ("final_height_m", {}, "half", None, 14.0), ("final_height_m", {"above_interface": 1}, "half", None, 4.0),
+    ("final_height_m", {"above_interface": 1}, "higher", None, -1.0),
+])  # fmt: skip
+def test_what_is_known_of_made_up_runs(
+    tmp_path: Path, name: str, parameters: dict[str, Any], run: str, against: str | None, expected: float | tuple[float, float] | None
+) -> None:
+    """A number, the bounds that a run leaves which ended first, or none."""
+    found = measure(name, parameters, made_up(tmp_path, run), made_up(tmp_path, against) if against else None)
+    if isinstance(expected, tuple):
+        assert (found.low, found.high) == pytest.approx(expected, **APPROX)
+    else:
+        assert found.value == (expected if expected is None else pytest.approx(expected, **APPROX)) and (expected is None or found.exact)
+
+
+@pytest.mark.parametrize(("name", "parameters", "run", "against", "at_least", "at_most", "expected"), [
+    ("plateau_Pa", AT, "to_4_MPa", None, 0.05 * MPA, None, True), ("plateau_Pa", AT, "to_4_MPa", None, None, 2.0 * MPA, None),  # it may be longer
+    ("plateau_Pa", AT, "to_4_MPa", None, None, 1.0 * MPA, False), ("plateau_Pa", AT, "low", None, None, 1.0, None),
+    ("plateau_ratio", AT, "0.195_at_10", "plain", 0.5, 2.0, False), ("plateau_ratio", AT, "plain", "plain", 0.5, 2.0, None),  # nothing to compare
+    ("arrests", {"from_m": 8}, "never", None, None, 0, None), ("interface_failure_excess_Pa", AT, "holds", None, None, 0.1 * MPA, False),
+])  # fmt: skip
+def test_what_a_bound_says_of_a_range(
+    tmp_path: Path, name: str, parameters: dict[str, Any], run: str, against: str | None, at_least: float | None, at_most: float | None, expected: bool | None
+) -> None:
+    found = measure(name, parameters, made_up(tmp_path, run), made_up(tmp_path, against) if against else None)
+    assert found.holds(at_least, at_most) is expected
+
+
+@pytest.mark.parametrize(("bounds", "at_least", "at_most", "expected"), [
+    ((1.0, 2.0), 0.5, 2.5, True), ((1.0, 2.0), 1.5, None, None), ((1.0, 2.0), 2.5, None, False), ((math.nan, math.nan), None, 1.0, None),
+])  # fmt: skip
+def test_bounds_are_judged_by_both_ends(bounds: tuple[float, float], at_least: float | None, at_most: float | None, expected: bool | None) -> None:
+    assert Measured(*bounds).holds(at_least, at_most) is expected
+
+
+def test_heights_above_an_interface_that_are_not_reached(tmp_path: Path) -> None:
+    assert not measure("pressure_at_height_difference_Pa", ABOVE, made_up(tmp_path, "higher"), made_up(tmp_path, "half")).exact, "17 m"
+
+
+def test_paths_at_an_angle_to_each_other(tmp_path: Path) -> None:
+    """At 60 degrees: at s from the kink s sin 60 apart, and the other one s sin 30 off its first direction."""
+    assert measure("path_change", {}, made_up(tmp_path, "right"), made_up(tmp_path, "left")).value == pytest.approx(math.sqrt(3.0), rel=0.02)
+
+
+def test_a_failed_length_counts_each_place_by_the_way_to_its_neighbours() -> None:
+    """On a graded grid places are unlike: two of 0.5 m and one of 1.25 m, whatever their order."""
+    x, split = np.array([0.25, 0.75, 1.25, 2.25, 3.75]), np.array([1, 1, 0, 1, 0])
+    for order in (np.arange(5), np.array([3, 0, 4, 2, 1])):
+        assert failed_length_m({"0/x_m": x[order], "0/split": split[order]}, 1) == pytest.approx(2.25)
+    assert failed_length_m({"0/x_m": x[:1], "0/split": split[:1]}, 1) == 0.0
+
+
+def test_a_plateau_is_flagged_where_J_decided_it(tmp_path: Path) -> None:
+    assert all(measure("plateau_Pa", AT, made_up(tmp_path, f"0.2_at_{height}"), None).flags == ("J at interface",) for height in (9, 10, 11, 14))
+    folder = write_run(tmp_path / "exp" / "weak", climb(plateaus={10.0: 0.2 * MPA}), mechanics="quasistatic")
+    assert measure("plateau_Pa", AT, load(folder), None).flags == ()
+    events = load(folder).summary.raw["events"]
+    for by, expected in (("energy", ()), ("J", ("J at interface",))):
+        changed(folder, events=[event | {"by": by, "at_interface": True} for event in events])
+        assert measure("plateau_Pa", AT, load(folder), None).flags == expected
+
+
+MARK = {"monitor": "energy_closure", "value": 0.02, "threshold": 0.01, "why": "it stayed open"}
+
+
+def held_run(tmp_path: Path, to_m: float = 20.0, **options: Any) -> Path:
+    return write_run(tmp_path / "exp" / "weak", climb(to_m=to_m, plateaus={10.0: 0.1e6}), **options)
+
+
+def test_a_whole_folder_is_read(tmp_path: Path) -> None:
+    run = load(held_run(tmp_path, failed_m=[(2.0e6, 0.0), (2.4e6, 3.0)]))
+    assert [event.kind for event in run.summary.events] == ["start", "arrest", "restart", "arrest", "stop"]
+    assert run.interfaces_m == [10.0] and run.summary.suspect == ()
+    assert run.path.shape == (17, 2) and run.path[-1].tolist() == [40.0, 20.0]
+    assert math.isnan(run.summary.tips[0].K_II_Pa_sqrt_m), "null stands for a number that is not finite"
+    times, arrays = zip(*frames(run, "interfaces"))
+    assert times == pytest.approx([0.0, 0.4e6 / 0.35e6]) and np.sum(arrays[1]["0/split"]) == 6
+
+
+@pytest.mark.parametrize("name", ["scene.toml", "summary.json", "history.csv"])
+def test_a_missing_file_is_named(tmp_path: Path, name: str) -> None:
+    (held_run(tmp_path) / name).unlink()
+    with pytest.raises(LoadError, match=name):
+        load(tmp_path / "exp" / "weak")
+
+
+@pytest.mark.parametrize(("change", "why"), [
+    *(({key: None}, key) for key in ("events", "inlet_Pa", "tips", "energy")),
+    ({"suspect": [{key: value for key, value in MARK.items() if key != "why"}]}, "no key why"),
+])  # fmt: skip
+def test_a_missing_key_is_named(tmp_path: Path, change: dict[str, Any], why: str) -> None:
+    with pytest.raises(LoadError, match=why):
+        load(changed(held_run(tmp_path), **change))
+
+
+def test_a_torn_history_is_named_with_its_line(tmp_path: Path) -> None:
+    folder = held_run(tmp_path, 7.0)
+    with (folder / "history.csv").open("a") as stream:
+        stream.write("1.0,2.0\n")
+    with pytest.raises(LoadError, match="history.csv:6"):
+        load(folder)
+
+
+def test_what_a_quasistatic_run_adds_is_optional(tmp_path: Path) -> None:
+    folder = held_run(tmp_path, mechanics="quasistatic")
+    plain = load(folder).summary
+    assert math.isnan(plain.tips[0].G_N_m) and plain.monitors == {}
+    raw = plain.raw
+    raw["events"][1] |= {"by": "energy", "at_interface": False}
+    raw["events"][2] |= {"by": "J", "at_interface": True}
+    summary = load(changed(folder, tips=[raw["tips"][0] | {"G_N_m": 205.0}], events=raw["events"], monitors={"mirror": True})).summary
+    assert summary.tips[0].G_N_m == 205.0 and summary.monitors["mirror"] is True
+    assert [(event.by, event.at_interface) for event in summary.events[1:3]] == [("energy", False), ("J", True)]
+
+
+def test_marks_of_a_run_are_read(tmp_path: Path) -> None:
+    """A mark's value may be null, which stands for no finite number."""
+    first, second = load(changed(held_run(tmp_path), suspect=[MARK, MARK | {"monitor": "momentum", "value": None}])).summary.suspect
+    assert (first.monitor, first.value, first.threshold, first.why) == tuple(MARK.values())
+    assert second.monitor == "momentum" and math.isnan(second.value)

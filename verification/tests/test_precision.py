@@ -11,7 +11,7 @@ from verification.harness.paths import ANALYTIC
 from verification.ladder.case import Level, Sample
 from verification.precision import measure
 from verification.precision.__main__ import main
-from verification.precision.judge import GROUPS, TOLERANCES, Panel, cheapest, choice_for, judged, nearest, panel_of, pareto, run_at
+from verification.precision.measure import GROUPS, TOLERANCES, Panel, cheapest, choice_for, judged, nearest, panel_of, pareto, run_at
 from verification.precision.problem import (
     ELEMENTS, FAILED, OK, REFUSED, STRATA, TOO_LONG, Found, Method, Point, Problem, Setting, Sheet, Wanted, checked, read_sheet, write_sheet,
 )  # fmt: skip

@@ -24,11 +24,6 @@ def speed(name: str) -> float:
     return value("wave_speeds", f"{name}_m_s", **ROCK)
 
 
-def by_J(run: Run) -> Array:
-    """K_I that J stands for at each row of the history, Pa sqrt(m)."""
-    return np.sqrt(np.maximum(run.history["J_N_m"], 0.0) * E_prime(run))
-
-
 def window(run: Run, K: Array, from_m: float) -> tuple[Array, Array, Array]:
     """Times (s) with c_P t from `from_m` to the first wave's return, and K_I measured and exact at them (Pa sqrt(m))."""
     way = speed("c_P") * run.history["time_s"]
@@ -66,7 +61,7 @@ def mean_farthest_off(run: Run) -> Sample:
 NO_ORDER = "the grid answers a step with an overshoot at c_P t = 10 to 15 cells, the same at all sizes, only sooner"
 QUANTITIES = (
     Quantity("K_I(t), c_P t = 20 to 60 m", "Pa sqrt(m)", lambda run: Sample(*window(run, run.history["K_I_Pa_sqrt_m"], SETTLED_M)[1:])),
-    Quantity("K_I(t) by J, c_P t = 20 to 60 m", "Pa sqrt(m)", lambda run: Sample(*window(run, by_J(run), SETTLED_M)[1:])),
+    Quantity("K_I(t) by J, c_P t = 20 to 60 m", "Pa sqrt(m)", lambda run: Sample(*window(run, np.sqrt(np.maximum(run.history["J_N_m"], 0.0) * E_prime(run)), SETTLED_M)[1:])),
     Quantity("K_I(t) farthest off, c_P t = 10 cells to 60 m", "Pa sqrt(m)", lambda run: farthest(*settled(run)[1:]), NO_ORDER),
     Quantity("mean over h/c_R farthest off, same time", "Pa sqrt(m)", mean_farthest_off, NO_ORDER),
 )

@@ -24,7 +24,6 @@ LETS_GO = 0.3  # of what makes it slip: where the solver splits an interface wit
 SLIP = "the mean over a column (second order, slips later) stands against a crack that is 0.2 % too soft; columns move along the peak"
 SMALL = "it is the block's edges that cost a per cent"
 
-
 Reference = Callable[[Run], tuple[str, dict[str, Any]]]
 
 

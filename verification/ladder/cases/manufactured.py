@@ -12,8 +12,7 @@ import math
 
 from verification.harness.load import Run, rock
 from verification.harness.paths import ROOT
-from verification.ladder.case import Array, Case, cell_levels
-from verification.ladder.fields import DISPLACEMENT, STRESS, VELOCITY, End, Exact, at_points, field_quantity
+from verification.ladder.case import DISPLACEMENT, STRESS, VELOCITY, Array, Case, End, Exact, at_points, cell_levels, field_quantity
 
 SCENE = ROOT / "verification" / "convergence" / "manufactured.toml"
 

@@ -73,7 +73,6 @@ def closure(run: Run) -> float:
 
 ENERGY = Quantity.of("energy unexplained", "1", closure, lambda _: 0.0, ROUND_OFF, scale=1.0)
 
-
 # --- a free block
 MOVES = ANALYTIC / "rigid_motion.toml"
 
@@ -150,7 +149,6 @@ FREE = (
     ),
 )  # fmt: skip
 
-
 # --- uniform stress
 PATCH = ANALYTIC / "patch.toml"
 
@@ -191,7 +189,6 @@ PATCHES = tuple(
     patch("updated", "explicit", UPDATED), patch("gimp", "explicit", UPDATED, GIMP), patch("graded", "quasistatic", GRADED),
     patch("graded", "explicit", UPDATED, GRADED), patch("graded_gimp", "explicit", UPDATED, GIMP, GRADED),
 )  # fmt: skip
-
 
 # --- layers that share a load
 LAYERS = ANALYTIC / "loaded_layers.toml"
@@ -237,7 +234,6 @@ SHARING = Case(
     (layer_mean(0), layer_mean(1), of_points("s_xx_Pa", lambda run, of: np.array(laminate(run))[of]),
      of_points("s_yy_Pa", lambda run, of: np.full(of.shape, -given(run, "in_situ.vertical_Pa")))),  # across the layers it is that of the top
 )  # fmt: skip
-
 
 # --- own weight and springs
 WEIGHT = ANALYTIC / "own_weight.toml"

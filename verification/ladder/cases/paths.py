@@ -9,10 +9,59 @@ from typing import Any
 
 import numpy as np
 
-from verification.harness.crack_paths import exact_path, farthest, first_kink_deg, grown, rise_at
-from verification.harness.load import LoadError, Run, given
+from verification.harness.load import Array, LoadError, Run, Setting, given, values
+from verification.harness.observables import distances_to
 from verification.harness.paths import ANALYTIC
-from verification.ladder.case import Array, Case, Level, Quantity, Sample, cell_levels
+from verification.ladder.case import Case, Level, Quantity, Sample, cell_levels
+
+INTERFACE_M = 5.0  # to the right of the first crack
+FIRST_TIP_M = 5.0
+_STIFF: dict[str, float] = {"youngs_modulus_Pa": 10e9, "toughness_Pa_sqrt_m": 1.45e6}
+_SOFT: dict[str, float] = {"youngs_modulus_Pa": 5e9, "toughness_Pa_sqrt_m": 1.25e6}
+_ACROSS_PA = -2e6  # in-situ stress across the fracture
+_ALONG_PA = {5: -3e6, 6: -1e6}  # and along it
+
+
+def path_settings(experiment: int, increment_m: float, turning: str, growth_m: float) -> dict[str, Setting]:
+    """The settings of crack_path for Experiment 5 or 6."""
+    crack, beyond = (_SOFT, _STIFF) if experiment == 5 else (_STIFF, _SOFT)
+    return {
+        **crack, "beyond_youngs_modulus_Pa": beyond["youngs_modulus_Pa"], "interface_x_m": INTERFACE_M, "s_xx_Pa": _ACROSS_PA,
+        "s_yy_Pa": _ALONG_PA[experiment], "half_length_m": FIRST_TIP_M, "increment_m": increment_m, "turning": turning,
+        "stop_growth_m": growth_m, "stop_height_m": 1000.0,
+    }  # fmt: skip
+
+
+def exact_path(experiment: int, increment_m: float, turning: str, growth_m: float) -> Array:
+    """Tips of Experiment 5 or 6 by strata-reference crack_path over a length of growth, "corrected" or "forward" turning. Perfect interface, pressure
+    everywhere that of the start of growth; x from the first crack; shape (n, 2), m."""
+    settings = path_settings(experiment, increment_m, turning, growth_m)
+    return np.column_stack([values("crack_path", axis, **settings) for axis in ("x_m", "y_m")])
+
+
+def grown(run: Run) -> Array:
+    """Tips of a run from the first on, x from the first crack, shape (n, 2), m; LoadError if it grew less than twice."""
+    path = run.path[1:] - np.array([run.path[0, 0], 0.0])
+    if len(path) < 3:
+        raise LoadError(f"{run.folder}: the fracture grew less than two increments")
+    return path
+
+
+def rise_at(path: Array, x_m: float) -> float:
+    """Height above the first tip at which a path first is x_m to the right, m; LoadError if it never is."""
+    beyond = np.nonzero(path[:, 0] >= x_m)[0]
+    if len(beyond) == 0:
+        raise LoadError(f"the path never gets {x_m:g} m to the right")
+    k = int(beyond[0])
+    part = (x_m - path[k - 1, 0]) / (path[k, 0] - path[k - 1, 0])
+    return float(path[k - 1, 1] + part * (path[k, 1] - path[k - 1, 1]) - path[0, 1])
+
+
+def farthest(path: Array, other: Array) -> float:
+    """Largest distance of a path's points from a polyline (m), over the height and width that both have."""
+    near = np.hypot(*(path - path[0]).T) <= np.hypot(*(other[-1] - other[0]))
+    return float(np.max(distances_to(path[near], other)))
+
 
 GROWTH_M = 20.0  # of Experiment 5's path that is held against the reference
 TURN_M = 1.0  # sideways, where the height of Experiment 6's path is read
@@ -61,7 +110,7 @@ def kink_deg(run: Run) -> float:
 
 def first_turn(experiment: int) -> Quantity:
     """The first turn against boundary elements."""
-    return Quantity.of("first turn", "deg", kink_deg, lambda _: first_kink_deg(experiment), reference_error=1e-4)
+    return Quantity.of("first turn", "deg", kink_deg, lambda _: values("crack_path", "kink_deg", **path_settings(experiment, 1.0, "forward", 1.0))[0], reference_error=1e-4)
 
 
 def levels(increment_cells: float) -> tuple[Level, ...]:

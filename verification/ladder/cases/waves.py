@@ -6,8 +6,7 @@ import numpy as np
 
 from verification.harness.load import Run, given, rock
 from verification.harness.paths import ROOT
-from verification.ladder.case import Array, Case, Level, cell_levels
-from verification.ladder.fields import End, at_points, field_quantity
+from verification.ladder.case import Array, Case, End, Level, at_points, cell_levels, field_quantity
 
 SCENE = ROOT / "verification" / "convergence" / "waves.toml"
 

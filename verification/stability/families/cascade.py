@@ -104,11 +104,6 @@ def over_strength(variant: str = "", *more: str) -> At:
     return at_values(SCENE, lambda ratio: (foot_setting(ratio), *more), "{:g}", variant)
 
 
-def slow(over_s: float) -> tuple[str, ...]:
-    """A run pulled over so long a time, whose foot never fails."""
-    return foot_setting(9.0), pull_setting(0.12, over_s), f"stop.time_s={0.65 * over_s + SWING_S!r}"
-
-
 STRENGTH = Parameter("strength of the foot over that of the bond above")
 TWO_MODES = "(w_2^2 + w_1^2)/(w_2^2 - w_1^2) of two blocks on springs, reached after one period of the slow mode as w_2/w_1 is"
 STILL = ("numerics.mechanics=quasistatic", f"in_situ.vertical_Pa={-FROM_PA!r}", pull_setting(PULL_M_S2, 2.0), "stop.time_s=2")
@@ -143,5 +138,6 @@ FAMILIES = (
            edge=edge(f"With damping: modes decay as e^(-c t/2); the c at which what the foot carries just reaches {DAMPED_RATIO:g}.",
                      lambda: damping_for(chain(""), DAMPED_RATIO, SWING_S), damping)),
     family("_slow", "how slowly it was loaded", "Slower loading does not make the failure slower: the foot's swing is the same.",
-           Parameter("time of the pull", "s"), walked(at_values(SCENE, slow, "{:g} s"), (1.5, 2.0, 4.0, 8.0), smoke=(2.0,)), swung, (STABLE,)),
+           Parameter("time of the pull", "s"), walked(at_values(  # pulled over so long a time, the foot never fails
+               SCENE, lambda over_s: (foot_setting(9.0), pull_setting(0.12, over_s), f"stop.time_s={0.65 * over_s + SWING_S!r}"), "{:g} s"), (1.5, 2.0, 4.0, 8.0), smoke=(2.0,)), swung, (STABLE,)),
 )  # fmt: skip

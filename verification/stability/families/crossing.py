@@ -5,8 +5,8 @@ import math
 import numpy as np
 
 from verification.harness.load import Run
+from verification.ladder.case import STRESS, field_quantity
 from verification.ladder.cases.manufactured import exact_by
-from verification.ladder.fields import STRESS, field_quantity
 from verification.stability.family import MARKED, SCENES, STABLE, At, Checked, Edge, Family, Parameter, Point, at_most, walked
 
 CELL_M = 0.0625  # of the scene; points stand at a quarter and three quarters

@@ -15,7 +15,6 @@ SECTION = "Fractures that cross interfaces, corners, edges"
 CROSSING_M = 13.0  # half length of these cracks: at 20 degrees their tips are 4.4 cells from the interface
 ANGLES = (90.0, 75.0, 60.0, 45.0, 30.0, 20.0)
 
-
 STIFF_SPRINGS = (*parted("stiff", "stiff", "springs"), *(f"interface.springs.{name}_stiffness_Pa_m=1e14" for name in ("normal", "shear")))
 STUCK = (*parted("stiff", "stiff", "slick"), "interface.slick.coefficient=5")
 
@@ -76,7 +75,6 @@ CLOSE = Family(
            (0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0), smoke=(0.25, 0.5), beyond=lambda cells: cells in (0.25, 0.75)),
     hanging, beyond=(REFUSED,), section=SECTION,
 )  # fmt: skip
-
 
 BLOCK_M = 32.0
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from verification.harness.crack_paths import exact_path, farthest, grown
 from verification.harness.load import Run, given
 from verification.harness.paths import ANALYTIC
+from verification.ladder.cases.paths import exact_path, farthest, grown
 from verification.stability.family import MARKED, STABLE, Checked, Family, Parameter, at_most, at_values, walked
 
 GROWTH_M = 10.0

@@ -8,7 +8,6 @@ from verification.harness.load import LoadError, Run, frames, given
 from verification.stability.family import CRACK, STABLE, Checked, Family, Parameter, Point, at_values, close, walked
 from verification.stability.theory.flow import compliance, paper, reynolds
 
-
 START_PA, RATE_PA_S, TIME_S = 0.05e6, 0.35e6, 2.0  # net pressure at the start, its rise at the inlet (the study's), and for how long
 INTERVALS_S = (0.02, 0.1, 0.5, 2.0)
 VISCOSITIES_PA_S = (0.1, 0.3, 1.0)
@@ -42,7 +41,6 @@ LAG = Family(
     (*(lagging(1.0, every, every == 2.0) for every in INTERVALS_S), *(lagging(viscosity, 2.0) for viscosity in VISCOSITIES_PA_S[:-1])),
     tip_pressure, check_name="net pressure at the tip, relative difference", section="Permeability while the fracture opens",
 )  # fmt: skip
-
 
 NET_PA, RISE_PA, MANY = 0.3e6, 0.1e6, 10  # net pressure at the start, its rise at the inlet over the run, longest steps in it
 

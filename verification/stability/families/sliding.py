@@ -1,11 +1,13 @@
-"""Stick-slip and chatter: two blocks that are pressed together and pushed past each other."""
+"""Stick-slip and chatter: two blocks that are pressed together and pushed past each other; interface springs from soft to stiff, explicit: a pulse meets them in a
+column of rock, against the exact wave."""
 
 from collections.abc import Mapping
 
 import numpy as np
 
 from verification.harness.load import LoadError, Run, given
-from verification.stability.family import KINEMATICS, SCENES, STABLE, Checked, Edge, Family, Parameter, at_values, close, walked
+from verification.ladder.cases.waves import SCENE as COLUMN, VELOCITY
+from verification.stability.family import KINEMATICS, MARKED, SCENES, STABLE, Checked, Edge, Family, Parameter, Point, at_most, at_values, close, walked
 
 NORMAL_PA, HEIGHT_M, WIDTH_M, DENSITY = 1.0e6, 16.0, 2.0, 2500.0  # of the scene, a block's width
 PUSH_FROM_S, PUSH_M_S3, END_S = 0.05, 2000.0, 0.15
@@ -55,4 +57,32 @@ def family(kinematics: str) -> Family:
     )  # fmt: skip
 
 
-FAMILIES = tuple(map(family, KINEMATICS))
+SLIDING_FAMILIES = tuple(map(family, KINEMATICS))
+
+MOST = {"total": 0.033, "updated": 0.065}  # error of the velocity, of its norm: what such cells make of a pulse that meets no interface (ladder: plane_wave)
+
+
+def wave_check(run: Run) -> Checked:
+    """The velocity all along the column against the exact wave."""
+    error = abs(VELOCITY.sample(run).error())
+    return at_most(error, MOST[str(run.scene["numerics"]["kinematics"])], f"velocity off by {100.0 * error:.2g} % of its norm")
+
+
+def sprung(kinematics: str, decade: int) -> Point:
+    """A run with springs of a power of ten."""
+    springs = (f"interface.spring.{name}_stiffness_Pa_m=1e{decade}" for name in ("normal", "shear"))
+    keys = (f"numerics.kinematics={kinematics}", "numerics.cell_m=0.125", *springs)
+    return Point(f"1e{decade}", 10.0**decade, COLUMN, keys, "spring", smoke=decade in (3, 15))
+
+
+SPRING_FAMILIES = tuple(
+    Family(
+        f"springs_{kinematics}", f"Springs of an interface: {points}",
+        "Springs of any stiffness pass the pulse as the exact wave has it, with the rock's own time step.", Parameter("D", "Pa/m", log=True),
+        tuple(sprung(kinematics, decade) for decade in range(3, 16)), wave_check,
+        beyond=(STABLE, MARKED), section="Stiff and soft springs of an interface", check_name="error of the velocity over its bound",
+    )
+    for kinematics, points in KINEMATICS.items()
+)  # fmt: skip
+
+FAMILIES = (*SLIDING_FAMILIES, *SPRING_FAMILIES)
