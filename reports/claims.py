@@ -8,7 +8,7 @@ import numpy as np
 from reports.outcome import event_inlet, path_distance, shift_Pa
 from reports.runs import Run, layout_of, mechanics_in
 from reports.words import NONE, Shown, mechanics_name, metres, mpa, number, plain, quantity, split_unit
-from verification.harness.claim_data import NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, CaseResult, Choice, ClaimResult, Point, Reading
+from verification.harness.claims import NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, CaseResult, Choice, ClaimResult, Point, Reading
 from verification.harness.scenes import MECHANICS
 
 KINDS: dict[str, str] = {REPRODUCED: "yes", ONLY_UNDER_A_VARIANT: "partly", NOT_REPRODUCED: "no", NOT_EVALUATED: "open"}

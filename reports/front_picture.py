@@ -10,7 +10,7 @@ from reports.charts.experiments import draw_front_picture
 from reports.charts.style import save
 from reports.runs import layout_of, load_run
 from reports.words import Shown
-from verification.harness.claim_data import ClaimResult, read_claims
+from verification.harness.claims import ClaimResult, read_claims
 from verification.harness.command import command
 from verification.harness.paths import EXPERIMENTS, RUNS
 

@@ -17,7 +17,7 @@ from reports.ladder import write_verification  # noqa: E402
 from reports.page import topic_shown, topics, write_index  # noqa: E402
 from reports.runs import add_missing, load_runs  # noqa: E402
 from reports.stability import write_stability  # noqa: E402
-from verification.harness.claim_data import read_claims, read_points  # noqa: E402
+from verification.harness.claims import read_claims, read_points  # noqa: E402
 from verification.harness.paths import RUNS  # noqa: E402
 from verification.precision.problem import DATA  # noqa: E402
 from verification.stability.runner import RECORDS  # noqa: E402

@@ -9,8 +9,7 @@ import numpy as np
 from reports.figures import words_of
 from reports.runs import INTERFACE, Arrays, NotAvailable, Run, interfaces_at, layout_of, output_times, settings_between
 from reports.words import Shown, listed, metres, millimetres, mpa, plain
-from verification.harness.claim_data import BY_J
-from verification.harness.observables import distances_to, path_length, resample
+from verification.harness.observables import BY_J, distances_to, path_length, resample
 from verification.harness.scenes import MECHANICS
 
 ARREST_PA = 0.05e6  # the rise of inlet pressure without growth that makes an arrest

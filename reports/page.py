@@ -20,7 +20,8 @@ from reports.outcome import comparisons, held, inertia_words, interface_states, 
 from reports.runs import Run, flat_keys, mechanics_in, settings_between
 from reports.words import NONE, Shown, listed, mechanics_name, metres, mpa, number, plain, setting, share, thousands, wall_time, written
 from verification.benchmarks.machine import this_machine
-from verification.harness.claim_data import BY_J, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, ClaimResult, Point
+from verification.harness.claims import NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, ClaimResult, Point
+from verification.harness.observables import BY_J
 from verification.harness.scenes import MECHANICS
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from verification.harness.claim_data import (NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, Case, CaseResult, ClaimResult, Reading, write_claims)
+from verification.harness.claims import NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, Case, CaseResult, ClaimResult, Reading, write_claims
 from verification.tests.fake_run import write_files
 
 RATE_PA_S = 0.35e6

@@ -17,7 +17,7 @@ from reports.runs import Run
 from reports.tests.browser import Browser, faults
 from reports.tests.synthetic import STEMS, Plan, claims, write_all, write_run
 from reports.words import Shown
-from verification.harness.claim_data import REPRODUCED
+from verification.harness.claims import REPRODUCED
 from verification.harness.paths import ROOT
 from verification.stability.runner import RECORDS
 

@@ -14,7 +14,7 @@ from reports.page import base_of, closure_of, differences, suspicions
 from reports.runs import layout_of, load_run, load_runs
 from reports.tests.synthetic import STEMS, Plan, claims, write_both, write_run
 from reports.words import number, quantity
-from verification.harness.claim_data import NOT_REPRODUCED, Case, CaseResult, Choice, ClaimResult, Point
+from verification.harness.claims import NOT_REPRODUCED, Case, CaseResult, Choice, ClaimResult, Point
 
 
 def test_sides_are_signs_about_the_extended_crack() -> None:

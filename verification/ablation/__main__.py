@@ -9,7 +9,7 @@ from typing import Any
 from verification.ablation import table as tables
 from verification.ablation.changes import Change, factors_of, ingredients_of, named
 from verification.ablation.table import Maker, NoBase, left_out, table_of, varied
-from verification.harness.command import beginnings, command
+from verification.harness.command import beginnings, command, ends_for_bad_input
 from verification.harness.paths import EXPERIMENTS, RUNS, need_solver
 from verification.harness.run import Job, affordable, make_all
 from verification.harness.scenes import MECHANICS, chosen, content_of, mechanics_of, scene_of, scenes_of
@@ -35,13 +35,11 @@ Plan = Callable[[Path, str], Planned | None]
 
 def planned(parser: argparse.ArgumentParser, options: argparse.Namespace, plan: Plan, usual: dict[str, tuple[str, ...]]) -> list[Planned]:
     """What is to be made of the experiments and variants that are asked for; ends the command for bad input."""
-    try:
+    with ends_for_bad_input(parser):
         need_solver()
         scenes = [scene_of(name) for name in options.experiments] or scenes_of(EXPERIMENTS)
         every = [plan(scene, variant) for scene in scenes for variant in chosen(scene, options.variants or ",".join(usual.get(scene.stem, ())))]
         return [one for one in every if one is not None]
-    except ValueError as error:
-        parser.error(str(error))
 
 
 def made(every: Sequence[Planned], made_by: Maker, tell: Callable[[tables.Table], None]) -> int:

@@ -12,7 +12,7 @@ import sys
 
 from verification.crossing_map.verdict import MAPS, RECORDS
 from verification.harness import sweep
-from verification.harness.command import beginnings, choose, command
+from verification.harness.command import beginnings, choose, command, ends_for_bad_input
 from verification.harness.paths import RUNS
 
 LONGEST_S = 300.0  # a hundred times what a run takes
@@ -23,12 +23,10 @@ def main(arguments: list[str] | None = None) -> int:
     parser = command("python3 -m verification.crossing_map", __doc__, "family", "jobs", "list", "runs", "out", runs=RUNS, out=RECORDS)
     parser.add_argument("--size", type=int, default=0, help="values in each range, at least 2 (default: the map's own)")
     options = parser.parse_args(arguments)
-    try:
+    with ends_for_bad_input(parser):
         maps = choose(MAPS, beginnings(options.family), "map")
         if options.size and options.size < 2:
             raise ValueError(f"--size {options.size} is below 2: an axis has two ends")
-    except ValueError as error:
-        parser.error(str(error))
     if options.list:
         print(*(f"{one.name}: {one.x.label} x {one.y.label}" for one in maps.values()), sep="\n")
         return 0

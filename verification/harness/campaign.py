@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from verification.harness import claims
-from verification.harness.command import beginnings, choose, command
+from verification.harness.command import beginnings, choose, command, ends_for_bad_input
 from verification.harness.paths import EXPERIMENTS, ROOT, RUNS
 from verification.harness.run import Job, Made, done_before, duration, make_all, name_of
 from verification.harness.scenes import MECHANICS, mechanics_of, scenes_of, variants_of
@@ -59,10 +59,8 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     mechanics = MECHANICS if options.mechanics == "both" else (options.mechanics,)
     runs = options.runs.resolve()
-    try:
+    with ends_for_bad_input(parser):
         scenes = choose({path.stem: path for path in scenes_of(options.experiments)}, beginnings(options.only), "experiment begins with")
-    except ValueError as error:
-        parser.error(str(error))
     jobs = jobs_of(runs, list(scenes.values()), options.settings, mechanics)
     if options.list:
         print("\n".join(map(name_of, jobs)))

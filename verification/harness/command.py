@@ -6,7 +6,8 @@ import importlib
 import inspect
 import math
 import pkgutil
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeVar
@@ -37,6 +38,15 @@ def command(name: str, about: str | None, *options: str, **defaults: Any) -> arg
         parser.add_argument(f"--{option}", **OPTIONS[option])
     parser.set_defaults(**defaults)
     return parser
+
+
+@contextmanager
+def ends_for_bad_input(parser: argparse.ArgumentParser) -> Iterator[None]:
+    """Ends the command with status 2 and the words of a ValueError."""
+    try:
+        yield
+    except ValueError as error:
+        parser.error(str(error))
 
 
 def number(value: float, digits: int = 6) -> str:

@@ -11,8 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from verification.harness.claim_data import BY_J
 from verification.harness.load import GROWTH_M, Array, LoadError, Run, frames
+
+# The flag of an arrest or plateau that rests on J where an interface is too near for it to be trusted.
+BY_J = "J at interface"
 
 Parameters = dict[str, Any]
 NONE: Parameters = {}

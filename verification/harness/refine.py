@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from verification.harness import paths, store
-from verification.harness.command import command
+from verification.harness.command import command, ends_for_bad_input
 from verification.harness.load import Run
 from verification.harness.observables import path_length
 from verification.harness.paths import need_solver
@@ -222,7 +222,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--cells", default=",".join(f"{cell:g}" for cell in CELLS_M), help="cell sizes in m")
     parser.add_argument("--heights", default="", help="heights in m at which the pressure is followed")
     options = parser.parse_args(arguments)
-    try:
+    with ends_for_bad_input(parser):
         scene, cells = scene_of(options.experiment), sorted(set(numbers(options.cells, "cells")), reverse=True)
         variants, heights = chosen(scene, options.variants), numbers(options.heights, "heights") or list(HEIGHTS_M)
         need_solver()
@@ -231,8 +231,6 @@ def main(arguments: list[str] | None = None) -> int:
         if not cases:
             raise ValueError(f"none of {', '.join(variants)} runs in {options.mechanics}")
         jobs = [job_of(scene, *case, cell, options.settings, options.out.resolve()) for case in cases for cell in cells]
-    except ValueError as error:
-        parser.error(str(error))
     if not affordable(jobs, options):
         return 2
     made = make_all(jobs, options.jobs)

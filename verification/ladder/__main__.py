@@ -18,7 +18,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from verification.harness import store
-from verification.harness.command import aligned, beginnings, command, count, number
+from verification.harness.command import aligned, beginnings, command, count, ends_for_bad_input, number
 from verification.ladder import gates as book
 from verification.ladder.case import Families, about, chosen, families
 from verification.ladder.gates import Gates
@@ -102,11 +102,9 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     if options.jobs < 1:
         parser.error(f"--jobs {options.jobs} is not a number of threads")
-    try:
+    with ends_for_bad_input(parser):
         known = families()
         asked = chosen(known, beginnings(options.family), beginnings(options.case))
-    except ValueError as error:
-        parser.error(str(error))
     if options.list:
         for family, members in asked.items():
             print(family)

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from verification.benchmarks import machine
-from verification.harness.command import beginnings, choose, command
+from verification.harness.command import beginnings, choose, command, ends_for_bad_input
 from verification.harness.paths import reference_program, solver
 from verification.harness.run import about_s
 from verification.harness.scenes import content_of
@@ -123,10 +123,8 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--force", action="store_true", help="measure even if the machine is not idle")
     parser.add_argument("--fresh", action="store_true", help="measure again what is known")
     options = parser.parse_args(arguments)
-    try:
+    with ends_for_bad_input(parser):
         problems = chosen(options.only, options.methods, options.quick)
-    except ValueError as error:
-        parser.error(str(error))
     for program in (solver(), reference_program()):
         if not program.is_file():
             parser.error(f"there is no {program}: build it first (ci/chart does)")

@@ -1,7 +1,8 @@
 """What the work-precision chart measures: problems with a reference, and methods that solve them at several sizes.
 
-A problem and its methods only describe; measuring (measure.py), judging (judge.py) and drawing (reports/precision.py) are elsewhere.
-Scenes, samples and references are the ladder's (verification/ladder/case.py).
+A problem and its methods, the settings that the chart compares, only describe; measuring and judging (measure.py) and drawing (reports/kept.py) are elsewhere.
+Scenes, samples and references are the ladder's (verification/ladder/case.py). The measurements are data, a file a problem, with the machine that made them; read
+by the page, resumed by the campaign.
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ import argparse
 import sys
 from dataclasses import replace
 
-from verification.harness.command import beginnings, choose, command
+from verification.harness.command import beginnings, choose, command, ends_for_bad_input
 from verification.harness.paths import solver
 from verification.harness.run import say
 from verification.stability import runner
@@ -46,10 +46,8 @@ def main(arguments: list[str] | None = None) -> int:
     """Walk what is asked for."""
     parser = command("ci/atlas", __doc__, "family", "smoke", "accept", "list", "runs", runs=RUNS)
     options = parser.parse_args(arguments)
-    try:
+    with ends_for_bad_input(parser):
         asked = choose(families(), beginnings(options.family))
-    except ValueError as error:
-        parser.error(str(error))
     if options.list:
         for family in asked.values():
             print(f"{family.name}: {family.title} ({len(family.points)} points)")

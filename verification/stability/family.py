@@ -1,6 +1,6 @@
 """What a family of the stability atlas is: scenes that walk across the edge of what a method can do, and what must hold of each.
 
-A family only describes; running (runner.py), judging (judge.py), keeping (store.py) and drawing (reports/stability.py) are elsewhere.
+A family only describes; running, judging and keeping (runner.py) and drawing (reports/stability.py) are elsewhere.
 `verification/stability/families/*.py` list theirs as FAMILIES.
 """
 

@@ -41,12 +41,10 @@ def strata(folder: Path, *arguments: str | Path, **how: Any) -> subprocess.Compl
 
 
 def summary_of(run: Path) -> dict[str, Any]:
-    """The summary in a run's folder."""
     return dict(json.loads((run / "summary.json").read_text(encoding="utf-8")))
 
 
 def rows_of(run: Path) -> list[dict[str, str]]:
-    """The rows of the history in a run's folder."""
     return list(csv.DictReader((run / "history.csv").read_text(encoding="utf-8").splitlines()))
 
 
@@ -67,7 +65,6 @@ def summary_in(folder: Path, scene: str | Path, *settings: str) -> dict[str, Any
 
 
 def wait_for(file: Path) -> None:
-    """Wait until a file is there."""
     while not file.exists():
         time.sleep(0.005)
 

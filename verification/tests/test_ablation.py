@@ -204,7 +204,6 @@ def test_every_factor_varies_its_own_keys_and_something_of_them(scene: Path, mec
 
 
 def factors(scene: Path, variant: str, id_: str, mechanics: str = "quasistatic") -> list[Change]:
-    """The values of one factor of a variant."""
     return named(factors_of(content_of(scene, variant), mechanics), [id_])
 
 

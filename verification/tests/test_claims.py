@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from verification.harness.claim_data import NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, Choice, read_claims, write_claims
-from verification.harness.claims import Runs, case_of, claims_of, evaluate, evaluate_all, evaluate_each, record_finer
+from verification.harness.claims import (
+    NOT_EVALUATED, NOT_REPRODUCED, ONLY_UNDER_A_VARIANT, REPRODUCED, Choice, Runs, case_of, claims_of, evaluate, evaluate_all, evaluate_each,
+    read_claims, record_finer, write_claims,
+)  # fmt: skip
 from verification.harness.load import LoadError, Run, frames, load
 from verification.harness.observables import Measured, failed_length_m, measure
 from verification.harness.paths import EXPERIMENTS
@@ -34,7 +36,6 @@ def write(tmp_path: Path, variant: str, plateau_MPa: float, **options: Any) -> N
 
 
 def written(tmp_path: Path, **plateaus_MPa: float) -> None:
-    """Runs of some variants."""
     for variant, plateau in plateaus_MPa.items():
         write(tmp_path, variant, plateau)
 
@@ -249,7 +250,6 @@ RUNS: dict[str, tuple[list[Step], dict[str, Any]]] = {
 
 
 def made_up(folder: Path, name: str) -> Run:
-    """A made-up run, loaded."""
     steps, options = RUNS[name]
     return load(write_run(folder / "exp" / name, steps, **options))
 

@@ -20,16 +20,10 @@ from verification.tests.fake_run import changed, program, write_run
 MUTANTS = {"zero": -1.0, "twice": 1.02, "flipped sign": -2.0}
 
 
-def a_row(error: float, size: float = 1.0, order: float | None = None, no_order: str = "", **more: object) -> Row:
-    """A row of one number that was measured."""
-    values = {"values": 1, "value": 1.0 + error, "reference": 1.0, "mutants": MUTANTS, **more}
-    row = Row("made_up", "case", "quasistatic", "K", "", f"{size:g} m", size, no_order, error=error, order=order)
-    return replace(row, **values)  # type: ignore[arg-type]
-
-
 def ladder_of(*errors: float, no_order: str = "") -> list[Row]:
     """Rows of one quantity on cells halved from level to level, with their orders."""
-    rows = [a_row(error, 1.0 / 2**k, no_order=no_order) for k, error in enumerate(errors)]
+    rows = [Row("made_up", "case", "quasistatic", "K", "", f"{0.5**k:g} m", 0.5**k, no_order, 1, 1.0 + error, 1.0, error=error, mutants=MUTANTS)
+            for k, error in enumerate(errors)]  # fmt: skip
     return [replace(row, order=order_of(before.error, row.error, 2.0) if before else None) for before, row in zip([None, *rows], rows)]
 
 

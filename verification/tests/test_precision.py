@@ -28,17 +28,14 @@ def no_sample(_: Run) -> Sample:
 
 
 def levels(*sizes: float) -> tuple[Level, ...]:
-    """Levels by their sizes."""
     return tuple(Level(f"{size:g} m", size, (f"numerics.cell_m={size!r}",)) for size in sizes)
 
 
 def method(name: str, *sizes: float, setting: Setting | None = None, program: str = STRATA) -> Method:
-    """A method of a made-up problem."""
     return Method(name, name, setting or Setting(), source=SCENE if program == STRATA else "block_crack", levels=levels(*sizes))
 
 
 def wanted(name: str = "K") -> Wanted:
-    """A wanted number."""
     return Wanted(name, name, "1", "relative", no_sample)
 
 
@@ -50,7 +47,6 @@ def point(name: str, size: float, error: float | None, time_s: float, status: st
 
 
 def panel(methods: tuple[Method, ...], points: list[Point], one: Wanted | None = None) -> Panel:
-    """The panel of a made-up problem."""
     problem = Problem("made_up", "made up", (one or wanted(),), methods)
     return panel_of(problem, problem.wanted[0], Sheet("made_up", MACHINE, tuple(points)))
 

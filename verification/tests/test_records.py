@@ -107,7 +107,6 @@ COMMANDS: dict[str, Callable[[list[str]], int]] = {
 
 
 def exit_of(name: str, *arguments: str) -> int:
-    """The exit status of a command."""
     try:
         return COMMANDS[name](list(arguments))
     except SystemExit as how:

@@ -28,7 +28,6 @@ CONTENT: dict[str, Any] = {
 
 
 def level(cell_m: float, run: Run | None, status: int = 0) -> Level:
-    """A level with a made-up outcome."""
     return Level(cell_m, Outcome("exp", "weak", "completed" if status == 0 else "failed", status, "" if status == 0 else "why", 1.0, "k"), run)
 
 
@@ -46,7 +45,6 @@ def names_of(content: dict[str, Any], *heights_m: float) -> list[str]:
 
 
 def quantity(name: str) -> Quantity:
-    """One of the quantities of the made-up scene."""
     return next(one for one in quantities_of(CONTENT) if one.name == name)
 
 

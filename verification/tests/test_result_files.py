@@ -49,7 +49,6 @@ def unit_of(name: str) -> str:
 
 @pytest.fixture(scope="module", params=[*KINDS, "block"])
 def folder(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A run of each kind."""
     if request.param == "block":
         place = tmp_path_factory.mktemp("block")
         assert run_in(place, BLOCK).returncode == 0

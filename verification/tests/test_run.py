@@ -49,7 +49,6 @@ def scene(tmp_path: Path) -> Path:
 
 
 def calls(solver: Path) -> int:
-    """How often the solver ran."""
     path = solver.parent / "calls"
     return len(path.read_text().splitlines()) if path.exists() else 0
 

@@ -24,7 +24,7 @@ import pytest
 
 from verification.harness import campaign as campaigns, store, sweep
 from verification.harness.campaign import jobs_of, main as campaign_main
-from verification.harness.claim_data import FILE, read_points
+from verification.harness.claims import FILE, read_points
 from verification.harness.load import load
 from verification.harness.paths import EXPERIMENTS, ROOT
 from verification.harness.run import CUT_SHORT, Job, Outcome, expected_s, load_outcome
@@ -130,7 +130,6 @@ def command(scene: Path, out: Path) -> list[str]:
 
 
 def tables(out: Path) -> list[bytes]:
-    """What a sweep leaves."""
     return [(out / name).read_bytes() for name in ("sweep.csv", "sweep.h5")]
 
 
@@ -284,7 +283,6 @@ def campaign(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def calls(campaign: Path) -> list[str]:
-    """The variants that were run."""
     return (campaign / "solver" / "calls").read_text().split()
 
 
@@ -298,13 +296,13 @@ def test_a_run_that_fails_is_told_and_the_others_go_on(campaign: Path, capsys: p
     """Exit status 3 with the reason, all others made, the page written; a second call makes nothing and says the same."""
     assert reproduce(campaign) == 3
     said = capsys.readouterr().out
-    assert "3 runs to reproduce, 0 done before" in said and "[3/3]" in said and "explicit/exp/weak: starts at 2.360 MPa, tip at 70.0 m at 3.000 MPa" in said
+    assert "3 runs to make, 0 done before" in said and "[3/3]" in said and "explicit/exp/weak: starts at 2.360 MPa, tip at 70.0 m at 3.000 MPa" in said
     assert said.count("failed: explicit/exp/friction: the block is a mechanism") == 1
     assert (campaign / "out" / "index.html").is_file() and (campaign / "runs" / "claims.json").is_file()
     assert sorted(calls(campaign)) == ["friction", "perfect", "weak"]
     assert reproduce(campaign) == 3
     said = capsys.readouterr().out
-    assert "0 runs to reproduce, 3 done before" in said and "failed: explicit/exp/friction" in said and len(calls(campaign)) == 3
+    assert "0 runs to make, 3 done before" in said and "failed: explicit/exp/friction" in said and len(calls(campaign)) == 3
 
 
 def test_a_folder_that_is_no_run_s_fails_that_run_alone(campaign: Path, capsys: pytest.CaptureFixture[str]) -> None:
