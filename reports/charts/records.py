@@ -1,5 +1,6 @@
 """Draws what records and small scenes show: runs beside what was measured, what each ingredient of a scene is worth, maps of verdicts with lines of criteria,
-the small picture of a gallery scene, and a well with its layers, the fracture in them and the depth of its upper tip against its pressure."""
+the small picture of a gallery scene, a well with its layers, the fracture in them and the depth of its upper tip against its pressure, and walks across the edges
+of the methods: outcomes along the walked parameter, edges predicted and measured."""
 
 import math
 from typing import Any

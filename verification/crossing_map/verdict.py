@@ -143,6 +143,8 @@ def read_table(one: Map, folder: Path = RECORDS) -> Verdicts:
     return found
 
 
+# --- published criteria of crossing, and closed forms of when an interface starts to slip
+# Stresses s_v (normal to the interface) and s_h (closing the fracture) are positive in compression, net_Pa, strengths too; K in Pa sqrt(m).
 Field = tuple[float, float, float]  # stress along the fracture, across it, and shear; tension positive
 
 

@@ -167,6 +167,7 @@ def chosen(known: Families, wanted: Iterable[str] = (), names: Iterable[str] = (
     return {family: members for family, members in found.items() if members}
 
 
+# --- fields of the particles at a run's end beside a reference solution at the same material points
 # Names in the fields of a run, units, and names in strata-reference.
 DISPLACEMENT = ("u_x_m", "u_y_m")
 VELOCITY = ("v_x_m_s", "v_y_m_s")

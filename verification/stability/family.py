@@ -172,6 +172,7 @@ def bisected(sound: Callable[[float], bool], good: float, bad: float, resolution
     return good, bad
 
 
+# What the families with a pressurised crack share: the scene, where the crack lies, the closed forms it is held against.
 CRACK = SCENES / "crack.toml"
 NET_PA = 0.3e6  # the scenes' pressure above their closing stress
 HALF_LENGTH_M = 5.0

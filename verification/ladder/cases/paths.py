@@ -14,6 +14,7 @@ from verification.harness.observables import distances_to
 from verification.harness.paths import ANALYTIC
 from verification.ladder.case import Case, Level, Quantity, Sample, cell_levels
 
+# --- paths by boundary elements in the infinite plane, and paths of runs in the same frame
 INTERFACE_M = 5.0  # to the right of the first crack
 FIRST_TIP_M = 5.0
 _STIFF: dict[str, float] = {"youngs_modulus_Pa": 10e9, "toughness_Pa_sqrt_m": 1.45e6}
