@@ -8,6 +8,7 @@
 #include "flow/paper_flow.hpp"
 #include "flow/reynolds_flow.hpp"
 #include "fracture/growth.hpp"
+#include "quasistatic/growth_trials.hpp"
 #include "state/elasticity.hpp"
 
 namespace strata {
@@ -209,6 +210,24 @@ FluidStep couple(const Scene& scene, double dt, bool on_the_way, State& state, Q
   return {true, report.error_w / allowed, ""};
 }
 
+// Lets the front of the fluid into as much (m) of the initial fracture's dry cells ahead of it at an end.
+void wet_cells(const Scene& scene, bool at_back, double increment, State& state) {
+  ReynoldsLine& line = state.reynolds;
+  line.wet_s = wet_times(line, state.time, !at_back, at_back);
+  line.rates_known = false;
+  double length = 0.0;
+  std::size_t dry = line.dry_cells(at_back);
+  const auto nearest = [&] { return at_back ? line.size() - dry : dry - 1; };
+  for (; dry > 0 && length < (1.0 - 1e-9) * increment; --dry) {
+    line.wet_s[nearest()] = state.time;
+    line.P[nearest()] = scene.fluid.cavitation_Pa;
+    length += line.length[nearest()];
+  }
+  // The point ahead opens with the front's own cell, whose displacements are linear. In truth its faces touch and carry
+  // what is missing: it is held at its closing stress, or else it would be drawn together by all of that.
+  if (dry > 0) line.P[nearest()] = state.fracture().points[nearest()].closing_stress();
+}
+
 }  // namespace
 
 void fill_fracture(const Scene& scene, State& state, QuasistaticModel& model) {
@@ -232,8 +251,9 @@ void fill_fracture(const Scene& scene, State& state, QuasistaticModel& model) {
   state.reynolds = full_line(scene.fluid, length, state.fluid.inlet, P, rock.w, state.balance, rise);
   state.fluid.inlet_Pa = P;
   rest_fluid(scene.fluid, state);
-  if (!scene.fluid.rate_m2_s || scene.fracture->growth == Fracture::Growth::none) return;
+  if (!scene.fluid.rate_m2_s) return;
   for (const Tip& tip : state.tips) {
+    if (!may_grow(scene, state, tip)) continue;
     const std::size_t inlet = state.fluid.inlet, side = tip.at_back ? points.size() - inlet : inlet;
     double wet = 0.0;
     for (std::size_t j = 0; j < side; ++j) {
@@ -284,26 +304,20 @@ double toughless_margin(const State& state, double E_prime, const Tip& tip) {
   return 1.0 + (K - resolved * net * std::sqrt(state.grid.h)) / large_K;
 }
 
-void wet_cells(const Scene& scene, bool at_back, double increment, State& state) {
-  ReynoldsLine& line = state.reynolds;
-  line.wet_s = wet_times(line, state.time, !at_back, at_back);
-  line.rates_known = false;
-  double length = 0.0;
-  std::size_t dry = line.dry_cells(at_back);
-  const auto nearest = [&] { return at_back ? line.size() - dry : dry - 1; };
-  for (; dry > 0 && length < (1.0 - 1e-9) * increment; --dry) {
-    line.wet_s[nearest()] = state.time;
-    line.P[nearest()] = scene.fluid.cavitation_Pa;
-    length += line.length[nearest()];
-  }
-  // The point ahead opens with the front's own cell, whose displacements are linear. In truth its faces touch and carry
-  // what is missing: it is held at its closing stress, or else it would be drawn together by all of that.
-  if (dry > 0) line.P[nearest()] = state.fracture().points[nearest()].closing_stress();
-}
-
 double front_margin(const Scene& scene, const Rocks& rocks, const State& state, const Tip& tip) {
   const TipRock rock = rock_at_front(scene, rocks, state, tip);
   return front_filling(scene.fluid, state.reynolds, tip.at_back, rock, state.time);
+}
+
+bool fronts_go_on(const Scene& scene, const Rocks& rocks, double least_s, State& state) {
+  double took = 0.0;
+  for (const Tip& tip : state.tips) {
+    if (state.reynolds.dry_cells(tip.at_back) == 0 || front_margin(scene, rocks, state, tip) < 1.0) continue;
+    took = std::max(least_s, state.time - last_wet(state.reynolds, tip.at_back));
+    wet_cells(scene, tip.at_back, increment_of(scene, tip), state);
+  }
+  if (took > 0.0) start_fronts(took, state);
+  return took > 0.0;
 }
 
 void add_fluid_cells(const Scene& scene, bool at_back, std::size_t added, State& state) {

@@ -47,12 +47,13 @@ void note_rates(std::span<const double> w_before, double dt, State& state);
 /// state.grown is emptied or the next growth.
 void start_fronts(double took, State& state);
 
-/// Lets the front of the fluid into as much (m) of the initial fracture's dry cells ahead of it at an end.
-void wet_cells(const Scene& scene, bool at_back, double increment, State& state);
-
 /// How near the fluid's front in an initial fracture that is dry ahead of it is to going on (1: it does): see
 /// front_filling().
 double front_margin(const Scene& scene, const Rocks& rocks, const State& state, const Tip& tip);
+
+/// Whether such fronts go on, by an increment, which is then done: no load changes by it. Each took the time since it
+/// last went on, at least `least_s` (s).
+bool fronts_go_on(const Scene& scene, const Rocks& rocks, double least_s, State& state);
 
 /// How near the tip of a rock without toughness is to growth (1: it grows). It grows as soon as the fracture is open
 /// there: where K_I, and the K that each opening within two cells behind the tip stands for (w = 8 K/E' sqrt(x/(2

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "flow/flow_monitors.hpp"
-#include "flow/moving_front.hpp"
 #include "flow/paper_flow.hpp"
 #include "fracture/growth.hpp"
 #include "interfaces/failure.hpp"
@@ -247,24 +246,6 @@ bool parts_first(const Quasistatic& run) {
   return run.parting_margin >= 1.0 && run.parting_margin >= run.tip_margin;
 }
 
-// Whether the fluid's front goes on through an initial fracture that is dry ahead of it, which is then done: no load
-// changes by it.
-bool front_goes_on(const Scene& scene, const Rocks& rocks, const std::vector<Growing>& due, State& state,
-                   Quasistatic& run) {
-  double took = 0.0;
-  for (const Growing& g : due) {
-    const Tip& tip = state.tips[g.tip];
-    if (state.reynolds.dry_cells(tip.at_back) == 0) continue;
-    took = std::max(first_flow_step, state.time - last_wet(state.reynolds, tip.at_back));
-    wet_cells(scene, tip.at_back, g.increment, state);
-  }
-  if (took == 0.0) return false;
-  run.margin = margin_of(scene, rocks, state, run);
-  state.dt = took;
-  start_fronts(took, state);
-  return true;
-}
-
 // What is due at the present load: the worst bonded column fails, an interface parts or tips grow.
 void grow_or_fail(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run) {
   const LoadPoint before = load_point(state);
@@ -277,8 +258,12 @@ void grow_or_fail(const Scene& scene, const Rocks& rocks, State& state, Quasista
     surface = parting.J_c * parting.length;
     let_columns_go(parting.columns, run, state, parting.mask, parting.sides);
   } else {
+    if (fronts_go_on(scene, rocks, first_flow_step, state)) {
+      state.dt = state.grown.took;
+      run.margin = margin_of(scene, rocks, state, run);
+      return;
+    }
     growing = tips_that_grow(scene, rocks, state, run);
-    if (front_goes_on(scene, rocks, growing, state, run)) return;
     energy_before = find_equilibrium(scene, state.time, state, run.model).energy;  // against friction's present memory
     lengthen(scene, growing, state);
   }
