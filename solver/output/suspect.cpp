@@ -151,7 +151,7 @@ void Watch::held_tips() {
   // Between events K may be above by their tolerance and by a step's rise; a tenth of K is a fifth of the energy.
   if (!where.empty())
     note("held_tip", most, 1.1,
-         "a tip with more than its rock's toughness may not grow while the run goes on: it is " + where);
+         "a tip with more than its rock's toughness may not grow while the run goes on: " + where);
 }
 
 void Watch::growth() {
