@@ -5,7 +5,8 @@
 
 namespace strata {
 
-/// How near tip k is to growth, sqrt(G/J_c) by what decides about it, which the tip notes; where the fracture that a
+/// How near tip k is to growth, sqrt(G/J_c) by what decides about it, which the tip notes, or the fluid's front on its
+/// way to it through an initial fracture that is dry ahead (front_margin()); where the fracture that a
 /// trial makes has no equilibrium, K decides. Throws nothing.
 double tip_margin(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run, std::size_t k);
 

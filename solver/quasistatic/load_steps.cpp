@@ -318,7 +318,7 @@ struct LoadStep {
 double front_comes_later(const Scene& scene, const Rocks& rocks, const LoadPoint& from, double dt, double later,
                          State& state, Quasistatic& run) {
   if (scene.fluid.next_row(from.time) < from.time + later) return 0.0;  // another rate
-  constexpr int most = 6;
+  constexpr int most = 6;  // halvings: what brings the front within a 64th more than dt is not looked for
   for (int k = 0; k < most && later > dt; ++k, later = 0.5 * (dt + later)) {
     if (!try_step(scene, rocks, from, later, state, run).found) return 0.0;
     if (run.margin < 1.0) return later;

@@ -93,10 +93,10 @@ def test_output_times_and_floor_do_not_tell(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("leakoff", "thick"), [(0.0, ()), (1e-6, ()), (5e-6, ()), (1e-5, ()), (2e-5, ("fluid.viscosity_Pa_s=0.2",))])
 def test_a_long_closed_fracture_is_filled_by_a_front(tmp_path: Path, leakoff: float, thick: tuple[str, ...]) -> None:
-    """A closed fracture of 12 or 8 cells grows when a front has gone through it: no sooner than one without toughness has the length, and
-    not much later than one with toughness (`kgd_leakoff`), by 10 % (13 % where thick oil has 0.25 m cells to fill), at any floor below its
-    openings. Full of fluid from the start it grew at 25 to 39, 41 to 71, 64 s to never and 104 to 109 s. Mutations that fail: toughness in
-    the initial fracture, a front that stands (never), one that goes on when it holds half or twice what it should.
+    """A closed fracture of 12 or 8 cells grows when a front has gone through it: no sooner than one without toughness has the length, and not
+    much later than one with toughness (`kgd_leakoff`), by 5 % (12 % with thick oil), at any floor below its openings. Full of fluid from the
+    start it grew at 25 to 39, 41 to 71, 64 s to never and 104 to 109 s. Mutations that fail: a front that stands or goes back, one that goes on
+    at half or twice what its cells should hold, the point ahead of it drawn together by all of the closing stress, flow into dry cells.
     """
     length = 2.0 if thick else 3.0
     long = (f"rock.stiff.leakoff_m_sqrt_s={leakoff}", f"fracture.path_m=[[320, 0], [320, {length}]]", f"stop.tip_y_m={length + 0.2}", *thick)
@@ -114,7 +114,7 @@ def test_a_long_closed_fracture_is_filled_by_a_front(tmp_path: Path, leakoff: fl
         found.append(next(float(event["time_s"]) for event in run["events"] if event["kind"] == "start"))
         assert abs(run["monitors"]["volume_balance"]) < 1e-8
     assert found[0] == pytest.approx(found[1], rel=5e-3)
-    assert passes_s(1e4) < found[0] < (1.13 if thick else 1.1) * passes_s(1e6)
+    assert passes_s(1e4) < found[0] < (1.12 if thick else 1.05) * passes_s(1e6)
 
 
 def test_a_fracture_that_grew_falls_off_after_shut_in() -> None:
@@ -264,7 +264,7 @@ def test_closed_faces_that_hardly_conduct_part_by_the_fluid(tmp_path: Path) -> N
 
 def test_a_rate_into_a_closed_fracture_without_a_floor(tmp_path: Path) -> None:
     """The pressure of a fracture without toughness in the same rock (viscosity vertex) while the front goes through it; it was 2.8e12 Pa at
-    1 ms. Full of fluid from the start its pressure was 18 to 20 % high."""
+    1 ms. Full of fluid from the start its pressure was 18 to 20 % high. Mutation that fails: toughness in the initial fracture (by 78 %)."""
     rate = ("fluid.minimum_opening_m=0", "fluid.inlet={rate_m2_s=1e-4}", "numerics.cell_m=0.25", "fracture.increment_m=0.25")
     at_once = summary_in(tmp_path, RAMP, *rate, "stop.time_s=1e-3")
     assert at_once["inlet_Pa"] < 20e6
