@@ -14,7 +14,7 @@ from reports.figures import Table
 from reports.make_page import main
 from reports.page import cell_words, minute
 from reports.runs import Run
-from reports.tests.browser import Browser, faults
+from reports.tests.browser import Chrome, faults, started
 from reports.tests.synthetic import STEMS, Plan, claims, write_all, write_run
 from reports.words import Shown
 from verification.harness.claims import REPRODUCED
@@ -81,14 +81,14 @@ def page(made: Path) -> str:
 
 
 @pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Chrome]:
     """Chromium."""
-    with Browser(tmp_path_factory.mktemp("profile")) as one:
+    with started(tmp_path_factory.mktemp("profile")) as one:
         yield one
 
 
 @pytest.mark.parametrize("name", ["index", "runs", "stability", "verification"])
-def test_a_page_is_sound_in_a_browser(made: Path, browser: Browser, name: str) -> None:
+def test_a_page_is_sound_in_a_browser(made: Path, browser: Chrome, name: str) -> None:
     """From a file, without a server: nothing on the console, images and links lead somewhere, nothing is wider than windows of 360 to 1400, texts are
     dark or light enough in both schemes, and it prints."""
     assert faults(browser, made / f"{name}.html") == []
@@ -103,7 +103,7 @@ SOUND = "<style>html { background: #fff; color: #222 } @media (prefers-color-sch
     ('<a href="https://example.org">1</a>', "link to nothing"), ('<p style="color: #999">pale', "too pale in light: P."), ('<p style="color: #333">dark', "too pale in dark: P."),
     ("<style>html { background: #fff !important }</style>", "the same ground"),
 ])  # fmt: skip
-def test_faults_are_found(tmp_path: Path, browser: Browser, planted: str, words: str) -> None:
+def test_faults_are_found(tmp_path: Path, browser: Chrome, planted: str, words: str) -> None:
     """Each fault, planted in a page without any, is named."""
     (tmp_path / "one.html").write_text(f'<!DOCTYPE html><link rel="icon" href="data:,"><meta charset="utf-8">{SOUND}{planted}', encoding="utf-8")
     found = faults(browser, tmp_path / "one.html")
