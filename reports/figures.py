@@ -1,24 +1,25 @@
 """What pages are made of, whichever page it is: figures as declarations, and what writes them with their data, captions and commands."""
 
 import json
-import math
 import re
 import traceback
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, is_dataclass
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import jinja2
-import numpy as np
 
+from reports import words
 from reports.charts.style import ONE_COLUMN, TWO_COLUMNS, save
 from reports.runs import NotAvailable, Run
-from reports.words import Shown, listed, mechanics_name, metres, mpa, plain, share
+from reports.words import Shown, mechanics_name
+from verification.harness.store import plain
 
-FILTERS = {"listed": listed, "mechanics": mechanics_name, "metres": metres, "mpa": mpa, "plain": plain, "share": share}
+FILTERS = {"mechanics": mechanics_name, **{name: getattr(words, name) for name in ("listed", "metres", "mpa", "plain", "share")}}
 OUT, TEMPLATES = (Path(__file__).resolve().parent / name for name in ("out", "templates"))
+DIGITS = 7  # of numbers in a figure's data
 
 
 @dataclass(frozen=True)
@@ -78,24 +79,7 @@ def words_of(name: str, **given: Any) -> str:
 
 def suspect_words(runs: Sequence[Run]) -> list[str]:
     """The runs of a figure that mark themselves as suspect, each with why."""
-    return [f"Experiment {run.number} {plain(run.variant)}, {mechanics_name(run.mechanics)}: {'; '.join(run.marks)}" for run in runs if run.marks]
-
-
-def plain_data(value: Any) -> Any:
-    """What is drawn as JSON has it: numbers to seven digits, null for what is none."""
-    if isinstance(value, Shown):
-        return plain_data(vars(value))
-    if isinstance(value, np.ndarray):
-        return plain_data(value.tolist())
-    if is_dataclass(value):
-        return plain_data(asdict(value))
-    if isinstance(value, dict):
-        return {str(key): plain_data(one) for key, one in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [plain_data(one) for one in value]
-    if isinstance(value, (float, np.floating)):
-        return float(f"{value:.7g}") if math.isfinite(value) else None
-    return value if value is None or isinstance(value, (str, int, bool)) else str(value)
+    return [f"Experiment {run.number} {words.plain(run.variant)}, {mechanics_name(run.mechanics)}: {'; '.join(run.marks)}" for run in runs if run.marks]
 
 
 def make(figure: Figure, out: Path) -> Shown:
@@ -105,7 +89,7 @@ def make(figure: Figure, out: Path) -> Shown:
         data = figure.data() if callable(figure.data) else figure.data
         for width_mm, ending in ((TWO_COLUMNS, ""), (ONE_COLUMN, "_one_column"))[: 1 + figure.narrow]:
             save(figure.draw(data, width_mm), *(out / "figures" / f"{figure.name}{ending}.{kind}" for kind in ("svg", "pdf")))
-        (out / "figures" / f"{figure.name}.json").write_text(json.dumps(plain_data(data)), encoding="utf-8")
+        (out / "figures" / f"{figure.name}.json").write_text(json.dumps(plain(data, DIGITS), default=str), encoding="utf-8")
         made.title, made.caption, made.suspect = data.title, words_of(figure.caption, data=data), suspect_words(figure.runs)
     except NotAvailable as missing:
         made.lack = str(missing)

@@ -10,20 +10,23 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeVar
 
+import numpy as np
+
 T = TypeVar("T")
 
 WIDTH = 120  # columns of a file's lines
 
 
 def plain(value: Any, digits: int | None = None) -> Any:
-    """A value as JSON holds it: dataclasses as tables, tuples as lists, numbers to so many digits, those that are not finite as None."""
+    """A value as JSON holds it: dataclasses and names with values as tables, tuples and arrays as lists, numbers to so many digits, those that are not
+    finite as None."""
     if dataclasses.is_dataclass(value):
         return {field.name: plain(getattr(value, field.name), digits) for field in dataclasses.fields(value)}
-    if isinstance(value, float):
-        return (value if digits is None else float(f"{value:.{digits}g}")) if math.isfinite(value) else None
-    if isinstance(value, Mapping):
-        return {key: plain(item, digits) for key, item in value.items()}
-    return [plain(item, digits) for item in value] if isinstance(value, (list, tuple)) else value
+    if isinstance(value, (float, np.floating)):
+        return (float(value) if digits is None else float(f"{value:.{digits}g}")) if math.isfinite(value) else None
+    if isinstance(value, (Mapping, types.SimpleNamespace)):
+        return {str(key): plain(item, digits) for key, item in (value if isinstance(value, Mapping) else vars(value)).items()}
+    return [plain(item, digits) for item in value] if isinstance(value, (list, tuple, np.ndarray)) else value
 
 
 @lru_cache(maxsize=None)
