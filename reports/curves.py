@@ -178,14 +178,9 @@ def _path(group: Sequence[Run], side: float, beside: bool, both: bool) -> Shown:
 
 def largest_turn(x_m: np.ndarray, y_m: np.ndarray) -> float:
     """The largest angle in degrees between neighbouring segments of a polyline."""
-    step_x, step_y = np.diff(x_m), np.diff(y_m)
-    long = np.hypot(step_x, step_y) > 0
-    step_x, step_y = step_x[long], step_y[long]
-    if step_x.size < 2:
-        return 0.0
-    cross = step_x[:-1] * step_y[1:] - step_y[:-1] * step_x[1:]
-    along = step_x[:-1] * step_x[1:] + step_y[:-1] * step_y[1:]
-    return float(np.max(np.abs(np.degrees(np.arctan2(cross, along)))))
+    steps = np.diff([x_m, y_m])
+    x, y = steps[:, np.hypot(*steps) > 0]
+    return float(np.degrees(np.abs(np.diff(np.unwrap(np.arctan2(y, x))))).max(initial=0.0))
 
 
 def _window(paths: Sequence[Shown]) -> tuple[float, float, float, float]:
@@ -227,24 +222,16 @@ REACH: dict[str, float] = {"bspline2": 1.5, "linear": 1.0, "gimp": 1.25}  # half
 
 def side_of(x_m: np.ndarray, y_m: np.ndarray, path_x_m: np.ndarray, path_y_m: np.ndarray) -> tuple[Arrays, ...]:
     """For points: sign of the distance to the extended polyline (on it counts as +), and whether behind its tip."""
-    best = np.full(x_m.shape, np.inf)
-    sign = np.ones(x_m.shape, dtype=int)
-    behind = np.zeros(x_m.shape, dtype=bool)
-    last = path_x_m.size - 2
-    for k in range(path_x_m.size - 1):
-        dx, dy = path_x_m[k + 1] - path_x_m[k], path_y_m[k + 1] - path_y_m[k]
-        square = dx * dx + dy * dy
-        if square == 0.0:
-            continue
-        s = ((x_m - path_x_m[k]) * dx + (y_m - path_y_m[k]) * dy) / square
-        clipped = np.clip(s, 0.0 if k > 0 else -np.inf, np.inf if k == last else 1.0)
-        distance = np.hypot(x_m - path_x_m[k] - clipped * dx, y_m - path_y_m[k] - clipped * dy)
-        nearer = distance < best
-        cross = (x_m - path_x_m[k]) * dy - (y_m - path_y_m[k]) * dx
-        sign = np.where(nearer, np.where(cross >= 0.0, 1, -1), sign)
-        behind = np.where(nearer, s < 1.0 if k == last else True, behind)
-        best = np.where(nearer, distance, best)
-    return sign, behind
+    path = np.array([path_x_m, path_y_m])
+    way = np.diff(path)
+    long = np.hypot(*way) > 0.0
+    way, last = way[:, long, None], np.count_nonzero(long) - 1
+    off = np.array([x_m, y_m])[:, None] - path[:, :-1][:, long, None]  # of each point from the start of each segment
+    s = (off * way).sum(axis=0) / (way**2).sum(axis=0)
+    foot = np.clip(s, np.r_[-np.inf, np.zeros(last)][:, None], np.r_[np.ones(last), np.inf][:, None])
+    nearest = np.hypot(*(off - foot * way)).argmin(axis=0)
+    cross, s = (np.take_along_axis(of, nearest[None], axis=0)[0] for of in (off[0] * way[1] - off[1] * way[0], s))
+    return np.where(cross >= 0.0, 1, -1), (nearest < last) | (s < 1.0)
 
 
 def copies_figure(pairs: list[tuple[Run, int, str]], magnified: float) -> Shown:
@@ -357,11 +344,8 @@ def sampled(points: Arrays, values: np.ndarray, edges_x_m: np.ndarray, edges_y_m
 
 def index_when_tip_passes(run: Run, height_m: float) -> int:
     """Output index at which the tip first is at a height in m or above; the last one where it never is."""
-    count = output_times(run).size
-    for index in range(count):
-        if float(np.max(fields_at(run, "fracture", index)["y_m"])) >= height_m:
-            return index
-    return count - 1
+    last = output_times(run).size - 1
+    return next((index for index in range(last) if float(np.max(fields_at(run, "fracture", index)["y_m"])) >= height_m), last)
 
 
 MAGNIFIED = 300.0  # of openings in Fig 1: a millimetre becomes a third of a 1 m cell
