@@ -45,19 +45,12 @@ class Setting:
 
     def keys(self, cell_m: float) -> tuple[str, ...]:
         """Scene settings for cells of a size, m."""
-        found = [f"numerics.mechanics={self.mechanics}", f"numerics.cell_m={cell_m!r}", f"numerics.shape={self.shape}",
-                 f"numerics.particles_per_cell={self.points}"]  # fmt: skip
-        if self.graded > 0.0:
-            found.append(f"numerics.far_cell_m={self.graded * cell_m!r}")
-        if self.beyond_m > 0.0:
-            found.append(f"domain.beyond_m={self.beyond_m!r}")
+        keys = {"numerics.mechanics": self.mechanics, "numerics.cell_m": cell_m, "numerics.shape": self.shape, "numerics.particles_per_cell": self.points,
+                "numerics.far_cell_m": self.graded * cell_m or None, "domain.beyond_m": self.beyond_m or None}  # fmt: skip
         if self.mechanics == "explicit":
-            found.append(f"numerics.courant={self.courant!r}")
-            words = {"kinematics": self.kinematics, "transfer": self.transfer, "kernels": self.kernels}
-            found += [f"numerics.{key}={word}" for key, word in words.items() if word]
-            if self.damping_1_s is not None:
-                found.append(f"numerics.damping_1_s={self.damping_1_s!r}")
-        return (*found, *self.further)
+            keys |= {"numerics.courant": self.courant, "numerics.kinematics": self.kinematics or None, "numerics.transfer": self.transfer or None,
+                     "numerics.kernels": self.kernels or None, "numerics.damping_1_s": self.damping_1_s}  # fmt: skip
+        return (*(f"{key}={value}" for key, value in keys.items() if value is not None), *self.further)
 
 
 # What of a scene depends on how it is solved: variant and further settings for a setting and a cell size (m).
