@@ -18,6 +18,7 @@ from verification.harness.paths import solver
 from verification.harness.run import Job, Outcome, claimed, run
 
 RUNS = paths.RUNS / "tests"
+SCENES = Path(__file__).parent / "scenes"
 
 
 def make(scene: Path, variant: str = "", settings: tuple[str, ...] = ()) -> tuple[Outcome, Path]:

@@ -20,7 +20,7 @@ from verification.faults.__main__ import KILLED, RECORD, campaign, run_words
 from verification.faults.same import differences, torn
 from verification.harness.paths import solver
 from verification.harness.run import Job, ended
-from verification.tests.cases import on_terminal, strata, summary_of
+from verification.tests.cases import SCENES, on_terminal, strata, summary_of
 
 LONG = KILLED["explicit updated"]
 
@@ -243,24 +243,7 @@ def test_an_error_output_that_takes_nothing_changes_no_exit_status(tmp_path: Pat
     assert torn(tmp_path / "X") == [] and summary_of(tmp_path / "X")["status"] == "completed"
 
 
-BLOCK = """\
-domain = {width_m = 20, height_m = 20}
-in_situ = {vertical_Pa = 3.0e6, horizontal_Pa = 2.0e6}
-rock.shale.youngs_modulus_Pa = 10.0e9
-strata.layers = [{rock = "shale"}]
-fracture.path_m = [[10, 0], [10, 5]]
-fluid = {law = "uniform", inlet = {start_Pa = 2.0e6, rate_Pa_s = 0.35e6}}
-numerics = {mechanics = "quasistatic", cell_m = 1.0}
-stop.tip_y_m = 12
-variants.explicit.numerics = {mechanics = "explicit", damping_1_s = 20}
-[variants.mechanism]
-domain.sides = "traction"
-rock.shale.toughness_Pa_sqrt_m = 1e9
-strata = {layers = [{rock = "shale", thickness_m = 10}, {rock = "shale"}], interfaces = ["cut"]}
-interface.cut = {law = "friction", coefficient = 0}
-fracture.path_m = [[10, 0], [10, 9]]
-stop.inlet_Pa = 4e6
-"""
+BLOCK = (SCENES / "block.toml").read_text(encoding="utf-8")
 
 
 def content(folder: Path) -> dict[str, bytes]:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from verification.mistakes import BASES, changed, mistakes
-from verification.tests.cases import strata, summary_of
+from verification.tests.cases import SCENES, strata, summary_of
 
 MISTAKES = mistakes()
 assert len(MISTAKES) >= 200  # as many as there were when this was written
@@ -58,24 +58,7 @@ def test_a_mistake_is_put_in_its_place() -> None:
     assert changed(base, "[d]\n", ["[a]"]) == "[b]\ny = 2\n\n[c]\nz = 3\n\n[d]\n" and changed("", "q = 1\n[a]\n", []) == "q = 1\n\n[a]\n"
 
 
-GOOD = """\
-[domain]
-width_m = 8
-height_m = 8
-[rock.stiff]
-youngs_modulus_Pa = 10e9
-[strata]
-layers = [{rock = "stiff"}]
-[numerics]
-cell_m = 1
-[stop]
-time_s = 1
-[variants.fine]
-numerics.cell_m = 0.5
-[variants.coarse]
-numerics.cell_m = 2
-"""
-
+GOOD = (SCENES / "good.toml").read_text(encoding="utf-8")
 BAD = {"one.toml": GOOD.replace("width_m = 8", "width_m = -8"), "two.toml": GOOD.replace("height_m", "heigth_m")}
 BOTH_WRONG = {"bad.toml": BAD["one.toml"].replace("height_m", "heigth_m")}
 RUN = ("run", "good.toml", "--out", "X")

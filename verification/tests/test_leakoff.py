@@ -10,27 +10,14 @@ from scipy.optimize import brentq
 from verification.harness.load import Run, value
 from verification.harness.paths import ANALYTIC
 from verification.ladder.cases.kgd import lengths
-from verification.tests.cases import completed, rows_of, run_in, summary_in, summary_of
+from verification.tests.cases import SCENES, completed, rows_of, run_in, summary_in, summary_of
 
 SCENE = ANALYTIC / "kgd_leakoff.toml"
 RATE, SHUT_IN_S = 5e-5, 300.0  # of the scene
 
-# A fracture of 10 m that does not grow, of a thin fluid, fed for 20 s by a rate that rises for 10.
-FIXED = """\
-domain = {width_m = 320, height_m = 160}
-in_situ = {vertical_Pa = 20e6, horizontal_Pa = 20e6}
-rock.r = {youngs_modulus_Pa = 20e9, poisson_ratio = 0.2, leakoff_m_sqrt_s = 1.5e-5}
-strata.layers = [{rock = "r"}]
-fracture = {path_m = [[160, 0], [160, 10]], growth = "none"}
-fluid = {law = "reynolds", viscosity_Pa_s = 1e-5, bulk_modulus_Pa = 1e12, inlet = {table = [[0, 0], [10, 2e-3], [20, 2e-3], [20.01, 0]], of = "rate_m2_s"}}
-numerics = {mechanics = "quasistatic", cell_m = 0.5, far_cell_m = 16}
-stop = {time_s = 200}
-output = {fields_every_s = 10}
-"""
-
 
 def fed_m2(t: float) -> float:
-    """What FIXED has been fed until a time that no row cuts, both wings."""
+    """What scenes/fixed.toml has been fed until a time that no row cuts, both wings."""
     return 1e-4 * t * t if t <= 10.0 else 1e-2 + 2e-3 * (t - 10.0) if t <= 20.0 else 3.001e-2
 
 
@@ -39,7 +26,7 @@ def test_a_fixed_fracture_that_is_shut_in_falls_off_by_what_leaks(tmp_path: Path
 
     Mutations that fail: one face, a gain, the rate of a step's end in place of its mean, steps over rows.
     """
-    assert run_in(tmp_path, FIXED).returncode == 0
+    assert run_in(tmp_path, SCENES / "fixed.toml").returncode == 0
     rows = [row for row in rows_of(tmp_path / "X") if float(row["time_s"]) > 0.0]
     assert len(rows) >= 20
     for row in rows:
@@ -136,7 +123,7 @@ def test_a_fracture_that_grew_falls_off_after_shut_in() -> None:
         assert p[row] - 20e6 == pytest.approx(own, rel=0.015)
 
 
-def histories(tmp_path: Path, scene: str | Path, *inlets: str, settings: tuple[str, ...] = ()) -> list[list[dict[str, str]]]:
+def histories(tmp_path: Path, scene: Path, *inlets: str, settings: tuple[str, ...] = ()) -> list[list[dict[str, str]]]:
     """The histories of a scene under inlets given in different ways."""
     found = []
     for inlet in inlets:
@@ -156,17 +143,9 @@ def test_a_table_of_one_rate_is_that_rate(tmp_path: Path) -> None:
 @pytest.mark.parametrize("law", ["uniform", "paper"])
 def test_a_table_of_pressure_is_the_ramp_that_it_describes(tmp_path: Path, law: str, mechanics: str) -> None:
     """A ramp in two rows gives what start_Pa and rate_Pa_s give, with inertia and without."""
-    ramp = """\
-    domain = {width_m = 32, height_m = 32}
-    in_situ = {vertical_Pa = 3e6, horizontal_Pa = 2e6}
-    rock.r = {youngs_modulus_Pa = 10e9}
-    strata.layers = [{rock = "r"}]
-    fracture.path_m = [[16, 0], [16, 5]]
-    numerics.cell_m = 1
-    stop = {tip_y_m = 12, time_s = 2}
-    """
     settings = (f"fluid.law={law}", f"numerics.mechanics={mechanics}")
-    one, other = histories(tmp_path, ramp, "{start_Pa=3e6, rate_Pa_s=1e6}", '{table=[[0, 3e6], [4, 7e6]], of="pressure_Pa"}', settings=settings)
+    ways = "{start_Pa=3e6, rate_Pa_s=1e6}", '{table=[[0, 3e6], [4, 7e6]], of="pressure_Pa"}'
+    one, other = histories(tmp_path, SCENES / "ramp.toml", *ways, settings=settings)
     assert len(one) == len(other) > 5
     for name in ("time_s", "inlet_Pa", "tip_y_m", "mouth_opening_m", "fluid_work_J"):
         assert [float(row[name]) for row in other] == pytest.approx([float(row[name]) for row in one], rel=1e-7, abs=1e-12), name
@@ -174,36 +153,12 @@ def test_a_table_of_pressure_is_the_ramp_that_it_describes(tmp_path: Path, law: 
 
 def test_a_pressure_that_falls_again_between_outputs_is_followed(tmp_path: Path) -> None:
     """A run without flow goes from event to event: the peak of a table counts, 0.3 or 0.6 MPa net where K_Ic takes 0.37. Steps over rows see neither."""
-    text = """\
-    domain = {width_m = 32, height_m = 32}
-    in_situ = {vertical_Pa = 3e6, horizontal_Pa = 2e6}
-    rock.r = {youngs_modulus_Pa = 10e9}
-    strata.layers = [{rock = "r"}]
-    fracture = {path_m = [[16, 0], [16, 5]], increment_m = 1}
-    fluid = {law = "uniform", inlet = {table = [[0, 2e6], [1, PEAK], [2, 2e6]], of = "pressure_Pa"}}
-    numerics = {cell_m = 1, mechanics = "quasistatic"}
-    stop = {time_s = 4}
-    output = {fields_every_s = 4}
-    """
     ends = []
-    for peak in ("2.3e6", "2.6e6"):
-        assert run_in(tmp_path, text.replace("PEAK", peak)).returncode == 0
+    for variant in ("", "over"):
+        assert run_in(tmp_path, SCENES / "peak.toml", variant=variant).returncode == 0
         ends.append(rows_of(tmp_path / "X")[-1])
         assert float(ends[-1]["inlet_Pa"]) == 2e6 and float(ends[-1]["time_s"]) == 4.0
     assert float(ends[0]["tip_y_m"]) == 5.0 < float(ends[1]["tip_y_m"])
-
-
-# A fracture in rock that takes up so much that nothing brings the fluid to a new tip within half of the time to the next growth.
-THIRSTY = """\
-domain = {width_m = 64, height_m = 48, beyond_m = 1600}
-in_situ = {vertical_Pa = 20e6, horizontal_Pa = 20e6}
-rock.r = {youngs_modulus_Pa = 20e9, poisson_ratio = 0.2, toughness_Pa_sqrt_m = 1e6, leakoff_m_sqrt_s = 5e-5}
-strata.layers = [{rock = "r"}]
-fracture = {path_m = [[32, 0], [32, 1]], increment_m = 0.5}
-fluid = {law = "reynolds", viscosity_Pa_s = 0.01, bulk_modulus_Pa = 1e12, minimum_opening_m = 1e-5, inlet = {rate_m2_s = 5e-4}}
-numerics = {mechanics = "quasistatic", cell_m = 0.5}
-stop = {time_s = 58}
-"""
 
 
 def test_growth_does_not_depend_on_what_is_written(tmp_path: Path) -> None:
@@ -213,7 +168,7 @@ def test_growth_does_not_depend_on_what_is_written(tmp_path: Path) -> None:
     """
     found = []
     for every in (60, 20, 6):
-        assert run_in(tmp_path, THIRSTY, f"output.fields_every_s={every}").returncode == 0
+        assert run_in(tmp_path, SCENES / "thirsty.toml", f"output.fields_every_s={every}").returncode == 0
         rows = rows_of(tmp_path / "X")
         found.append([(float(b["time_s"]), float(b["inlet_Pa"])) for a, b in zip(rows, rows[1:], strict=False) if a["tip_y_m"] != b["tip_y_m"]])
     time_s, inlet_Pa = found[0][-1]
@@ -224,17 +179,7 @@ def test_growth_does_not_depend_on_what_is_written(tmp_path: Path) -> None:
     assert inlet_Pa - 20e6 == pytest.approx(exact, rel=0.08)  # 15 cells of 0.5 m
 
 
-# A closed fracture of 5 m under 10 MPa whose inlet rises by 1 MPa/s from 5 MPa.
-RAMP = """\
-domain = {width_m = 40, height_m = 40}
-in_situ = {vertical_Pa = 12e6, horizontal_Pa = 10e6}
-rock.r = {youngs_modulus_Pa = 10e9, poisson_ratio = 0.2, toughness_Pa_sqrt_m = 1e6}
-strata.layers = [{rock = "r"}]
-fracture = {path_m = [[20, 0], [20, 5]], increment_m = 0.5}
-fluid = {law = "reynolds", viscosity_Pa_s = 1e-3, bulk_modulus_Pa = 2.2e9, minimum_opening_m = 1e-5, inlet = {start_Pa = 5e6, rate_Pa_s = 1e6}}
-numerics = {mechanics = "quasistatic", cell_m = 0.5, far_cell_m = 4}
-stop = {tip_y_m = 5.5, time_s = 20}
-"""
+RAMP = SCENES / "closed.toml"
 
 
 def start_MPa(run: dict[str, Any]) -> float:

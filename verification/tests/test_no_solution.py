@@ -13,25 +13,13 @@ import pytest
 
 from verification.faults.same import torn
 from verification.harness.paths import ANALYTIC, ROOT
-from verification.tests.cases import rows_of, run_in, strata, summary_in, summary_of
+from verification.tests.cases import SCENES, rows_of, run_in, strata, summary_in, summary_of
 
 # A small fracture fed at a rate; that of the scene is 1e-4 m^2/s, its viscosity 1e-5 Pa s, its least opening 2e-5 m.
 KGD = ANALYTIC / "kgd.toml"
 FED = ("numerics.cell_m=1", "fracture.increment_m=1", "domain.width_m=60", "fracture.path_m=[[30, 0], [30, 2]]", "stop.time_s=1")
 
-# Two blocks on an interface that fails at once, with friction that no rock has, and a fracture through both at 63 degrees.
-ROUGH = """\
-domain = {width_m = 12, height_m = 12, sides = "traction"}
-in_situ = {vertical_Pa = 1.4e6, horizontal_Pa = 0.4e6}
-rock = {r = {youngs_modulus_Pa = 10e9}, s = {youngs_modulus_Pa = 6e9}}
-interface.rough = {law = "weak", shear_strength_Pa = 1e3, tensile_strength_Pa = 1e3, residual_friction = 1e6}
-strata = {layers = [{rock = "r", thickness_m = 6}, {rock = "s"}], interfaces = ["rough"]}
-fracture = {path_m = [[4, 4], [8, 8]], growth = "none"}
-fluid = {law = "uniform", inlet = {start_Pa = 3e6, rate_Pa_s = 1e6}}
-numerics = {mechanics = "explicit", kinematics = "updated", cell_m = 1}
-stop.time_s = 1.0
-variants.usual.interface.rough.residual_friction = 0.6
-"""
+ROUGH, BLOCK = SCENES / "rough.toml", SCENES / "pushed.toml"
 
 
 def check_failed(folder: Path, done: subprocess.CompletedProcess[str], *words: str) -> list[dict[str, str]]:
@@ -71,24 +59,6 @@ def test_contact_that_is_far_from_its_laws_ends_the_run(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
 
 
-# A push that is no number from 0.02 s on; or, of the variant `overflow`, one whose square is beyond any number from 0.018 s on.
-BLOCK = """\
-domain = {width_m = 8, height_m = 8}
-in_situ = {vertical_Pa = 1e6, horizontal_Pa = 1e6}
-rock.r.youngs_modulus_Pa = 10e9
-strata = {layers = [{rock = "r", thickness_m = 4}, {rock = "r"}], interfaces = ["perfect"]}
-body.acceleration_m_s2 = ["sin(pi*X/8)*cos(pi*Y/8)*sqrt(0.02 - t)", "0"]
-numerics.cell_m = 1
-output.fields_every_s = 0.002
-stop.time_s = 0.05
-[variants]
-updated = {}
-total.numerics.kinematics = "total"
-quasistatic.numerics.mechanics = "quasistatic"
-overflow = {numerics.mechanics = "quasistatic", body.acceleration_m_s2 = ["sin(pi*X/8)*cos(pi*Y/8)*exp(20000*t)", "0"]}
-"""
-
-
 @pytest.mark.parametrize("variant", ["updated", "total", "quasistatic"])
 def test_what_is_no_longer_finite_ends_the_run_with_its_last_good_state(tmp_path: Path, variant: str) -> None:
     rows = check_failed(tmp_path, run_in(tmp_path, BLOCK, variant=variant), "-nan at X = ")
@@ -104,9 +74,8 @@ def test_energies_that_are_no_longer_finite_end_the_run(tmp_path: Path) -> None:
 
 
 def test_a_limit_of_memory_is_bad_input_and_no_bug(tmp_path: Path) -> None:
-    (tmp_path / "block.toml").write_text(BLOCK)
     limit = 600_000_000  # of addresses; programs and threads take most of it
-    arguments = ("run", "block.toml", "--set", "numerics.cell_m=0.01", "--out", "X", "--threads", "1")
+    arguments = ("run", BLOCK, "--set", "numerics.cell_m=0.01", "--out", "X", "--threads", "1")
     done = strata(tmp_path, *arguments, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
     assert done.returncode == 2, done.stderr
     assert ("out of memory" in done.stderr or "too large for this machine" in done.stderr) and "a bug" not in done.stderr

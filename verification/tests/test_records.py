@@ -20,6 +20,7 @@ from verification.ladder.__main__ import main as verify
 from verification.measured.__main__ import main as beside
 from verification.precision.__main__ import main as chart
 from verification.stability.__main__ import main as atlas
+from verification.tests.cases import SCENES
 
 
 @dataclass(frozen=True)
@@ -133,7 +134,7 @@ def test_it_says_how_it_is_used(name: str, capsys: pytest.CaptureFixture[str]) -
     ("atlas", ["--family", "nobody"], "no family nobody; there are"), ("atlas", ["--smoke", "--accept", "--family", "rings"], "without --smoke"),
     ("chart", ["--only", "blok"], "no problem blok; there are block"), ("chart", ["--methods", "qx"], "no method qx; there are"),
     ("crossing_map", ["--family", "nobody"], "no map nobody; there are"), ("crossing_map", ["--size", "1"], "--size 1 is below 2"),
-    ("sweep", ["no.toml"], "no.toml"), ("sweep", [str(Path(__file__).with_name("sweep.toml")), "--observe", "json:dumpz"], "--observe json:dumpz"),
+    ("sweep", ["no.toml"], "no.toml"), ("sweep", [str(SCENES / "sweep.toml"), "--observe", "json:dumpz"], "--observe json:dumpz"),
     ("bench", ["--only", "("], "ci/bench: "), ("bench", ["--quick", "--record"], "--quick goes with neither"),
 ])  # fmt: skip
 def test_what_it_cannot_do_is_refused_by_name(name: str, arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -16,17 +16,10 @@ import pytest
 
 from verification.harness.paths import ANALYTIC, EXPERIMENTS, ROOT
 from verification.strata import LoadError, Run, items_below, load  # noqa: F401
-from verification.tests.cases import completed, run_in, strata, summary_of
+from verification.tests.cases import SCENES, completed, run_in, summary_of
 
 COARSE = ("numerics.cell_m=2", "fracture.increment_m=2", "stop.tip_y_m=20")
 STATIC = (*COARSE, "numerics.mechanics=quasistatic")
-BLOCK = """
-domain = {width_m = 4, height_m = 4}
-rock.a.youngs_modulus_Pa = 1e10
-strata.layers = [{rock = "a"}]
-numerics = {mechanics = "quasistatic", cell_m = 1}
-stop.time_s = 0
-"""
 KINDS = {
     "inertia": (EXPERIMENTS / "exp1_single_interface.toml", "weak", (*COARSE, "stop.time_s=1.2")),
     "inertia, points in place": (EXPERIMENTS / "exp4_soft_between.toml", "friction", (*COARSE, "stop.time_s=0.6", "numerics.kinematics=total")),
@@ -51,7 +44,7 @@ def unit_of(name: str) -> str:
 def folder(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     if request.param == "block":
         place = tmp_path_factory.mktemp("block")
-        assert run_in(place, BLOCK).returncode == 0
+        assert run_in(place, SCENES / "rock_alone.toml").returncode == 0
         return place / "X"
     return completed(*KINDS[request.param]).folder
 
@@ -254,10 +247,7 @@ def test_what_another_version_did_not_write_is_named_with_the_version(tmp_path: 
 
 
 def test_a_scene_without_fracture_has_particles_alone(tmp_path: Path) -> None:
-    scene = '[domain]\nwidth_m=4\nheight_m=4\n[rock.a]\nyoungs_modulus_Pa=1e10\n[strata]\nlayers=[{rock="a"}]\n[numerics]\nmechanics="quasistatic"\ncell_m=1\n[stop]\ntime_s=0\n'
-    (tmp_path / "block.toml").write_text(scene, encoding="utf-8")
-    done = strata(tmp_path, "run", "block.toml", "--out", "X", "--quiet")
-    assert done.returncode == 0, done.stderr
+    assert run_in(tmp_path, SCENES / "rock_alone.toml").returncode == 0
     state = load(tmp_path / "X").at(0.0)
     assert len(state.particles["rock"]) == 64 and state.fracture == {} and state.interfaces == {}
 

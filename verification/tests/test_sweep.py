@@ -11,6 +11,7 @@ import csv
 import json
 import math
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -29,10 +30,10 @@ from verification.harness.load import load
 from verification.harness.paths import EXPERIMENTS, ROOT
 from verification.harness.run import CUT_SHORT, Job, Outcome, expected_s, load_outcome
 from verification.harness.scenes import MECHANICS, STUDY_VARIANTS, content_of, mechanics_of, scene_of, scenes_of, variants_of
-from verification.tests.cases import strata, wait_for
+from verification.tests.cases import SCENES, strata, wait_for
 from verification.tests.fake_run import climb, program, write_run
 
-SCENE = ROOT / "verification" / "tests" / "sweep.toml"
+SCENE = SCENES / "sweep.toml"
 BASE = SCENE.read_text(encoding="utf-8").partition("[sweep]")[0]
 
 
@@ -112,13 +113,18 @@ def test_every_run_is_checked_where_its_value_stands(tmp_path: Path) -> None:
 
 
 def test_what_a_row_says(tmp_path: Path) -> None:
-    """On a made-up climb: first events' pressures, two arrests (on the way and at the end) and one restart, the highest tip, marks."""
+    """On a made-up climb: first events' pressures, two arrests (on the way and at the end) and one restart; of two tips K and place of the highest, the height of
+    the lowest."""
     write_run(tmp_path / "a" / "run", end_Pa=3e6, steps=climb(to_m=14.0, plateaus={10.0: 0.2e6}), mechanics="quasistatic")
     row = sweep.observed(load(tmp_path / "a" / "run"))
     events = {event.kind: event for event in reversed(load(tmp_path / "a" / "run").summary.events)}
     assert (row["start_Pa"], row["arrest_Pa"], row["restart_Pa"], row["stop_Pa"]) == tuple(events[kind].inlet_Pa for kind in ("start", "arrest", "restart", "stop"))
     assert (row["arrests"], row["restarts"], row["arrest_y_m"]) == (2, 1, 10.0) and row["restart_Pa"] > row["arrest_Pa"] and math.isnan(row["reach_interface_Pa"])
-    assert row["highest_tip_y_m"] == max(tip.y_m for tip in load(tmp_path / "a" / "run").summary.tips)
+    run = load(tmp_path / "a" / "run")
+    low = replace(run.summary.tips[0], y_m=-3.0, K_I_Pa_sqrt_m=7.0)
+    both = sweep.observed(replace(run, summary=replace(run.summary, tips=(run.summary.tips[0], low))))
+    assert row["highest_tip_y_m"] == row["lowest_tip_y_m"] == both["highest_tip_y_m"] == run.summary.tips[0].y_m
+    assert both["lowest_tip_y_m"] == -3.0 and both["highest_tip_K_I_Pa_sqrt_m"] != 7.0
 
 
 AXES = "[sweep]\nin_situ.vertical_Pa = [2e6, 4e6]\ninterface.joint.coefficient = [0.0, 0.6]\n"
@@ -195,32 +201,9 @@ def test_what_cannot_be_observed_is_a_row(tmp_path: Path) -> None:
     assert "not observed" not in (out / "sweep.csv").read_text()
 
 
-def test_both_tips_are_in_a_row(tmp_path: Path) -> None:
-    """K and place are those of the highest tip, the lowest is told by its height."""
-    write_run(tmp_path / "a" / "run", end_Pa=3e6, steps=climb(to_m=14.0), mechanics="quasistatic")
-    run = load(tmp_path / "a" / "run")
-    low = replace(run.summary.tips[0], y_m=-3.0, K_I_Pa_sqrt_m=7.0)
-    row = sweep.observed(replace(run, summary=replace(run.summary, tips=(run.summary.tips[0], low))))
-    assert (row["lowest_tip_y_m"], row["highest_tip_y_m"]) == (-3.0, run.summary.tips[0].y_m) and row["highest_tip_K_I_Pa_sqrt_m"] != 7.0
-
-
-VARIANTS = """
-fluid.law = "paper"
-numerics = {mechanics = "explicit", cell_m = 1.0}
-[variants]
-plain = {}
-flow.fluid.law = "reynolds"
-energy.fracture.growth = "energy"
-graded.numerics.far_cell_m = 5.0
-undamped.numerics.mechanics = "explicit"
-"""
-
-
 @pytest.fixture()
 def scene(tmp_path: Path) -> Path:
-    path = tmp_path / "exp.toml"
-    path.write_text(VARIANTS)
-    return path
+    return Path(shutil.copy(SCENES / "variants.toml", tmp_path / "exp.toml"))
 
 
 def test_what_a_variant_can_run_in(scene: Path) -> None:
