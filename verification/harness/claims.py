@@ -87,22 +87,14 @@ class ClaimResult:
     flags: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class Claims:
-    """What claims.json holds."""
-
-    claims: list[ClaimResult]
-
-
 def write_claims(results: list[ClaimResult], path: Path) -> None:
     """Write claims.json."""
-    store.write(Claims(results), path)
+    store.write({"claims": results}, path)
 
 
 def read_claims(path: Path) -> list[ClaimResult]:
     """Read claims.json; none where there is no such file, ValueError where it is not as write_claims leaves it."""
-    found = store.read(Claims, path)
-    return found.claims if found is not None else []
+    return (store.read(dict[str, list[ClaimResult]], path) or {"claims": []})["claims"]
 
 
 FILE = Path("choices") / "points.toml"  # below the folder of the scenes

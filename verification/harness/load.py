@@ -139,14 +139,9 @@ def settings_of(settings: Mapping[str, Any]) -> tuple[str, ...]:
     return tuple(f"{key}={given!r}" if isinstance(given, (float, list)) else f"{key}={given}" for key, given in settings.items())
 
 
-def _ask(name: str, settings: Mapping[str, Setting]) -> dict[str, Any]:
-    """The same for settings by their names."""
-    return _answer(name, settings_of(settings))
-
-
 def values(name: str, quantity: str, **settings: Setting) -> np.ndarray:
     """One quantity of a named reference solution at each of the places or times that a setting lists, SI."""
-    found = _ask(name, settings)["values"]
+    found = _answer(name, settings_of(settings))["values"]
     if quantity not in found:
         raise NoReference(f"{name} has no {quantity}; it has {', '.join(sorted(found))}")
     return np.atleast_1d(np.array(found[quantity]["value"], dtype=float))
@@ -159,7 +154,7 @@ def value(name: str, quantity: str, **settings: Setting) -> float:
 
 def relative_error(name: str, **settings: Setting) -> float:
     """The relative error that a named reference solution gives of itself."""
-    return float(_ask(name, settings)["error_estimate"]["relative"])
+    return float(_answer(name, settings_of(settings))["error_estimate"]["relative"])
 
 
 EDGE_M = 2.0  # the lower tip is held so far from the rock's fine cells

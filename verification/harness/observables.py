@@ -84,9 +84,10 @@ def grew(run: Run) -> bool:
     return len(run.path) > len(run.scene["fracture"]["path_m"])
 
 
-def when_at(run: Run, values: Array, height_m: float) -> Measured:
-    """What of values along the history belongs to the tip's first being at a height; at least the last one where it never gets there."""
-    reached = np.flatnonzero(run.history["tip_y_m"] >= height_m - SLACK_M)
+def when_at(run: Run, values: Array, height_m: float, tip: str = "tip_y_m", way: int = 1) -> Measured:
+    """What of values along the history belongs to a tip's first being at a height on its way up (1) or down (-1); at least the last one where it never gets
+    there."""
+    reached = np.flatnonzero(way * (run.history[tip] - height_m) >= -SLACK_M)
     if reached.size:
         return exactly(values[reached[0]])
     return Measured(float(values[-1]), math.inf, f"{run.name} does not reach {height_m:g} m")
@@ -132,12 +133,13 @@ def distances_to(points: Array, path: Array) -> Array:
     return np.sqrt(((points[:, None, :] - feet) ** 2).sum(axis=2)).min(axis=1)
 
 
-def start_Pa(run: Run, _: Parameters = NONE) -> Measured:
+def start_Pa(run: Run, parameters: Parameters = NONE) -> Measured:
     """Pressure of the first growth."""
-    start = next((event for event in run.summary.events if event.kind == "start"), None)
+    tip = parameters.get("tip")  # of which one, by its name
+    start = next((event for event in run.summary.events if event.kind == "start" and tip in (None, event.tip)), None)
     if start is not None:
         return exactly(start.inlet_Pa)
-    return Measured(run.summary.inlet_Pa, math.inf, f"{run.name} does not start to grow")
+    return Measured(run.summary.inlet_Pa, math.inf, f"{run.name}: its {tip} tip does not start to grow" if tip else f"{run.name} does not start to grow")
 
 
 def final_height_m(run: Run, parameters: Parameters = NONE) -> Measured:

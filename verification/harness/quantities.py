@@ -16,7 +16,7 @@ import numpy as np
 from verification.harness.load import GROWTH_M, Array, Run
 from verification.harness.observables import (
     SLACK_M, Measured, distances_to, exactly, final_angle_deg, final_height_m, grew, interface_height, lateral_deflection_m,
-    nothing, path_length, pressure_at_height, resample, start_Pa,
+    nothing, path_length, pressure_at_height, resample, start_Pa, when_at,
 )  # fmt: skip
 
 NO_ARREST = "no arrest"  # the flag of a pause that is none
@@ -105,20 +105,6 @@ def pause_at(run: Run, interface: int, side: Side = UPPER) -> Pause | Measured:
     return max(found, key=lambda pause: min(pause.to_Pa, last_Pa) - pause.from_Pa)
 
 
-def start_of_tip(run: Run, name: str) -> Measured:
-    """Pressure of the first growth of the tip of this name, by the events."""
-    found = next((event for event in run.summary.events if event.kind == "start" and event.tip == name), None)
-    return exactly(found.inlet_Pa) if found else Measured(run.summary.inlet_Pa, math.inf, f"{run.name}: its {name} tip does not start to grow")
-
-
-def pressure_at_depth(run: Run, height_m: float) -> Measured:
-    """Inlet pressure at which the lower tip is first down at a height, Pa; at least the last one where it never gets there."""
-    reached = np.flatnonzero(LOWER.beyond(LOWER.y(run), height_m) >= -SLACK_M)
-    if reached.size:
-        return exactly(run.history["inlet_Pa"][reached[0]])
-    return Measured(float(run.history["inlet_Pa"][-1]), math.inf, f"{run.name} does not reach {height_m:g} m")
-
-
 def interface_quantities(number: int, of: int, side: Side = UPPER) -> list[Quantity]:
     """Arrest height, restart pressure and rise between them at one of so many interfaces across the fracture. All are of the longest pause there,
     flagged where it is no arrest; where the run ends in it, it leaves a bound of the last two."""
@@ -152,7 +138,8 @@ def lowest_end_m(content: dict[str, Any]) -> float | None:
 def downward_quantities(foot_m: float, content: dict[str, Any], heights_m: Sequence[float]) -> list[Quantity]:
     """What is followed of the lower one of two tips: its pressures at heights that it may come down to, and how far down it gets."""
     lowest = float(content.get("stop", {}).get("lower_tip_y_m", 0.0))
-    at = [Quantity(f"pressure_at_{height:g}_lower_Pa", f"pressure at {height:g} m{LOWER.label}", "Pa", partial(pressure_at_depth, height_m=height))
+    at = [Quantity(f"pressure_at_{height:g}_lower_Pa", f"pressure at {height:g} m{LOWER.label}", "Pa",
+                   lambda run, height=height: when_at(run, run.history["inlet_Pa"], height, "lower_tip_y_m", LOWER.sense))
           for height in heights_m if lowest <= height < foot_m]  # fmt: skip
     return [*at, Quantity("final_height_lower_m", f"final height{LOWER.label}", "m", lambda run: exactly(float(np.min(LOWER.y(run)))))]
 
@@ -163,7 +150,7 @@ def quantities_of(content: dict[str, Any], heights_m: Sequence[float] = HEIGHTS_
     found = [Quantity("start_Pa", "start of growth", "Pa", start_Pa)]
     strata, foot = content.get("strata", {}), lowest_end_m(content)
     if foot is not None:
-        found += [Quantity(f"start_{name}_Pa", f"start of the {name} tip", "Pa", partial(start_of_tip, name=name)) for name in names_of_tips(content)]
+        found += [Quantity(f"start_{name}_Pa", f"start of the {name} tip", "Pa", partial(start_Pa, parameters={"tip": name})) for name in names_of_tips(content)]
     if strata.get("along", "y") == "y":
         across = [k for k, name in enumerate(strata.get("interfaces", []), 1) if name != "perfect"]
         heights = list(accumulate(float(layer.get("thickness_m", 0.0)) for layer in strata.get("layers", [])))
