@@ -31,7 +31,7 @@ RIGHT = (3, 4, 5, 6, 7, 8)
 def cells(row: Row) -> tuple[str, ...]:
     """A row's cells, in the header's order."""
     order = "-" if row.order is None else f"{row.order:.2f}"
-    cost = f"{row.cost.wall_s:.2f} s {count(row.cost.particles)}p {count(row.cost.steps)}st" if row.cost else "-"
+    cost = f"{row.cost['wall_s']:.2f} s {count(row.cost['particles'])}p {count(row.cost['steps'])}st" if row.cost else "-"
     gate = f"{row.gate.error:g}" + (f" / {row.gate.order:g}" if row.gate.order is not None else "") if row.gate else "none"
     many = f" rms of {row.values}" if row.values > 1 else ""
     why = "; ".join(filter(None, (row.failure, *row.problems, row.note)))

@@ -19,6 +19,7 @@ from verification.ladder.gates import CannotAccept, Gate, Gates, Key
 
 RUNS = paths.RUNS / "ladder"
 PASS, FAIL, FAILED = "pass", "FAIL", "FAILED"
+COST = ("wall_s", "particles", "steps", "peak_memory_MB")
 
 
 @dataclass(frozen=True)
@@ -71,16 +72,6 @@ def make_all(rungs: list[Rung], jobs: int = 2, tell: Tell = say) -> list[Made]:
 
 
 @dataclass(frozen=True)
-class Cost:
-    """What a run took: wall time (s), particles, steps and largest memory (MB)."""
-
-    wall_s: float
-    particles: int
-    steps: int
-    peak_memory_MB: float
-
-
-@dataclass(frozen=True)
 class Row:
     """A quantity of a case at a level beside its reference. Of many values, `value` and `reference` are the weighted rms. error and reference_error
     are relative; order is that from the level before. `failure` says why there is nothing measured."""
@@ -100,7 +91,7 @@ class Row:
     scale: float | None = None  # what errors are relative to where it is not the reference
     error: float = math.nan
     order: float | None = None
-    cost: Cost | None = None
+    cost: dict[str, float] | None = None  # what the run took, as its summary has it (COST)
     mutants: dict[str, float] = field(default_factory=dict)
     failure: str = ""
     gate: Gate | None = None
@@ -161,8 +152,7 @@ def row_of(rung: Rung, run: Run | str, quantity: Quantity) -> Row:
     row = Row(rung.family, case.name, case.mechanics, quantity.name, quantity.unit, level.label, level.size, quantity.reason(level.label))
     if isinstance(run, str):
         return replace(row, failure=run)
-    summary = run.summary
-    row = replace(row, cost=Cost(summary.wall_s, summary.particles, summary.steps, summary.peak_memory_MB))
+    row = replace(row, cost={name: getattr(run.summary, name) for name in COST})
     try:
         sample = quantity.sample(run)
         error, mutants = sample.error(), sample.mutants()

@@ -220,7 +220,7 @@ def test_runs_are_made_once_and_measured(tmp_path: Path, solver: Path, a_case: C
     rungs = rungs_of({"fam": (a_case,)}, runs=tmp_path / "ladder")
     rows = rows_of(make_all(rungs, jobs=2))
     assert [row.error for row in rows] == [pytest.approx(0.01), pytest.approx(0.005)]
-    assert rows[0].order is None and rows[1].order == pytest.approx(1.0) and rows[1].cost.particles == 25600 and rows[1].reference_error == 1e-6
+    assert rows[0].order is None and rows[1].order == pytest.approx(1.0) and rows[1].cost["particles"] == 25600 and rows[1].reference_error == 1e-6
     again = make_all(rungs)
     assert all(outcome.skipped for _, (outcome, _) in again) and len((tmp_path / "calls").read_text().splitlines()) == 2
     assert (tmp_path / "ladder" / "fam" / "two_levels" / "0.5_m" / "summary.json").is_file()
