@@ -63,29 +63,22 @@ def settings_of(mechanics: str) -> tuple[str, ...]:
 
 def measured_values(found: Run) -> Values:
     """Start, arrests and restarts (named by the tip's height), final height and points of the path, each with unit and tolerance."""
-    values: Values = {}
-
-    def pressure(name: str, value: float, sure: bool = True) -> None:
+    def pressure(value: float, sure: bool = True) -> dict[str, Any]:
         item = {"value": round(value, 3), "unit": "Pa", "tolerance": PRESSURE_TOLERANCE_PA[found.summary.mechanics]}
-        values[name] = item if sure else {**item, "optional": True}
+        return item if sure else {**item, "optional": True}
 
-    def length(name: str, value: float) -> None:
-        values[name] = {"value": round(value, 6), "unit": "m", "tolerance": LENGTH_TOLERANCE_M}
-
+    values: Values = {}
     events = [event for event in found.summary.events if event.kind in ("arrest", "restart")]
     for event, after in [pair for pair in zip(events, [*events[1:], None]) if pair[0].kind == "arrest"]:
         sure = (after.inlet_Pa if after else found.summary.inlet_Pa) - event.inlet_Pa >= SURE_ARREST_PA
-        pressure(f"arrest_at_{round(event.tip_y_m)}m_Pa", event.inlet_Pa, sure)
+        values[f"arrest_at_{round(event.tip_y_m)}m_Pa"] = pressure(event.inlet_Pa, sure)
         if after is not None:
-            pressure(f"restart_from_{round(event.tip_y_m)}m_Pa", after.inlet_Pa, sure)
-    for event in [event for event in found.summary.events if event.kind == "start"][:1]:
-        pressure("start_Pa", event.inlet_Pa)
-    length("final_height_m", float(found.history["tip_y_m"].max()))
+            values[f"restart_from_{round(event.tip_y_m)}m_Pa"] = pressure(after.inlet_Pa, sure)
+    values |= {"start_Pa": pressure(event.inlet_Pa) for event in reversed(found.summary.events) if event.kind == "start"}
     quarter = path_length(found.path) / 4.0
-    for k, (x, y) in enumerate(resample(found.path, quarter)[1:5] if quarter > 0.0 else [], 1):
-        length(f"path_{k}_x_m", float(x))
-        length(f"path_{k}_y_m", float(y))
-    return values
+    places = {f"path_{k}_{axis}_m": at for k, point in enumerate(resample(found.path, quarter)[1:5] if quarter > 0.0 else [], 1) for axis, at in zip("xy", point)}
+    lengths = {"final_height_m": found.history["tip_y_m"].max(), **places}
+    return values | {name: {"value": round(float(at), 6), "unit": "m", "tolerance": LENGTH_TOLERANCE_M} for name, at in lengths.items()}
 
 
 def differences(found: Values, expected: Values) -> list[str]:

@@ -33,9 +33,7 @@ def of_rock(run: Run, key: str, name: str = "stiff") -> float:
     return given(run, f"rock.{name}.{key}")
 
 
-def rho_of(run: Run) -> float:
-    """Density of the stiff rock, kg/m^3."""
-    return of_rock(run, "density_kg_m3")
+rho_of = partial(of_rock, key="density_kg_m3")  # kg/m^3
 
 
 def field(name: str, unit: str, exact: Callable[[Run, Fields], Array | float], why: str = SINGLE) -> Quantity:
