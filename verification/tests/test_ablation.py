@@ -130,8 +130,6 @@ def test_verdicts() -> None:
     lines = (line(0.5), line(0.001, cpu_s=0.5), line(0.001, cpu_s=1.2))
     table = Table("exp1", "soft", EVERYTHING, "0", 1.0, (), {}, lines)
     assert (table.needs(), table.spared(True), table.spared(False)) == ([lines[0]], [lines[1]], [lines[2]])
-
-
     edges = replace(lines[1], id="edges")
     assert replace(table, lines=(*lines, edges)).unexplained({}) == ["flow", "edges"]
     assert replace(table, lines=(*lines, edges)).unexplained({"all": {"flow": "cheap"}, "exp2": {"edges": "not this one"}}) == ["edges"]

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from verification.harness.load import LoadError, Run
-from verification.harness.paths import ANALYTIC
+from verification.harness.paths import ANALYTIC, ROOT
 from verification.ladder.case import Level, Sample
 from verification.precision import measure
 from verification.precision.__main__ import main
@@ -84,15 +84,13 @@ def test_an_error_of_exactly_zero_is_worth_what_the_reference_is_known_to() -> N
     assert cheapest(one.dots, 0.01) is None and cheapest(one.dots, 0.05) is not None
 
 
-def test_a_size_counts_with_the_worst_of_those_finer() -> None:
-    assert judged([0.001, 0.02, 0.004], [0.0] * 3, [4.0, 2.0, 1.0]) == [0.02, 0.02, 0.004]
-
-
-def test_a_change_of_sign_counts_with_what_third_order_leaves() -> None:
-    found = judged([0.08, -0.0001], [0.0, 0.0], [2.0, 1.0])
-    assert found == [0.08, pytest.approx(0.01)]
-    assert judged([0.08, 0.0001], [0.0, 0.0], [2.0, 1.0])[1] == 0.0001
-    assert judged([0.08, -0.0001], [0.0, 0.0], [2.0, 1.0], by_order=False)[1] == 0.0001
+@pytest.mark.parametrize(("errors", "sizes", "by_order", "counted"), [
+    ([0.001, 0.02, 0.004], [4.0, 2.0, 1.0], True, [0.02, 0.02, 0.004]),  # with the worst of those finer
+    ([0.08, -0.0001], [2.0, 1.0], True, [0.08, 0.01]),  # a change of sign with what third order leaves
+    ([0.08, 0.0001], [2.0, 1.0], True, [0.08, 0.0001]), ([0.08, -0.0001], [2.0, 1.0], False, [0.08, 0.0001]),
+])  # fmt: skip
+def test_errors_as_they_are_judged(errors: list[float], sizes: list[float], by_order: bool, counted: list[float]) -> None:
+    assert judged(errors, [0.0] * len(errors), sizes, by_order) == pytest.approx(counted, rel=1e-12)
 
 
 def test_luck_is_marked() -> None:
@@ -201,22 +199,13 @@ def test_one_problem_from_the_command_to_the_data(tmp_path: Path, capsys: pytest
     assert "1 to measure" in capsys.readouterr().out
 
 
-def test_a_refusal_is_a_point(tmp_path: Path) -> None:
-    one = replace(method("odd", 1.0), levels=(Level("1 m", 1.0, ("numerics.mechanics=quasistatic", "numerics.shape=gimp")),))
-    problem = Problem("refused", "refused", (wanted(),), (one,))
-    found = measure.measured(problem, one, one.levels[0], tmp_path)
-    assert found.status == REFUSED and "gimp" in found.reason and len(found.wall_s) == 1
-
-
-def test_a_reason_names_the_scene_by_its_place_in_the_project(tmp_path: Path) -> None:
-    """Data of one machine are read on others. Mutation that fails: the reason as the solver gives it, with the project's own place."""
-    one = replace(method("fed", 1.0), source=ANALYTIC / "kgd.toml", levels=(Level("1 m", 1.0, ("numerics.mechanics=explicit",)),))
-    found = measure.measured(Problem("fed", "fed", (wanted(),), (one,)), one, one.levels[0], tmp_path)
-    assert found.status == REFUSED and found.reason.startswith("verification/analytic/kgd.toml:")
-
-
-def test_a_run_that_takes_too_long_is_a_point(tmp_path: Path) -> None:
-    one = replace(method("slow", 0.125), levels=(Level("0.125 m", 0.125, ("numerics.mechanics=quasistatic", "numerics.cell_m=0.125")),))
-    problem = Problem("slow", "slow", (wanted(),), (one,), limit_s=0.2)
-    found = measure.measured(problem, one, one.levels[0], tmp_path)
-    assert found.status == TOO_LONG and "not done after 0.2 s" in found.reason
+@pytest.mark.parametrize(("scene", "settings", "status", "said"), [
+    ("static_quasistatic", ("numerics.mechanics=quasistatic", "numerics.shape=gimp"), REFUSED, "numerics.shape=gimp"),
+    ("kgd", ("numerics.mechanics=explicit",), REFUSED, "verification/analytic/kgd.toml:"),
+    ("static_quasistatic", ("numerics.mechanics=quasistatic", "numerics.cell_m=0.125"), TOO_LONG, "not done after 0.2 s"),
+])  # fmt: skip
+def test_what_has_no_result_is_a_point(tmp_path: Path, scene: str, settings: tuple[str, ...], status: str, said: str) -> None:
+    """A scene is named by its place in the project: data of one machine are read on others. Mutation that fails: the reason as the solver gives it."""
+    one = replace(method("odd", 1.0), source=ANALYTIC / f"{scene}.toml", levels=(Level("1 m", 1.0, settings),))
+    found = measure.measured(Problem("odd", "odd", (wanted(),), (one,), limit_s=0.2), one, one.levels[0], tmp_path)
+    assert found.status == status and said in found.reason and str(ROOT) not in found.reason and len(found.wall_s) == 1
