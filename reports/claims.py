@@ -153,10 +153,7 @@ def _finding(lines: Sequence[Shown]) -> str:
         known = {cell.kind for line in lines if line.id == id_ for cell in line.cells} & {"yes", "no"}
         found.setdefault(frozenset(known), []).append(id_)
     firm, turned, never = (", ".join(found.get(frozenset(kinds), [])) or "none" for kinds in (("yes",), ("yes", "no"), ("no",)))
-    return (
-        f"Reproduced under every choice and mechanics that was run: {firm}; reproduced under some and not under others: {turned};"
-        f" under none: {never}."
-    )
+    return f"Reproduced under every choice and mechanics that was run: {firm}; reproduced under some and not under others: {turned}; under none: {never}."
 
 
 SAME_PA = 500.0  # half of the last digit that tables show

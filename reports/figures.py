@@ -17,7 +17,7 @@ from reports.runs import NotAvailable, Run
 from reports.words import Shown, mechanics_name
 from verification.harness.store import plain
 
-FILTERS = {"mechanics": mechanics_name, **{name: getattr(words, name) for name in ("listed", "metres", "mpa", "plain", "share")}}
+FILTERS = {"mechanics": mechanics_name, **{name: getattr(words, name) for name in ("listed", "metres", "mpa", "plain", "share", "wall_time")}}
 OUT, TEMPLATES = (Path(__file__).resolve().parent / name for name in ("out", "templates"))
 DIGITS = 7  # of numbers in a figure's data
 

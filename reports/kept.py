@@ -116,10 +116,8 @@ def measured_figure(record: rubin.Record) -> Shown:
 
 def errors_told(finest: dict[str, rubin.Result]) -> str:
     """The plain run's errors, and that of the pressure were all gauges off by what one shows."""
-    own = {name: share(finest["plain"].errors[name].late) for name in SCALES}
-    zero = finest["gauges_from_zero"].errors[rubin.WELL].late
-    return (f"Rubin's fracture in PMMA, mean error from {rubin.LATE_S:g} s on: length {own[rubin.LENGTH]}, opening {own[rubin.OPENING]}, "
-            f"pressure {own[rubin.WELL]} ({share(zero)} if every gauge is off by what one of them shows without fluid)")
+    length, opening, pressure = (finest["plain"].errors[name].late for name in (rubin.LENGTH, rubin.OPENING, rubin.WELL))
+    return words_of("measured_finding", from_s=rubin.LATE_S, length=length, opening=opening, pressure=pressure, zero=finest["gauges_from_zero"].errors[rubin.WELL].late)
 
 
 def table_of(record: rubin.Record) -> Table:
@@ -230,14 +228,8 @@ def front_figure(panels: Sequence[Panel]) -> Shown:
 def chart_finding(panels: Sequence[Panel]) -> str:
     """What the chart shows, in a sentence."""
     found = [dot for panel in panels if (dot := cheapest(panel.of(), 0.01)) is not None]
-    if not found:
-        return "No quantity is had within 1 %"
     still = sum(dot.method.setting is not None and dot.method.setting.mechanics == "quasistatic" for dot in found)
-    times = [dot.time_s for dot in found]
-    return (
-        f"Within 1 %: {len(found)} of {len(panels)} quantities, the cheapest way to each in {wall_time(min(times))} to {wall_time(max(times))};"
-        f" {'all' if still == len(found) else still} of these ways are without inertia"
-    )
+    return words_of("precision_finding", times=[dot.time_s for dot in found], panels=len(panels), still=still)
 
 
 # --- tables
@@ -269,28 +261,17 @@ def recommendations(panels: Sequence[Panel]) -> list[str]:
     told = []
     for problem in dict.fromkeys(panel.problem.name for panel in panels if panel.problem.experiments):
         own = [panel for panel in panels if panel.problem.name == problem]
-        choice = choice_for(own, TOLERANCES[1])
-        if choice is not None:
-            dots, within = choice
-            reason = "is the cheapest within 1 %, or the reference's uncertainty" if within else "comes nearest to 1 % in all"
-            told.append(f"Experiments {listed(list(map(str, own[0].problem.experiments)))}: {dots[0].name} {reason}, in {wall_time(dots[0].time_s)} a run: errors of"
-                        f" {_errors(dots, own)}. {_shipped(own)}")
+        if (choice := choice_for(own, TOLERANCES[1])) is not None:
+            method, level = own[0].problem.shipped
+            label = next((one.label for one in own[0].problem.methods if one.name == method), method)
+            told.append(words_of("precision_advice", experiments=list(map(str, own[0].problem.experiments)), dots=choice[0], within=choice[1], errors=_errors(choice[0], own),
+                                 label=label, level=level, shipped=(found := run_at(own, method, level)), shipped_errors=_errors(found or (), own)))
     return told
 
 
 def _errors(dots: Sequence[Dot], panels: Sequence[Panel]) -> str:
     """The errors of a run in all panels."""
     return listed([f"{share(dot.judged)} ({panel.wanted.title})" for dot, panel in zip(dots, panels)])
-
-
-def _shipped(panels: Sequence[Panel]) -> str:
-    """What the scenes ask for, and what that does."""
-    method, level = panels[0].problem.shipped
-    label = next((one.label for one in panels[0].problem.methods if one.name == method), method)
-    dots = run_at(panels, method, level)
-    if dots is None:
-        return f"The scenes' own setting ({label}, {level}) has not been measured, or has no value."
-    return f"The scenes' own setting, with inertia ({label}, {level}), takes {wall_time(dots[0].time_s)}: errors of {_errors(dots, panels)}."
 
 
 def chart_topic(folder: Path = DATA) -> Topic | None:

@@ -124,16 +124,9 @@ def case_words(case: str, mechanics: str) -> str:
 
 def convergence_words(curves: Sequence[Shown]) -> str:
     """What became of the errors of some quantities from the coarsest to the finest level, in a sentence."""
-    finest = [curve.errors[-1] for curve in curves]
     orders = [curve.order for curve in curves if curve.judged and curve.order is not None]
-    worst = max(curves, key=lambda curve: curve.errors[-1])
-    where = f"{share(max(finest))} ({worst.quantity}, {plain(worst.case)})"
-    told = f"Errors {f'from {share(min(finest))} to {where}' if len(finest) > 1 else f'of {where}'} at the finest level"
-    if not orders:
-        return f"{told}; none is judged by its order"
-    spread = " to ".join(dict.fromkeys((order_words(min(orders)), order_words(max(orders)))))
-    which = f"{len(orders)} of {len(curves)} are judged by their order, " if len(orders) < len(curves) else "orders "
-    return f"{told}; {which}{spread} between the finest two levels"
+    spread = " to ".join(dict.fromkeys((order_words(min(orders)), order_words(max(orders))))) if orders else ""
+    return words_of("convergence_finding", curves=sorted(curves[::-1], key=lambda curve: curve.errors[-1]), orders=len(orders), spread=spread)
 
 
 # --- tables
@@ -205,16 +198,8 @@ def _write(out: Path, ladder: Shown | None) -> Shown:
 def headline(ladder: Shown) -> str:
     """What the ladder found, in a sentence or two."""
     rows = ladder.rows
-    wrong = sum(not row.passed for row in rows)
-    cases, families = len({(row.family, row.case) for row in rows}), len({row.family for row in rows})
-    of_what = f"{len(rows)} comparisons with references ({counted(cases, 'case')} in {counted(families, 'family')})"
-    if not rows:
-        return "No case of the accuracy ladder has been run."
-    if ladder.accepted:
-        return f"{of_what}: the errors that were last accepted. ci/verify measures them again."
-    if wrong == 0:
-        return f"All {of_what} are within their gates."
-    return f"Of {of_what}, {wrong} {'is' if wrong == 1 else 'are'} not as {'its gate asks' if wrong == 1 else 'their gates ask'}."
+    cases, families = counted(len({(row.family, row.case) for row in rows}), "case"), counted(len({row.family for row in rows}), "family")
+    return words_of("ladder", rows=len(rows), cases=cases, families=families, accepted=ladder.accepted, wrong=sum(not row.passed for row in rows))
 
 
 def ladder_context(ladder: Shown, out: Path) -> dict[str, Any]:

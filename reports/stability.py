@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from reports.charts.records import draw_edges, draw_part
-from reports.figures import Figure, make, told_of, write_page
+from reports.figures import Figure, make, told_of, words_of, write_page
 from reports.words import NONE, Shown, general, minus, span
 from verification.stability import runner
 from verification.stability.families import families
@@ -109,20 +109,14 @@ def figures_of(part: Shown) -> list[Figure]:
 
 def finding(part: Shown) -> str:
     """What a section's walks show, in a sentence."""
-    off, garbage = part.edges["difference"], sum(point.outcome == GARBAGE for point in part.points)
-    lead = f"edge within {100.0 * max(map(abs, off)):.1f} % of theory, " if off else ""
-    rest = f"{garbage} POINTS ARE GARBAGE" if garbage else f"no garbage in {len(part.points)} points ({outcomes_of(part.points)})"
-    return f"{part.title}: {lead}{rest}"
+    return words_of("atlas_section", part=part, garbage=sum(point.outcome == GARBAGE for point in part.points), outcomes=outcomes_of(part.points))
 
 
 def headline(every: Sequence[Shown]) -> str:
     """What the whole atlas says, in a sentence."""
     walks, points = [walk for part in every for walk in part.walks], [point for part in every for point in part.points]
     off = [size for part in every for size in part.edges["difference"]]
-    wrong = sum(bool(walk.wrong) for walk in walks)
-    said = f"{len(every)} known failures in {len(walks)} walks and {len(points)} points ({outcomes_of(points)})"
-    theory = f"; {len(off)} edges that theory gives, measured within {100.0 * max(map(abs, off)):.1f} %" if off else ""
-    return said + theory + (f"; {wrong} walks are NOT as they are to be" if wrong else "; all as they are to be")
+    return words_of("atlas", sections=len(every), walks=walks, points=len(points), outcomes=outcomes_of(points), off=off)
 
 
 def write_stability(out: Path, folder: Path = runner.RECORDS) -> Shown:
