@@ -4,9 +4,10 @@ usage: PYTHONPATH=. /usr/bin/python3 -m reports.gallery [--out experiments/galle
 """
 
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -24,11 +25,11 @@ MARKS = "<!-- gallery -->\n", "<!-- end of gallery -->"
 Curve = tuple[str, str, Array, Array, bool]  # name, look, x, y, whether a value holds until the next
 
 
-def against_time(run: Run, name: str, of: str, source: Callable[[float], float], factor: float = 1.0, less: float = 0.0) -> list[Curve]:
-    """A column of the history over time, less something, beside its source at 30 times."""
+def against_time(run: Run, name: str, solution: str, quantity: str, settings: dict[str, float], factor: float = 1.0, less: float = 0.0) -> list[Curve]:
+    """A column of the history over time, less something, beside a quantity of a solution of strata-reference at 30 times."""
     time_s = run.history["time_s"]
     times = np.linspace(0.02, 1.0, 30) * time_s[-1]
-    return [(of, "source", times, factor * np.array([source(float(time)) for time in times]), False),
+    return [(solution, "source", times, factor * np.array([value(solution, quantity, time_s=float(time), **settings) for time in times]), False),
             ("strata", "run", time_s, factor * (run.history[name] - less), False)]
 
 
@@ -66,32 +67,25 @@ def starts(run: Run, other: Run) -> list[Curve]:
         for one, look in ((run, "run"), (other, "other"))]  # fmt: skip
 
 
+# What a scene's picture shows: the names of its axes, the curves of its runs, and the range of y where it is not theirs.
+PICTURES: dict[str, tuple[Any, ...]] = {
+    "kgd": ("time (s)", "half length (m)", lambda run: against_time(run, "tip_y_m", "kgd", "half_length_m", gallery.fed(run))),
+    "layers": ("pressure (MPa)", "height of the upper tip (m)", heights),
+    "junction": ("along the crack (m)", "slip (mm)", lambda run: slips(run, {"strata": -1}, ("Phan et al. 2003", *gallery.curve("slip")))),
+    "inclined": ("net pressure (MPa)", "height of the tip (m)", starts),
+    "barrier": ("pressure (MPa)", "height of the upper tip (m)", heights),
+    "shut_in": ("time (s)", "net pressure (kPa)", lambda run: against_time(
+        run, "inlet_Pa", "shut_in", "inlet_pressure_Pa", gallery.shut_in_settings(run), 1e-3, given(run, "in_situ.horizontal_Pa")), (0.0, 500.0)),
+    "fault": ("along the fault (m)", "slip (mm)", fault_slips, (0.0, 1.6)),
+    "sudden": ("time (s)", "$K_I$ (MPa m$^{1/2}$)", lambda run: against_time(
+        run, "K_I_Pa_sqrt_m", "freund_step_pressure", "K_I", {"pressure_Pa": net_Pa(run), **rock(run, density=True)}, 1e-6)),
+}  # fmt: skip
+
+
 def shown(name: str, runs: Sequence[Run]) -> Shown:
     """What a scene's picture shows."""
-    run = runs[0]
-    pressed = given(run, "in_situ.horizontal_Pa")
-    y_range: tuple[float | None, float | None] = (None, None)
-    if name == "kgd":
-        x, y, curves = "time (s)", "half length (m)", against_time(
-            run, "tip_y_m", "kgd", lambda time: value("kgd", "half_length_m", time_s=time, **gallery.fed(run)))
-    elif name == "shut_in":
-        x, y, curves = "time (s)", "net pressure (kPa)", against_time(
-            run, "inlet_Pa", "shut_in", lambda time: value("shut_in", "inlet_pressure_Pa", time_s=time, **gallery.shut_in_settings(run)), 1e-3, pressed)
-        y_range = (0.0, 500.0)
-    elif name == "sudden":
-        x, y, curves = "time (s)", "$K_I$ (MPa m$^{1/2}$)", against_time(
-            run, "K_I_Pa_sqrt_m", "freund_step_pressure",
-            lambda time: value("freund_step_pressure", "K_I", pressure_Pa=net_Pa(run), time_s=time, **rock(run, density=True)), 1e-6)
-    elif name == "junction":
-        x, y, curves = "along the crack (m)", "slip (mm)", slips(run, {"strata": -1}, ("Phan et al. 2003", *gallery.curve("slip")))
-    elif name == "fault":
-        x, y, curves = "along the fault (m)", "slip (mm)", fault_slips(run)
-        y_range = (0.0, 1.6)
-    elif name == "inclined":
-        x, y, curves = "net pressure (MPa)", "height of the tip (m)", starts(run, runs[1])
-    else:
-        x, y, curves = "pressure (MPa)", "height of the upper tip (m)", heights(run)
-    return Shown(x=x, y=y, y_range=y_range, curves=curves)
+    x, y, curves, y_range = (*PICTURES[name], (None, None))[:4]
+    return Shown(x=x, y=y, y_range=y_range, curves=curves(*runs))
 
 
 def made_runs(scene: gallery.Scene, runs: Path) -> tuple[list[Made], float]:
