@@ -12,7 +12,7 @@ import pytest
 from verification.harness import run as harness, store
 from verification.harness.run import INTERRUPTED, Job, Outcome, Task, duration, key_of, load_outcome, make, run, side_by_side, time_left
 from verification.tests.cases import wait_for
-from verification.tests.fake_run import program
+from verification.tests.fake_run import SOLVER, program
 
 SCENE = """
 title = "a"
@@ -21,24 +21,10 @@ variants = {one.domain.width_m = 40, two.domain.width_m = 20}
 claim = [{id = "1a"}]
 """
 
-# Stands for the solver: counts its calls and does as the variant says.
-SOLVER = """#!/bin/sh
-echo "$*" >> "$(dirname "$0")/calls"
-[ "$1" = resume ] && out=$2
-while [ $# -gt 0 ]; do case "$1" in --out) out=$2;; --variant) variant=$2;; esac; shift; done
-case "$variant" in
-  two) echo 'the block is a mechanism' >&2; exit 3;;
-  crash) kill -SEGV $$;;
-  long) trap 'echo interrupted; exit 130' INT; touch "$out/scene.toml"; while :; do sleep 0.01; done;;
-  deaf) trap '' INT; touch "$out/scene.toml"; while :; do sleep 0.01; done;;
-esac
-echo '{"status": "completed"}' > "$out/summary.json"
-"""
-
 
 @pytest.fixture()
 def solver(tmp_path: Path) -> Path:
-    return program(tmp_path / "solver" / "strata", SOLVER)
+    return program(tmp_path / "solver" / "strata")
 
 
 @pytest.fixture()

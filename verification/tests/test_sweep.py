@@ -11,6 +11,7 @@ import csv
 import json
 import math
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -238,27 +239,14 @@ def test_the_list_of_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert "explicit/exp3_two_interfaces/perfect" in lines and not any(line.startswith("quasistatic") for line in lines)
 
 
-# Stands for the solver: as long as its variant says, then done, failed, or, of the variant `stuck`, never.
-SOLVER = """#!/bin/sh
-[ "$1" = run ] || exit 1
-while [ $# -gt 0 ]; do case "$1" in --out) out=$2;; --variant) variant=$2;; esac; shift; done
-echo "$variant" >> "$(dirname "$0")/calls"
-case "$variant" in
-  friction) echo '{"reason": "the block is a mechanism"}' > "$out/summary.json"; exit 3;;
-  stuck) trap 'exit 130' INT; touch "$(dirname "$0")/stuck"; while :; do sleep 0.01; done;;
-esac
-cp "$(dirname "$0")"/made/exp/run/* "$out"
-"""
-
-
 @pytest.fixture()
 def campaign(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder for a campaign of a scene of four variants with a program in the solver's place."""
     (tmp_path / "experiments").mkdir()
     text = (EXPERIMENTS / "exp1_single_interface.toml").read_text().partition("[variants.")[0]
     (tmp_path / "experiments" / "exp.toml").write_text(text + "".join(f"[variants.{name}]\n" for name in ("perfect", "friction", "weak")))
-    write_run(tmp_path / "solver" / "made" / "exp" / "run", climb())
-    monkeypatch.setenv("STRATA", str(program(tmp_path / "solver" / "strata", SOLVER)))
+    write_run(tmp_path / "solver" / "made", climb())
+    monkeypatch.setenv("STRATA", str(program(tmp_path / "solver" / "strata")))
     page = tmp_path / "page.py"
     page.write_text("import sys\nfrom pathlib import Path\nPath(sys.argv[-1]).mkdir(exist_ok=True)\n(Path(sys.argv[-1]) / 'index.html').touch()\n")
     monkeypatch.setattr(campaigns, "PAGE", page)
@@ -266,7 +254,7 @@ def campaign(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def calls(campaign: Path) -> list[str]:
-    return (campaign / "solver" / "calls").read_text().split()
+    return re.findall("--variant ([a-z]+)", (campaign / "solver" / "calls").read_text())
 
 
 def reproduce(campaign: Path) -> int:
@@ -301,16 +289,17 @@ def test_a_folder_that_is_no_run_s_fails_that_run_alone(campaign: Path, capsys: 
 def test_an_interrupt_ends_the_campaign_and_a_second_call_goes_on(campaign: Path, capfd: pytest.CaptureFixture[str]) -> None:
     """By a signal to the process, as of a terminal or of `kill`: status 130, no process left, what is done is not run again."""
     scene = campaign / "experiments" / "exp.toml"
-    scene.write_text(scene.read_text().replace("variants.friction", "variants.stuck"))
-    threading.Thread(target=lambda: (wait_for(campaign / "solver" / "stuck"), os.kill(os.getpid(), signal.SIGTERM))).start()
+    scene.write_text(scene.read_text().replace("variants.friction", "variants.long"))
+    long = campaign / "runs" / "explicit" / "exp" / "long"
+    threading.Thread(target=lambda: (wait_for(long / "scene.toml"), os.kill(os.getpid(), signal.SIGTERM))).start()
     with pytest.raises(SystemExit) as how:
         reproduce(campaign)
     assert how.value.code == 130 and "interrupted" in capfd.readouterr().out
-    assert load_outcome(campaign / "runs" / "explicit" / "exp" / "stuck").exit_status == 130  # type: ignore[union-attr]
+    assert load_outcome(long).exit_status == 130  # type: ignore[union-attr]
     assert not (campaign / "out" / "index.html").exists()
-    ended = {name: load_outcome(campaign / "runs" / "explicit" / "exp" / name) for name in ("perfect", "weak")}
+    ended = {name: load_outcome(long.parent / name) for name in ("perfect", "weak")}
     left, before = {name for name, outcome in ended.items() if outcome is None or not outcome.ok}, len(calls(campaign))
-    scene.write_text(scene.read_text().replace("variants.stuck", "variants.other"))
+    scene.write_text(scene.read_text().replace("variants.long", "variants.other"))
     assert reproduce(campaign) == 0
     assert sorted(calls(campaign)[before:]) == sorted({*left, "other"})
 
