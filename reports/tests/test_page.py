@@ -23,30 +23,7 @@ from verification.stability.runner import RECORDS
 
 STUDY_FIGURES = tuple(f"fig{number}" for number in range(1, 9))
 KEPT_FIGURES = ("ablation", "crossing_map", "measured")
-SCENE = "[variants.perfect]\n[variants.weak]\n[variants.uniform]\nfluid.law = 'uniform'\n[variants.flow]\nfluid.law = 'reynolds'\n"
-POINTS = """
-[[point]]
-id = "flow"
-open = "flow law"
-default = "the study's"
-[[point.choice]]
-id = "uniform"
-name = "inlet pressure everywhere"
-runs.exp1_single_interface = {perfect = "uniform"}
-[[point.choice]]
-id = "loaded"
-name = "conserves volume"
-runs.exp1_single_interface = {perfect = "flow"}
-"""
-
-
-def write_scenes(root: Path) -> Path:
-    """A folder with a scene of Experiment 1 and an open point."""
-    folder = root / "scenes"
-    (folder / "choices").mkdir(parents=True)
-    (folder / f"{STEMS[1]}.toml").write_text(SCENE, encoding="utf-8")
-    (folder / "choices" / "points.toml").write_text(POINTS, encoding="utf-8")
-    return folder
+SCENES = Path(__file__).with_name("scenes")  # one of Experiment 1, and an open point
 
 
 def text_of(out: Path, name: str = "index.html") -> str:
@@ -70,7 +47,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for name in ("ladder/gates/heights.json", "ablation/records/exp1_single_interface.soft.json", "measured/records/rubin.json", "crossing_map/records/friction.csv"):
         (root / "kept" / name).parent.mkdir(parents=True)
         shutil.copy(ROOT / "verification" / name, root / "kept" / name)
-    assert make(write_all(root), root / "out", write_scenes(root)) == 0
+    assert make(write_all(root), root / "out", SCENES) == 0
     return root / "out"
 
 
