@@ -1,21 +1,16 @@
 """Energy released by parting an interface on which a fracture ends, and by crossing it, against cracks with kinks made of dislocations; the mechanics without
-inertia: mechanisms, damped motion settling on it, runs that go on (its accuracy is the ladder's)."""
+inertia: mechanisms, damped motion settling on it (its accuracy is the ladder's)."""
 
 import math
-import signal
 import subprocess
-import time
 from functools import cache
-from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
 
-from verification.faults.same import differences
 from verification.harness.load import Run, value
-from verification.harness.paths import ANALYTIC, EXPERIMENTS, solver
-from verification.harness.run import Job, command_of, run
+from verification.harness.paths import ANALYTIC, solver
 from verification.tests.cases import completed, make, rows_of
 
 DEFLECTION = ANALYTIC / "deflection.toml"
@@ -201,30 +196,6 @@ def test_what_moving_points_add_falls_with_the_load() -> None:
         still = displacement(completed(SETTLING, "alone", (load_it, "numerics.mechanics=quasistatic", "stop.time_s=0")))
         shares.append(float(np.abs(moved - still).max() / np.abs(still).max()))
     assert shares[1] < shares[0] / 3.0
-
-
-# Grows from the start, fails columns of the interface and goes on by energy beyond it: a few seconds.
-LONG = ("numerics.mechanics=quasistatic", "fluid.law=uniform", "stop.tip_y_m=20")
-
-
-@pytest.mark.parametrize("name, variant, further", [
-    ("exp1_single_interface", "weak", LONG),
-    ("exp6_stress_reversal", "friction", ("numerics.mechanics=quasistatic",)),
-])  # fmt: skip
-def test_an_interrupted_run_goes_on_to_the_same_digits(tmp_path: Path, name: str, variant: str, further: tuple[str, ...]) -> None:
-    """Mutation that fails with friction: the state is kept as it is after the run itself has started anew from it."""
-    scene = EXPERIMENTS / f"{name}.toml"
-    begun = time.monotonic()
-    assert run(Job(scene, variant, tmp_path / "whole", further)).ok
-    took = time.monotonic() - begun
-    for share in (0.4, 0.6, 0.75):
-        folder = tmp_path / f"cut_{share}"
-        with subprocess.Popen(command_of(Job(scene, variant, folder, further), solver())) as process:
-            time.sleep(share * took)
-            process.send_signal(signal.SIGTERM)
-        assert process.returncode in (0, 130)
-        subprocess.run([str(solver()), "resume", str(folder), "--quiet"], check=True)
-        assert differences(folder, tmp_path / "whole") == []
 
 
 @pytest.mark.slow

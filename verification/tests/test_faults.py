@@ -16,21 +16,34 @@ from pathlib import Path
 import h5py
 import pytest
 
-from verification.faults.__main__ import KILLED, RECORD, campaign, run_words
+from verification.faults.__main__ import EXP1, KILLED, QUASISTATIC, RECORD, campaign, run_words
 from verification.faults.same import differences, torn
-from verification.harness.paths import solver
+from verification.harness.paths import EXPERIMENTS, solver
 from verification.harness.run import Job, ended
 from verification.tests.cases import SCENES, on_terminal, strata, summary_of
 
 LONG = KILLED["explicit updated"]
 
 
-def started(arguments: list[str], file: Path) -> subprocess.Popen[str]:
+# Further ones that are interrupted: interfaces that part and slide on the way.
+GROWING = (
+    Job(EXP1, "weak", Path(), (QUASISTATIC, "fluid.law=uniform", "stop.tip_y_m=20")),
+    Job(EXPERIMENTS / "exp6_stress_reversal.toml", "friction", Path(), (QUASISTATIC,)),
+)
+
+
+def started(arguments: list[str], file: Path, cwd: Path | None = None) -> subprocess.Popen[str]:
     """A run that has begun to write: a file of its folder is there."""
-    process = subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=cwd)
     while not file.exists() and process.poll() is None:
         time.sleep(0.002)
     return process
+
+
+def stopped(process: subprocess.Popen[str], which: signal.Signals) -> str:
+    """What a run says that ends after a signal."""
+    process.send_signal(which)
+    return process.communicate(timeout=60)[1]
 
 
 @pytest.fixture(scope="module")
@@ -39,23 +52,6 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("alone") / "run"
     assert ended(run_words(LONG, folder, 60.0), None) == (0, "")
     return folder
-
-
-def test_a_second_run_is_refused_unless_it_is_to_replace_the_first(tmp_path: Path) -> None:
-    (tmp_path / "block.toml").write_text(
-        '[domain]\nwidth_m = 8\nheight_m = 8\n[rock.r]\nyoungs_modulus_Pa = 10e9\n[strata]\nlayers = [{rock = "r"}]\n'
-        "[numerics]\ncell_m = 1\n[stop]\ntime_s = 0.01\n[variants.longer]\nstop.time_s = 0.02\n"
-    )
-    first = strata(tmp_path, "run", "block.toml", "--out", "X", "--quiet")
-    assert (first.returncode, first.stderr) == (0, "")
-    before = {file.name: file.read_bytes() for file in (tmp_path / "X").iterdir()}
-    second = strata(tmp_path, "run", "block.toml", "--variant", "longer", "--out", "X")
-    assert second.returncode == 2 and all(word in second.stderr for word in ("X: holds a run already", "strata resume X", "--replace", "--out"))
-    assert {file.name: file.read_bytes() for file in (tmp_path / "X").iterdir()} == before
-    assert strata(tmp_path, "resume", "X").returncode == 0
-    assert {file.name: file.read_bytes() for file in (tmp_path / "X").iterdir()} == before
-    assert strata(tmp_path, "run", "block.toml", "--variant", "longer", "--out", "X", "--replace").returncode == 0
-    assert summary_of(tmp_path / "X")["variant"] == "longer"
 
 
 def test_a_folder_in_use_is_refused(tmp_path: Path, alone: Path) -> None:
@@ -156,8 +152,7 @@ def test_a_folder_that_vanishes_ends_the_run(tmp_path: Path, alone: Path, way: s
         folder.rename(tmp_path / "Y")
     else:
         shutil.rmtree(folder)
-    process.send_signal(signal.SIGCONT)
-    said = process.communicate(timeout=60)[1]
+    said = stopped(process, signal.SIGCONT)
     assert process.returncode == 2 and "No such file or directory" in said and "once its folder is there" in said and not folder.exists(), said
     if way == "moved":
         assert torn(tmp_path / "Y") == []
@@ -165,27 +160,31 @@ def test_a_folder_that_vanishes_ends_the_run(tmp_path: Path, alone: Path, way: s
         assert differences(alone, tmp_path / "Y") == []
 
 
-@pytest.mark.parametrize("name, which", [*((name, signal.SIGINT) for name in KILLED), ("quasi-static turning", signal.SIGTERM)])
-def test_a_run_that_is_interrupted_ends_at_once_and_goes_on_to_the_same_digits(tmp_path: Path, name: str, which: signal.Signals) -> None:
+@pytest.mark.parametrize("job, which, shares", [
+    *((job, signal.SIGINT, (0.25,)) for job in KILLED.values()), (KILLED["quasi-static turning"], signal.SIGTERM, (0.25,)),
+    *((job, signal.SIGTERM, (0.4, 0.6, 0.75)) for job in GROWING),
+])  # fmt: skip
+def test_a_run_that_is_interrupted_ends_at_once_and_goes_on_to_the_same_digits(tmp_path: Path, job: Job, which: signal.Signals, shares: tuple[float, ...]) -> None:
+    """After some shares of its time. Mutation that fails with friction: the state is kept as it is after the run itself has started anew from it."""
     folder, whole = tmp_path / "X", tmp_path / "whole"
     begin = time.monotonic()
-    assert ended(run_words(KILLED[name], whole, 60.0), None) == (0, "")
+    assert ended(run_words(job, whole, 60.0), None) == (0, "")
     wall_s = time.monotonic() - begin
-    for wait_s in (wall_s / 4, wall_s / 16, 0.0):  # it may take a fraction now of what it took beside other tests
-        process = started(run_words(KILLED[name], folder, 60.0), folder / "result.h5.fields/00000.h5")  # the interrupt alone writes a checkpoint
-        time.sleep(wait_s)
-        begin = time.monotonic()
-        process.send_signal(which)
-        said = process.communicate(timeout=60)[1]
-        took_s = time.monotonic() - begin
-        if process.returncode != 0:
-            break
-        shutil.rmtree(folder)  # it had ended before
-    assert process.returncode == 130 and "strata resume" in said, said
-    assert took_s < max(2.0, wall_s / 2)  # 2 s; more where others keep the machine busy
-    assert not (folder / "summary.json").exists() and torn(folder) == []
-    assert strata(tmp_path, "resume", str(folder), "--quiet").returncode == 0
-    assert differences(whole, folder) == []
+    for share in shares:
+        for wait_s in (share * wall_s, wall_s / 16, 0.0):  # it may take a fraction now of what it took beside other tests
+            shutil.rmtree(folder, ignore_errors=True)
+            process = started(run_words(job, folder, 60.0), folder / "result.h5.fields/00000.h5")  # the interrupt alone writes a checkpoint
+            time.sleep(wait_s)
+            begin = time.monotonic()
+            said = stopped(process, which)
+            took_s = time.monotonic() - begin
+            if process.returncode != 0:
+                break  # it had not ended before
+        assert process.returncode == 130 and "strata resume" in said, said
+        assert took_s < max(2.0, wall_s / 2)  # 2 s; more where others keep the machine busy
+        assert not (folder / "summary.json").exists() and torn(folder) == []
+        assert strata(tmp_path, "resume", str(folder), "--quiet").returncode == 0
+        assert differences(whole, folder) == []
 
 
 def test_a_signal_before_the_first_step_ends_the_process(tmp_path: Path) -> None:
@@ -193,8 +192,7 @@ def test_a_signal_before_the_first_step_ends_the_process(tmp_path: Path) -> None
     folder = tmp_path / "X"
     process = started([*run_words(KILLED["quasi-static paper"], folder, 60.0), "--set", "numerics.cell_m=0.25"], folder / "scene.toml")
     begin = time.monotonic()
-    process.send_signal(signal.SIGINT)
-    said = process.communicate(timeout=60)[1]
+    said = stopped(process, signal.SIGINT)
     assert process.returncode == 130 and "interrupted" in said and time.monotonic() - begin < 1.0, said
 
 
@@ -243,7 +241,7 @@ def test_an_error_output_that_takes_nothing_changes_no_exit_status(tmp_path: Pat
     assert torn(tmp_path / "X") == [] and summary_of(tmp_path / "X")["status"] == "completed"
 
 
-BLOCK = (SCENES / "block.toml").read_text(encoding="utf-8")
+BLOCK = SCENES / "block.toml"
 
 
 def content(folder: Path) -> dict[str, bytes]:
@@ -254,10 +252,19 @@ def content(folder: Path) -> dict[str, bytes]:
 def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     """A run that has ended, and what it said."""
     folder = tmp_path_factory.mktemp("whole")
-    (folder / "block.toml").write_text(BLOCK)
-    done = strata(folder, "run", "block.toml", "--out", "X")
+    done = strata(folder, "run", BLOCK, "--out", "X")
     assert (done.returncode, done.stdout) == (0, "")
     return folder / "X", done.stderr
+
+
+def test_a_second_run_is_refused_unless_it_is_to_replace_the_first(tmp_path: Path, whole: tuple[Path, str]) -> None:
+    shutil.copytree(whole[0], tmp_path / "X")
+    other = ("run", BLOCK, "--variant", "explicit", "--out", "X")
+    second = strata(tmp_path, *other)
+    assert second.returncode == 2 and all(word in second.stderr for word in ("X: holds a run already", "strata resume X", "--replace", "--out"))
+    assert content(tmp_path / "X") == content(whole[0])
+    assert strata(tmp_path, *other, "--replace").returncode == 0
+    assert summary_of(tmp_path / "X")["variant"] == "explicit"
 
 
 def test_a_run_ends_with_five_lines(whole: tuple[Path, str]) -> None:
@@ -278,15 +285,13 @@ def test_a_run_ends_with_five_lines(whole: tuple[Path, str]) -> None:
 
 
 def test_quiet_is_quiet(tmp_path: Path) -> None:
-    (tmp_path / "block.toml").write_text(BLOCK)
-    for arguments in (("run", "block.toml", "--out", "X", "--quiet"), ("resume", "X", "--quiet")):
+    for arguments in (("run", BLOCK, "--out", "X", "--quiet"), ("resume", "X", "--quiet")):
         done = strata(tmp_path, *arguments)
         assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
 def test_a_run_that_fails_says_so_in_its_first_line(tmp_path: Path) -> None:
-    (tmp_path / "block.toml").write_text(BLOCK)
-    done = strata(tmp_path, "run", "block.toml", "--variant", "mechanism", "--out", "X")
+    done = strata(tmp_path, "run", BLOCK, "--variant", "mechanism", "--out", "X")
     assert done.returncode == 3, done.stderr
     reason, lines = summary_of(tmp_path / "X")["reason"], done.stderr.splitlines()
     assert next(line for line in lines if line.startswith("failed at step ")).endswith(reason) and done.stderr.count(reason) == 1
@@ -295,13 +300,9 @@ def test_a_run_that_fails_says_so_in_its_first_line(tmp_path: Path) -> None:
 
 def interrupted_in(folder: Path) -> str:
     """Make folder/X a run that was interrupted after its first output; what it said."""
-    (folder / "block.toml").write_text(BLOCK)
-    arguments = [str(solver()), "run", "block.toml", "--variant", "explicit", "--out", "X", "--threads", "1"]
-    process, history = subprocess.Popen(arguments, cwd=folder, stderr=subprocess.PIPE, text=True), folder / "X" / "history.csv"
-    while process.poll() is None and (not history.exists() or history.read_text().count("\n") < 2):
-        time.sleep(0.002)
-    process.send_signal(signal.SIGINT)
-    said = process.communicate(timeout=60)[1]
+    arguments = [str(solver()), "run", str(BLOCK), "--variant", "explicit", "--out", "X", "--threads", "1"]
+    process = started(arguments, folder / "X/result.h5.fields/00000.h5", folder)
+    said = stopped(process, signal.SIGINT)
     assert process.returncode == 130, said
     return said
 
@@ -369,7 +370,7 @@ def test_another_version_is_named(tmp_path: Path) -> None:
     assert done.returncode == 0 and "X: begun by strata 0.0.1, goes on with " in done.stderr
 
 
-WRONG = BLOCK.replace("height_m", "heigth_m").replace("10.0e9", "-10.0e9").replace('"quasistatic"', '"quasistatc"')
+WRONG = BLOCK.read_text(encoding="utf-8").replace("height_m", "heigth_m").replace("10.0e9", "-10.0e9").replace('"quasistatic"', '"quasistatc"')
 COLOUR = re.compile(r"\x1b\[(\d+)m(.*?)\x1b\[0m")
 PARTS = {"31": "place", "1": "key", "33": "value", "32": "suggestion"}
 
@@ -396,11 +397,10 @@ def test_an_error_has_its_parts_in_colours(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("variant", "how"), [([], ("32", "completed")), (["--variant", "mechanism"], ("31", "failed"))])
 def test_how_a_run_ended_has_a_colour(variant: list[str], how: tuple[str, str], tmp_path: Path) -> None:
     """Green or red, with no letter changed; --quiet shows nothing of a run that completes, on a terminal either."""
-    (tmp_path / "s.toml").write_text(BLOCK)
-    text = shown(tmp_path, "run", "s.toml", *variant, "--out", "X")
+    text = shown(tmp_path, "run", str(BLOCK), *variant, "--out", "X")
     assert COLOUR.findall(text)[0] == how and re.search(f"^{how[1]} at step ", COLOUR.sub(r"\2", text), re.MULTILINE)
     assert {part for _, part in COLOUR.findall(text)} <= {how[1], "SUSPECT"}
-    assert "\x1b" not in shown(tmp_path, "run", "s.toml", *variant, "--out", "Y", "--quiet")
+    assert "\x1b" not in shown(tmp_path, "run", str(BLOCK), *variant, "--out", "Y", "--quiet")
 
 
 @pytest.mark.parametrize(("environment", "coloured"), [({}, True), ({"NO_COLOR": "1"}, False), ({"NO_COLOR": ""}, True), ({"TERM": "dumb"}, False)])
