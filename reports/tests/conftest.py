@@ -1,8 +1,3 @@
-"""Settings of these tests."""
+"""Keeps tests to themselves."""
 
-import sys
-from pathlib import Path
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-
-import verification.harness.hermetic  # noqa: E402, F401  (before anything that reads the environment)
+import verification.harness.hermetic  # noqa: F401  (before anything that reads the environment)
