@@ -182,13 +182,10 @@ def test_paraview_says_what_is_not_there(tmp_path: Path) -> None:
         assert done.returncode == 1 and why in done.stderr
 
 
-QUASISTATIC = ("numerics.cell_m=2", "fracture.increment_m=2", "numerics.mechanics=quasistatic", "stop.tip_y_m=20")
-
-
 @pytest.fixture(scope="module")
 def soft() -> Run:
     """A short run with a fracture, its flow and a soft interface."""
-    return completed(EXPERIMENTS / "exp1_single_interface.toml", "soft", QUASISTATIC)
+    return completed(*KINDS["paper"])
 
 
 def test_history_has_units_and_descriptions(soft: Run) -> None:
