@@ -15,17 +15,7 @@ OPEN = "return document.querySelectorAll('details').forEach(one => one.open = tr
 IMAGES = "return Promise.all([...document.images].map(one => one.decode().then(() => '', () => one.currentSrc))).then(all => all.filter(one => one))"
 LINKS = "return [...document.querySelectorAll('a[href]')].map(one => one.href)"
 WIDER = "return document.documentElement.scrollWidth > window.innerWidth ? document.documentElement.scrollWidth : 0"
-# Texts of less than 4.5 times the contrast of their ground (WCAG 2.1, 1.4.3), without transparency.
-PALE = """return (() => {
-  const numbers = colour => colour.match(/[\\d.]+/g).map(Number);
-  const light = ([r, g, b]) => [r, g, b].map(c => c / 255).map(c => c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4)
-    .reduce((sum, c, k) => sum + c * [0.2126, 0.7152, 0.0722][k], 0);
-  const ground = one => { for (; one; one = one.parentElement) { const found = numbers(getComputedStyle(one).backgroundColor); if (found[3] !== 0) return found; } return [255, 255, 255]; };
-  const pale = [...document.querySelectorAll('body *')].filter(one => [...one.childNodes].some(node => node.nodeType === 3 && node.data.trim())).filter(one => {
-    const [a, b] = [light(numbers(getComputedStyle(one).color)), light(ground(one))].sort((x, y) => y - x);
-    return (a + 0.05) / (b + 0.05) < 4.5; });
-  return [...new Set(pale.map(one => one.tagName + '.' + one.className))]; })()"""
-
+PALE = Path(__file__).with_name("pale.js").read_text(encoding="utf-8")
 
 
 def started(profile: Path) -> Chrome:
