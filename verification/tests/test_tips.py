@@ -23,11 +23,19 @@ def K_of_ends(variant: str, settings: tuple[str, ...] = ()) -> tuple[float, floa
 
 
 def test_K_under_the_weight_of_resting_fluid() -> None:
-    """sqrt(pi a) (p +- rho g a/2): their mean to 0.2 %, their difference, all of it the weight's, to 1 %; the volume is the weightless one's."""
+    """sqrt(pi a) (p +- rho g a/2), the sum at the lower tip: 1.9563 and 1.4067 MPa sqrt(m). Their mean to 0.2 %, their difference, all of it the weight's,
+    to 1 %, in the summary and in the history, where K_II is none of it and J K^2/E'; the volume is the weightless one's."""
     lower, upper = K_of_ends("")
     scale = math.sqrt(math.pi * half)
+    assert (scale * (net + 0.5 * rho_g * half), scale * (net - 0.5 * rho_g * half)) == pytest.approx((1.9563e6, 1.4067e6), rel=1e-4)
     assert 0.5 * (lower + upper) == pytest.approx(scale * net, rel=2e-3)
     assert lower - upper == pytest.approx(scale * rho_g * half, rel=1e-2)
+    row = {name: values[-1] for name, values in completed(SCENE).history.items()}
+    assert (row["lower_tip_K_I_Pa_sqrt_m"], row["K_I_Pa_sqrt_m"]) == pytest.approx((lower, upper), rel=1e-6)
+    assert abs(row["lower_tip_K_II_Pa_sqrt_m"]) < 1e-6 * upper
+    assert row["lower_tip_J_N_m"] == pytest.approx(lower**2 / (10e9 / 0.96), rel=2e-2)  # J of the upper tip is half as large
+    assert (row["tip_y_m"], row["lower_tip_y_m"]) == pytest.approx((34.0, 14.0), abs=1e-9)
+    assert (row["lower_tip_x_m"], row["lower_tip_near"]) == (pytest.approx(row["tip_x_m"]), 0.0)
     heavy, light = completed(SCENE).summary, completed(SCENE, "", WEIGHTLESS).summary
     assert heavy.fracture_volume_m2 == pytest.approx(light.fracture_volume_m2, rel=1e-9)
     # Clapeyron: half of int p w ds, of which the odd part of p adds to the energy: pi a^4 (rho g)^2/(8 E') for both faces' ends.
@@ -63,22 +71,8 @@ def test_with_inertia_it_comes_to_rest_at_the_same_K() -> None:
     assert moved == pytest.approx(still, rel=1e-2) and moved[0] > 1.2 * moved[1]
 
 
-NO_WEIGHT = "fluid.density_kg_m3=0"
 GROWS = SCENE.read_text(encoding="utf-8").replace('growth = "none"', 'growth = "J"').replace("time_s = 0\n", "lower_tip_y_m = 11\n")
-RISES = (NO_WEIGHT, "fluid.inlet={start_Pa=20.1e6, rate_Pa_s=1e5}", "numerics.far_cell_m=2")
-
-
-def test_K_of_both_tips_under_the_weight_of_the_fluid() -> None:
-    """sqrt(pi a) (p +- rho g a/2), the sum at the lower tip: 1.9563 and 1.4067 MPa sqrt(m), to 0.5 %; K_II is none of it."""
-    row = {name: values[-1] for name, values in completed(SCENE).history.items()}
-    by_weight = {sign: math.sqrt(math.pi * 10.0) * (0.3e6 + sign * 9806.65 * 5.0) for sign in (1.0, -1.0)}
-    assert (by_weight[1.0], by_weight[-1.0]) == pytest.approx((1.9563e6, 1.4067e6), rel=1e-4)
-    assert row["lower_tip_K_I_Pa_sqrt_m"] == pytest.approx(by_weight[1.0], rel=5e-3)
-    assert row["K_I_Pa_sqrt_m"] == pytest.approx(by_weight[-1.0], rel=5e-3)
-    assert abs(row["lower_tip_K_II_Pa_sqrt_m"]) < 1e-6 * row["K_I_Pa_sqrt_m"]
-    assert (row["tip_y_m"], row["lower_tip_y_m"]) == pytest.approx((34.0, 14.0), abs=1e-9)
-    assert row["lower_tip_J_N_m"] == pytest.approx(by_weight[1.0] ** 2 / (10e9 / 0.96), rel=2e-2)  # K^2/E'; J of the upper tip is half as large
-    assert (row["lower_tip_x_m"], row["lower_tip_near"]) == (pytest.approx(row["tip_x_m"]), 0.0)
+RISES = (*WEIGHTLESS, "fluid.inlet={start_Pa=20.1e6, rate_Pa_s=1e5}", "numerics.far_cell_m=2")
 
 
 def test_a_symmetric_fracture_has_two_equal_tips_and_stops_by_the_lower_one(tmp_path: Path) -> None:
@@ -95,20 +89,16 @@ def test_a_symmetric_fracture_has_two_equal_tips_and_stops_by_the_lower_one(tmp_
     assert 0.5e6 < min(history["K_I_Pa_sqrt_m"]) < 0.6e6
     assert history["lower_tip_y_m"] == pytest.approx(48.0 - history["tip_y_m"], abs=1e-9)
     assert history["lower_tip_y_m"][0] == pytest.approx(14.0) and history["lower_tip_y_m"][-1] <= 11.001
-    sheared = completed(SCENE, "", (NO_WEIGHT, "in_situ.shear_Pa=1e5")).history
+    sheared = completed(SCENE, "", (*WEIGHTLESS, "in_situ.shear_Pa=1e5")).history
     assert sheared["lower_tip_K_II_Pa_sqrt_m"] == pytest.approx(sheared["K_II_Pa_sqrt_m"], rel=1e-9)
     assert abs(sheared["K_II_Pa_sqrt_m"][-1]) == pytest.approx(1e5 * math.sqrt(math.pi * 10.0), rel=5e-3)
 
 
-@pytest.mark.parametrize(
-    ("settings", "said"),
-    [
-        (("stop.lower_tip_y_m=14",), "stop.lower_tip_y_m = 14 ends the run before it starts: the lower tip is at y = 14 m"),
-        (("domain.bottom=symmetry", "fracture.path_m=[[24, 0], [24, 5]]"), "stop.lower_tip_y_m = 11 is never reached: the fracture begins on the symmetry line"),
-        (("fracture.growth=none",), "stop.lower_tip_y_m = 11 is never reached: the fracture does not grow"),
-        (("fluid.inlet.rate_Pa_s=0",), "the run could never end"),
-    ],
-)
+@pytest.mark.parametrize(("settings", "said"), [
+    (("stop.lower_tip_y_m=14",), "stop.lower_tip_y_m = 14 ends the run before it starts: the lower tip is at y = 14 m"),
+    (("domain.bottom=symmetry", "fracture.path_m=[[24, 0], [24, 5]]"), "stop.lower_tip_y_m = 11 is never reached: the fracture begins on the symmetry line"),
+    (("fracture.growth=none",), "stop.lower_tip_y_m = 11 is never reached: the fracture does not grow"), (("fluid.inlet.rate_Pa_s=0",), "the run could never end"),
+])  # fmt: skip
 def test_what_is_refused(tmp_path: Path, settings: tuple[str, ...], said: str) -> None:
     (tmp_path / "scene.toml").write_text(GROWS, encoding="utf-8")
     done = strata(tmp_path, "resolve", "scene.toml", *(word for one in (*RISES, *settings) for word in ("--set", one)))
@@ -134,7 +124,7 @@ def test_a_run_tells_its_two_tips_apart(tmp_path: Path) -> None:
     level = ("in_situ.vertical_Pa=20e6", "stop.time_s=0", "fluid.inlet.rate_Pa_s=0")
     for name, path in (("a", "[[14, 24], [34, 24]]"), ("b", "[[34, 24], [14, 24]]")):
         (tmp_path / name).mkdir()
-        assert run_in(tmp_path / name, SCENE.read_text(encoding="utf-8"), NO_WEIGHT, *level, f"fracture.path_m={path}").returncode == 0
+        assert run_in(tmp_path / name, SCENE.read_text(encoding="utf-8"), *WEIGHTLESS, *level, f"fracture.path_m={path}").returncode == 0
         assert {(tip["tip"], round(tip["x_m"])) for tip in summary_of(tmp_path / name / "X")["tips"]} == {("left", 14), ("right", 34)}
 
 
