@@ -7,6 +7,7 @@ import os
 import pty
 import select
 import subprocess
+import textwrap
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,6 +20,11 @@ from verification.harness.run import Job, Outcome, claimed, run
 
 RUNS = paths.RUNS / "tests"
 SCENES = Path(__file__).parent / "scenes"
+
+
+def first_scene(readme: Path = paths.ROOT / "README.md") -> str:
+    """The first scene of a README."""
+    return textwrap.dedent(next(part for part in readme.read_text(encoding="utf-8").split("\n\n") if part.startswith('    title = "My first'))) + "\n"
 
 
 def make(scene: Path, variant: str = "", settings: tuple[str, ...] = ()) -> tuple[Outcome, Path]:

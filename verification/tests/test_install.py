@@ -12,9 +12,10 @@ import pytest
 from verification.harness import paths
 from verification.harness.paths import EXPERIMENTS, ROOT, solver
 from verification.harness.run import claimed
-from verification.tests.cases import on_terminal, summary_of
+from verification.tests.cases import first_scene, on_terminal, summary_of
 
 TREE = paths.RUNS / "moved tree"
+README = TREE / "share/doc/strata/README.md"
 
 
 @pytest.fixture(scope="module")
@@ -38,12 +39,6 @@ def block(document: Path, language: str) -> str:
     return found[1]
 
 
-def first_scene(tree: Path) -> str:
-    """The scene of the README that is in the tree."""
-    lines = (tree / "share/doc/strata/README.md").read_text().split("\n\n")
-    return next(part for part in lines if part.startswith('    title = "My first')).replace("\n    ", "\n").strip() + "\n"
-
-
 def run(command: list[str | Path], folder: Path) -> str:
     """What a program says that has to succeed."""
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
@@ -53,7 +48,7 @@ def run(command: list[str | Path], folder: Path) -> str:
 
 def test_a_moved_tree_is_whole(tree: Path, tmp_path: Path) -> None:
     """The README's scene runs, the experiments and the gallery are read, a reference answers; no file knows a folder of this machine."""
-    (tmp_path / "mine.toml").write_text(first_scene(tree))
+    (tmp_path / "mine.toml").write_text(first_scene(README))
     run([tree / "bin/strata", "run", "mine.toml", "--out", "X", "--quiet"], tmp_path)
     assert summary_of(tmp_path / "X")["status"] == "completed"
     scenes = sorted((tree / "share/strata").glob("*/*.toml"))
@@ -77,7 +72,7 @@ def test_manuals_say_what_the_help_says(tree: Path, tmp_path: Path) -> None:
 @pytest.fixture()
 def shell(tree: Path, tmp_path: Path) -> Path:
     """A folder with a scene, a log and a run, and the commands that set up completion there."""
-    (tmp_path / "mine.toml").write_text(first_scene(tree) + "[interface.bedding]\nlaw = 'soft'\n")
+    (tmp_path / "mine.toml").write_text(first_scene(README) + "[interface.bedding]\nlaw = 'soft'\n")
     (tmp_path / "well.csv").touch()
     (tmp_path / "done").mkdir()
     (tmp_path / "rc").write_text(f"PATH={shlex.quote(str(tree / 'bin'))}:$PATH\nPS1='$ '\n. {shlex.quote(str(tree / 'share/bash-completion/completions/strata'))}\n")
@@ -134,13 +129,13 @@ def test_another_project_finds_the_library(tree: Path, tmp_path: Path) -> None:
     """The program of solver/README.md, built against the tree: by linear elasticity the net pressure at the start is proportional to the toughness."""
     for name, language in (("start.cpp", "cpp"), ("CMakeLists.txt", "cmake")):
         (tmp_path / name).write_text(block(ROOT / "solver" / "README.md", language))
-    (tmp_path / "mine.toml").write_text(first_scene(tree))
+    (tmp_path / "mine.toml").write_text(first_scene(README))
     run(["cmake", "-G", "Ninja", "-S", ".", "-B", "build", f"-DCMAKE_PREFIX_PATH={tree}"], tmp_path)
     run(["cmake", "--build", "build"], tmp_path)
     found = [tuple(map(float, line.split())) for line in run(["build/start", "mine.toml"], tmp_path).splitlines()]
     net_Pa = [inlet - 2e6 for _, inlet in found]
     assert [toughness for toughness, _ in found] == [1.0e6, 1.5e6, 2.0e6] and net_Pa[0] > 1e5
     assert net_Pa[1] / net_Pa[0] == pytest.approx(1.5, rel=1e-6) and net_Pa[2] / net_Pa[0] == pytest.approx(2.0, rel=1e-6)
-    (tmp_path / "mine.toml").write_text(first_scene(tree).replace("width_m = 20", "width_m = -20"))
+    (tmp_path / "mine.toml").write_text(first_scene(README).replace("width_m = 20", "width_m = -20"))
     refused = subprocess.run(["build/start", "mine.toml"], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert refused.returncode == 2 and "width_m = -20 is outside (0, inf)" in refused.stderr
