@@ -18,7 +18,14 @@ using Path = std::vector<Point>;
 
 constexpr double standard_gravity = 9.80665;  // m/s^2
 
-// Beside each enumeration stand the words that a scene has for its values, in their order.
+// An enumeration of a structure, whose values have their names in a scene. Where they cannot, words() gives the words
+// of the scene in their order.
+#define STRATA_ENUM(Enum, ...)                    \
+  enum class Enum { __VA_ARGS__ };                \
+  friend constexpr std::string_view words(Enum) { \
+    return #__VA_ARGS__;                          \
+  }
+
 enum class Edge { symmetry, fixed, traction };
 constexpr std::string_view words(Edge) {
   return "symmetry, fixed, traction";
@@ -62,8 +69,7 @@ struct Domain {
 };
 
 struct InSitu {
-  enum class Initialise { uniform, loaded };
-  friend constexpr std::string_view words(Initialise) { return "uniform, loaded"; }
+  STRATA_ENUM(Initialise, uniform, loaded);
   Field vertical_Pa;  // see in_situ.hpp
   Field horizontal_Pa;
   Initialise initialise = Initialise::uniform;
@@ -96,10 +102,8 @@ struct Rock {
 
 // The law of an interface between two layers. Members of other laws keep their defaults and are not used.
 struct InterfaceLaw {
-  enum class Kind { perfect, friction, weak, soft };
-  friend constexpr std::string_view words(Kind) { return "perfect, friction, weak, soft"; }
-  enum class Compression { contact, spring };
-  friend constexpr std::string_view words(Compression) { return "contact, spring"; }
+  STRATA_ENUM(Kind, perfect, friction, weak, soft);
+  STRATA_ENUM(Compression, contact, spring);
   std::string name = "perfect";
   Kind kind = Kind::perfect;
   double coefficient = 0.6;                  // friction
@@ -162,8 +166,7 @@ struct InterfacePlace {
 };
 
 struct Strata {
-  enum class Along { x, y };
-  friend constexpr std::string_view words(Along) { return "x, y"; }
+  STRATA_ENUM(Along, x, y);
   Along along = Along::y;
   std::vector<Layer> layers;
   std::vector<InterfacePlace> interfaces;  // layers.size() - 1 of them
@@ -171,16 +174,11 @@ struct Strata {
 };
 
 struct Fracture {
-  enum class Growth { none, J, energy };
-  friend constexpr std::string_view words(Growth) { return "none, J, energy"; }
-  enum class Direction { straight, max_hoop };
-  friend constexpr std::string_view words(Direction) { return "straight, max_hoop"; }
-  enum class Crossing { J, energy };
-  friend constexpr std::string_view words(Crossing) { return "J, energy"; }
-  enum class Order { interfaces, larger_margin };
-  friend constexpr std::string_view words(Order) { return "interfaces, larger_margin"; }
-  enum class Faces { contact, free };
-  friend constexpr std::string_view words(Faces) { return "contact, free"; }
+  STRATA_ENUM(Growth, none, J, energy);
+  STRATA_ENUM(Direction, straight, max_hoop);
+  STRATA_ENUM(Crossing, J, energy);
+  STRATA_ENUM(Order, interfaces, larger_margin);
+  STRATA_ENUM(Faces, contact, free);
   Path path_m;  // an end on the symmetry line comes first
   Growth growth = Growth::J;
   double increment_m = 1.0;
@@ -197,10 +195,8 @@ struct Fracture {
 };
 
 struct Fluid {
-  enum class Law { uniform, paper, reynolds };
-  friend constexpr std::string_view words(Law) { return "uniform, paper, reynolds"; }
-  enum class NewPoint { dry, inherit };
-  friend constexpr std::string_view words(NewPoint) { return "dry, inherit"; }
+  STRATA_ENUM(Law, uniform, paper, reynolds);
+  STRATA_ENUM(NewPoint, dry, inherit);
   enum class TimeRule { trapezoid, backward_euler, explicit_euler };
   friend constexpr std::string_view words(TimeRule) { return "trapezoid, backward-euler, explicit"; }
   Law law = Law::paper;
@@ -212,8 +208,7 @@ struct Fluid {
   std::optional<double> rate_m2_s;  // instead of a pressure: what the whole fracture is fed
   // Or either of them by rows of time (s) and value, linear between, the last one held; start_Pa or rate_m2_s is then
   // the first one. Empty: none.
-  enum class TableOf { rate_m2_s, pressure_Pa };
-  friend constexpr std::string_view words(TableOf) { return "rate_m2_s, pressure_Pa"; }
+  STRATA_ENUM(TableOf, rate_m2_s, pressure_Pa);
   Path table;
   TableOf table_of = TableOf::rate_m2_s;
   double cavitation_Pa = 0.0;  // absolute lower bound of the fluid pressure
@@ -239,14 +234,10 @@ struct Fluid {
 struct Numerics {
   enum class Mechanics { explicit_dynamics, quasistatic };
   friend constexpr std::string_view words(Mechanics) { return "explicit, quasistatic"; }
-  enum class Shape { bspline2, linear, gimp };
-  friend constexpr std::string_view words(Shape) { return "bspline2, linear, gimp"; }
-  enum class Transfer { flip, pic, xpic2 };
-  friend constexpr std::string_view words(Transfer) { return "flip, pic, xpic2"; }
-  enum class Kinematics { updated, total };
-  friend constexpr std::string_view words(Kinematics) { return "updated, total"; }
-  enum class Kernels { fast, plain };
-  friend constexpr std::string_view words(Kernels) { return "fast, plain"; }
+  STRATA_ENUM(Shape, bspline2, linear, gimp);
+  STRATA_ENUM(Transfer, flip, pic, xpic2);
+  STRATA_ENUM(Kinematics, updated, total);
+  STRATA_ENUM(Kernels, fast, plain);
   Mechanics mechanics = Mechanics::explicit_dynamics;
   Kinematics kinematics = Kinematics::updated;
   Kernels kernels = Kernels::fast;
@@ -340,5 +331,7 @@ struct Scene {
   double stacking(const auto& x) const { return strata.along == Strata::Along::y ? x[1] : x[0]; }
   bool operator==(const Scene&) const = default;
 };
+
+#undef STRATA_ENUM
 
 }  // namespace strata
