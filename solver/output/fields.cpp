@@ -230,7 +230,7 @@ void gather_fields(const RunFolder& folder, const std::vector<HistoryColumn>& co
   };
   const auto copy_fields = [&](const H5::Group& file) {
     for (std::size_t k = 0; k < times.size(); ++k) {
-      hdf5::read_file(folder.fields(k), [&](const H5::Group& fields) {
+      hdf5::use_file(folder.fields(k), H5F_ACC_RDONLY, [&](const H5::Group& fields) {
         for (const std::string& kind : hdf5::names(fields)) hdf5::copy(fields, group_of(kind.c_str(), k), file);
       });
     }
@@ -244,10 +244,10 @@ void gather_fields(const RunFolder& folder, const std::vector<HistoryColumn>& co
       if (!gone) room += size;
     }
     take_room(beside, room);
-    hdf5::change_in_place(beside, copy_fields);
+    hdf5::use_file(beside, H5F_ACC_RDWR, copy_fields);
   });
-  hdf5::read_file(folder.result(),
-                  [&](const H5::Group& file) { atomic_write(folder.xdmf(), xdmf_text(file, times), Sync::no); });
+  hdf5::use_file(folder.result(), H5F_ACC_RDONLY,
+                 [&](const H5::Group& file) { atomic_write(folder.xdmf(), xdmf_text(file, times), Sync::no); });
 }
 
 MadeWith made_with(const RunFolder& folder) {
@@ -255,7 +255,7 @@ MadeWith made_with(const RunFolder& folder) {
   for (const std::filesystem::path& path : {folder.fields(0), folder.result()}) {
     try {
       if (made.version.empty())
-        hdf5::read_file(path, [&](const H5::H5Object& file) {
+        hdf5::use_file(path, H5F_ACC_RDONLY, [&](const H5::H5Object& file) {
           made = {hdf5::text_attribute(file, "scene"), hdf5::text_attribute(file, "version")};
         });
     } catch (const OutputFailure&) {  // is not there, or says nothing

@@ -40,22 +40,6 @@ void telling(const std::filesystem::path& file, const std::function<void()>& act
   }
 }
 
-void in_place(const std::filesystem::path& file, unsigned how, const Use& use) {
-  telling(file, [&] {
-    const H5::FileAccPropList access;
-    access.setFileLocking(false, true);
-    H5AC_cache_config_t known{};  // what the library knows of the file: 2 MB of it and more, if it may
-    known.version = H5AC__CURR_CACHE_CONFIG_VERSION;
-    require(H5Pget_mdc_config(access.getId(), &known));
-    known.set_initial_size = true;
-    known.initial_size = known.min_size = known.max_size = std::size_t{1} << 15U;
-    require(H5Pset_mdc_config(access.getId(), &known));
-    const H5::H5File opened(file.c_str(), how, H5::FileCreatPropList::DEFAULT, access);
-    use(opened);
-    opened.flush(H5F_SCOPE_GLOBAL);
-  });
-}
-
 // Makes the groups above what is made.
 H5::LinkCreatPropList with_groups() {
   H5::LinkCreatPropList links;
@@ -81,12 +65,20 @@ H5::DataSet make(const H5::Group& parent, Text path, const H5::DataType& type, c
 
 }  // namespace
 
-void read_file(const std::filesystem::path& file, const Use& use) {
-  in_place(file, H5F_ACC_RDONLY, use);
-}
-
-void change_in_place(const std::filesystem::path& file, const Use& use) {
-  in_place(file, H5F_ACC_RDWR, use);
+void use_file(const std::filesystem::path& file, unsigned how, const Use& use) {
+  telling(file, [&] {
+    const H5::FileAccPropList access;
+    access.setFileLocking(false, true);
+    H5AC_cache_config_t known{};  // what the library knows of the file: 2 MB of it and more, if it may
+    known.version = H5AC__CURR_CACHE_CONFIG_VERSION;
+    require(H5Pget_mdc_config(access.getId(), &known));
+    known.set_initial_size = true;
+    known.initial_size = known.min_size = known.max_size = std::size_t{1} << 15U;
+    require(H5Pset_mdc_config(access.getId(), &known));
+    const H5::H5File opened(file.c_str(), how, H5::FileCreatPropList::DEFAULT, access);
+    use(opened);
+    opened.flush(H5F_SCOPE_GLOBAL);
+  });
 }
 
 void write_file(const std::filesystem::path& file, const Use& use) {

@@ -14,15 +14,13 @@ namespace strata::hdf5 {
 // and the library's cause.
 using Use = std::function<void(const H5::H5File& file)>;
 
-/// Reads `file`. No lock is taken, so that a reader cannot stop a run.
-void read_file(const std::filesystem::path& file, const Use& use);
-
 /// Makes `file` in memory and writes it in one piece; what was there stays where that fails.
 void write_file(const std::filesystem::path& file, const Use& use);
 
-/// Adds to `file` where it lies, for what is too large for memory: a process that is killed meanwhile leaves it torn.
-/// What is written must have its room on the disc already.
-void change_in_place(const std::filesystem::path& file, const Use& use);
+/// Uses `file` where it lies, without a lock, so that a reader cannot stop a run. how: H5F_ACC_RDONLY, or H5F_ACC_RDWR
+/// to add what is too large for memory. That must have its room on the disc already, and a process that is killed
+/// meanwhile leaves the file torn.
+void use_file(const std::filesystem::path& file, unsigned how, const Use& use);
 
 /// Makes a group, with those above it.
 H5::Group make_group(const H5::Group& parent, const std::string& path);
