@@ -1,11 +1,11 @@
 #include "output/summary.hpp"
 
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "output/history.hpp"
 #include "output/suspect.hpp"
+#include "scene/derived.hpp"
 
 namespace strata {
 namespace {
@@ -94,16 +94,6 @@ Json suspect_json(const std::vector<Watched>& marks) {
   return list;
 }
 
-// Largest memory this process has held (MB of 1e6 bytes), nan where the system does not tell.
-double peak_memory_MB() {
-  std::ifstream status("/proc/self/status");
-  for (std::string word; status >> word;) {
-    double kibibytes = 0.0;
-    if (word == "VmHWM:" && status >> kibibytes) return kibibytes * 1024.0 / 1e6;
-  }
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
 }  // namespace
 
 std::string version() {
@@ -125,7 +115,8 @@ std::string summary_json(const Scene& scene, const State& state, const RunRecord
   summary["inlet_Pa"] = state.has_fracture ? state.fluid.inlet_Pa : 0.0;
   summary["wall_s"] = record.wall_s;
   summary["particle_steps_per_s"] = record.particle_steps / record.wall_s;
-  summary["peak_memory_MB"] = peak_memory_MB();
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  summary["peak_memory_MB"] = bytes_by_system("/proc/self/status", "VmHWM:", none) / 1e6;
   summary["version"] = version();
   summary["threads"] = record.threads;
   summary["energy"] = energy_json(state.ledger);

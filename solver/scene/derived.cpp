@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <limits>
-#include <string_view>
 
 #include "scene/graded_cells.hpp"
 #include "scene/in_situ.hpp"
@@ -232,13 +230,17 @@ std::optional<std::string> too_large(const Scene& scene, double available) {
       cells_along(scene, 0) * cells_along(scene, 1), scene.numerics.cell_m, 1e-9 * need, 1e-9 * available);
 }
 
-double available_memory() {
-  std::ifstream file("/proc/meminfo");
-  for (std::string line; std::getline(file, line);) {
-    constexpr std::string_view name = "MemAvailable:";
-    if (line.starts_with(name)) return 1024.0 * std::strtod(line.c_str() + name.size(), nullptr);  // given in kB
+double bytes_by_system(const char* file, std::string_view name, double otherwise) {
+  std::ifstream in(file);
+  for (std::string word; in >> word;) {
+    double kibibytes = 0.0;
+    if (word == name && in >> kibibytes) return 1024.0 * kibibytes;
   }
-  return std::numeric_limits<double>::infinity();
+  return otherwise;
+}
+
+double available_memory() {
+  return bytes_by_system("/proc/meminfo", "MemAvailable:", std::numeric_limits<double>::infinity());
 }
 
 }  // namespace strata

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -58,6 +59,9 @@ std::string announce(const Scene& scene);
 
 /// Why the scene does not fit in `available` bytes, or nothing.
 std::optional<std::string> too_large(const Scene& scene, double available);
+
+/// A size (bytes) that a file of the system has in a line "name number kB"; `otherwise` where it has not.
+double bytes_by_system(const char* file, std::string_view name, double otherwise);
 
 /// Memory that the machine has left (bytes): MemAvailable of /proc/meminfo; infinite where there is no such file.
 double available_memory();
