@@ -219,25 +219,20 @@ std::string strata_text(Scene& scene, double bottom_m) {
 std::string scene_text(Scene& scene) {
   const double bottom_m = stack(scene), cell = scene.numerics.cell_m, height = scene.domain.height_m;
   const auto stress = [](const Layer& layer) { return layer.horizontal_Pa->number; };
-  const auto [from, to, start] = [&] {
-    const Layer& layer = *std::ranges::min_element(
-        scene.strata.layers, {}, [&](const Layer& l) { return std::pair(stress(l), l.from_m - l.to_m); });
-    const double margin =
-        cell * std::floor((layer.to_m - layer.from_m) / cell / 4.0 + 0.1);  // a quarter, in whole cells
-    return std::tuple(layer.from_m + margin, layer.to_m - margin, stress(layer));
-  }();
+  const Layer& weakest = *std::ranges::min_element(
+      scene.strata.layers, {}, [&](const Layer& l) { return std::pair(stress(l), l.from_m - l.to_m); });
+  const double quarter = cell * std::floor((weakest.to_m - weakest.from_m) / cell / 4.0 + 0.1);  // in whole cells
+  const double from = weakest.from_m + quarter, to = weakest.to_m - quarter;
   const double x = cell * std::ceil(height / cell / 4.0 - 0.1),
                most = stress(std::ranges::max(scene.strata.layers, {}, stress));
   const double toughest = std::ranges::max(scene.rocks, {}, &Rock::toughness_Pa_sqrt_m).toughness_Pa_sqrt_m;
-  std::string
-      fluid =
-          R"(law = "uniform"    # open: or "reynolds", with viscosity_Pa_s, inlet = {rate_m2_s = 1e-4} and stop.time_s)",
-      stop = fmt::format(
-          "inlet_Pa = {:.4e}    # open: above the largest stress by 1 % and what starts the fracture in the toughest "
-          "rock",
-          1.01 * most + toughest / std::sqrt(std::numbers::pi / 2.0 * (to - from)));
-  fluid += fmt::format("\ninlet = {{start_Pa = {}, rate_Pa_s = 0.1e6}}    # from the stress that closes the fracture",
-                       number_text(start));
+  std::string fluid = fmt::format(
+      R"(law = "uniform"    # open: or "reynolds", with viscosity_Pa_s, inlet = {{rate_m2_s = 1e-4}} and stop.time_s
+inlet = {{start_Pa = {}, rate_Pa_s = 0.1e6}}    # from the stress that closes the fracture)",
+      number_text(stress(weakest)));
+  std::string stop = fmt::format(
+      "inlet_Pa = {:.4e}    # open: above the largest stress by 1 % and what starts the fracture in the toughest rock",
+      1.01 * most + toughest / std::sqrt(std::numbers::pi / 2.0 * (to - from)));
   if (scene.leaks()) {  // which needs a law that conserves the fluid
     fluid = "law = \"reynolds\"\nviscosity_Pa_s = 0.1    # open\ninlet = {rate_m2_s = 1e-4}    # open";
     stop = "time_s = 100.0    # open";
