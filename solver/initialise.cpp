@@ -63,7 +63,7 @@ void make_fracture(const Scene& scene, State& state) {
 // The points of an interface at `at` (m). Along a graded grid its legs are halves of spans, each with a point in its
 // middle where the particles stand too: what a law exerts then balances a uniform stress in the rock at every node.
 Surface make_interface(const Scene& scene, const Grid& grid, const InterfacePlace& place, int bit) {
-  const bool along_x = scene.strata.along == Strata::Along::y;
+  const bool along_x = scene.strata.upwards();
   const std::vector<double>& knots = along_x ? grid.x_knots : grid.y_knots;
   const auto [from, to] = scene.held_by(place);
   std::vector<Vec2> path;
@@ -85,17 +85,17 @@ Surface make_interface(const Scene& scene, const Grid& grid, const InterfacePlac
 
 void make_interfaces(const Scene& scene, State& state) {
   for (const InterfacePlace& place : scene.strata.interfaces) {
-    if (scene.laws[place.law].kind == InterfaceLaw::Kind::perfect) continue;
+    if (!scene.has_law(place)) continue;
     Surface surface = make_interface(scene, state.grid, place, static_cast<int>(state.surfaces.size()));
     surface.law = place.law;
     for (SurfacePoint& s : surface.points) {
-      const bool along_x = scene.strata.along == Strata::Along::y;
+      const bool along_x = scene.strata.upwards();
       const auto column_of = [&](double x) { return along_x ? state.grid.column_at(x) : state.grid.row_at(x); };
       // An end stands on a grid line, whose node stays whole as that of a fracture's tip does.
       const Stretch rock = scene.along_interfaces(), held = scene.held_by(place);
       const int low = held.from > rock.from ? column_of(held.from) + 1 : 0,
                 high = held.to < rock.to ? column_of(held.to) - 1 : state.grid.nodes();
-      s.column = std::clamp(column_of(along_x ? s.x.x() : s.x.y()), low, high);
+      s.column = std::clamp(column_of(scene.beside(s.x)), low, high);
       s.split = scene.laws[place.law].apart_at_start();
     }
     state.surfaces.push_back(surface);

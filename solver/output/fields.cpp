@@ -67,8 +67,7 @@ void write_fracture(const H5::Group& group, const Scene& scene, const State& sta
 
 void write_interface(const H5::Group& file, const std::string& interfaces, const Scene& scene, const Surface& surface) {
   // The nearest of the scene: those that never act may have no surface.
-  const Vec2& x = surface.vertices.front().x;
-  const double at = scene.strata.along == Strata::Along::y ? x.y() : x.x();
+  const double at = scene.stacking(surface.vertices.front().x);
   const auto& places = scene.strata.interfaces;
   const auto nearest = std::ranges::min_element(places, {}, [&](const auto& p) { return std::abs(p.at_m - at); });
   const H5::Group group = hdf5::make_group(file, fmt::format("{}/{}", interfaces, nearest - places.begin()));

@@ -261,7 +261,7 @@ void Watch::rocks() {
   // a crack 8 cells away is 1.3 % off.
   double contrast = 1.0;
   for (std::size_t k = 0; k < scene.strata.interfaces.size(); ++k) {
-    if (scene.laws[scene.strata.interfaces[k].law].kind != InterfaceLaw::Kind::perfect) continue;
+    if (scene.has_law(scene.strata.interfaces[k])) continue;
     const double a = scene.rocks[scene.strata.layers[k].rock].youngs_modulus_Pa;
     const double b = scene.rocks[scene.strata.layers[k + 1].rock].youngs_modulus_Pa;
     contrast = std::max({contrast, a / b, b / a});

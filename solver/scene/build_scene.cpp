@@ -176,7 +176,9 @@ void check_layer_stresses(Reading& reading, std::string_view stress) {
 
 void build_strata(Reading& reading) {
   Scene& scene = reading.scene;
-  auto& [along, layers, interfaces] = scene.strata;
+  auto& layers = scene.strata.layers;
+  auto& interfaces = scene.strata.interfaces;
+  const bool upwards = scene.strata.upwards();
   for (std::size_t k = 0; k < layers.size(); ++k) {
     const std::string path = fmt::format("strata.layers[{}]", k);
     layers[k].rock = find_named(reading, scene.rocks, path + ".rock", "rock");
@@ -184,10 +186,9 @@ void build_strata(Reading& reading) {
     reading.refuse(path, "{}.thickness_m is missing. Only the last layer may leave it out.", path);
     reading.entries[path].sound = false;
   }
-  const bool upwards = along == Strata::Along::y;
   check_layer_stresses(reading, upwards ? "horizontal_Pa" : "vertical_Pa");
   if (reading.usable("strata.layers", upwards ? "domain.height_m" : "domain.width_m") && reading.sound("strata.along"))
-    place_layers(reading, upwards ? scene.domain.height_m : scene.domain.width_m);
+    place_layers(reading, scene.domain.extent_m(upwards ? 1 : 0));
 
   const std::size_t between = layers.empty() ? 0 : layers.size() - 1, named = interfaces.size();
   for (std::size_t k = 0; k < named; ++k) {

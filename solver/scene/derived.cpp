@@ -30,12 +30,10 @@ double distance_to_segment(const Point& p, const Point& a, const Point& b) {
 // the layer would be a mechanism.
 bool has_thin_layer(const Scene& scene) {
   const auto& layers = scene.strata.layers;
-  const auto parts = [&](std::size_t interface) {
-    return scene.laws[scene.strata.interfaces[interface].law].kind != InterfaceLaw::Kind::perfect;
-  };
-  const bool along_y = scene.strata.along == Strata::Along::y, ends = scene.domain.beyond_m == 0.0;
-  const bool first = ends && (along_y ? scene.domain.bottom : scene.domain.sides) == Edge::traction;
-  const bool last = ends && (along_y ? scene.domain.top : scene.domain.sides) == Edge::traction;
+  const auto parts = [&](std::size_t interface) { return scene.has_law(scene.strata.interfaces[interface]); };
+  const bool upwards = scene.strata.upwards(), ends = scene.domain.beyond_m == 0.0;
+  const bool first = ends && (upwards ? scene.domain.bottom : scene.domain.sides) == Edge::traction;
+  const bool last = ends && (upwards ? scene.domain.top : scene.domain.sides) == Edge::traction;
   for (std::size_t k = 0; k < layers.size(); ++k) {
     const bool below = k > 0 ? parts(k - 1) : first, above = k + 1 < layers.size() ? parts(k) : last;
     if (below && above && layers[k].to_m - layers[k].from_m < 1.49 * scene.numerics.cell_m) return true;
@@ -45,9 +43,9 @@ bool has_thin_layer(const Scene& scene) {
 
 // Cells along x (axis 0) or y (1): those of the grid or, where a slip of the finger asks for too many to be made,
 // about as many. Doubles, since these may be more than an int holds.
-double cells_along(const Scene& scene, int axis) {
+double cells_along(const Scene& scene, std::size_t axis) {
   const double h = scene.numerics.cell_m, far = scene.numerics.far_cell_m.value_or(h);
-  const double extent = axis == 0 ? scene.domain.width_m : scene.domain.height_m;
+  const double extent = scene.domain.extent_m(axis);
   double fine = 0.0;
   for (const Stretch& stretch : fine_stretches(scene, axis)) fine += stretch.to - stretch.from;
   const double about = fine / h + (extent - fine) / far;
@@ -68,7 +66,7 @@ double parted_cells(const Scene& scene) {
   }
   const auto apart = std::ranges::count_if(
       scene.strata.interfaces, [&](const InterfacePlace& place) { return scene.laws[place.law].apart_at_start(); });
-  const int axis = scene.strata.along == Strata::Along::y ? 0 : 1;
+  const std::size_t axis = scene.strata.upwards() ? 0 : 1;
   return length / scene.numerics.cell_m + static_cast<double>(apart) * cells_along(scene, axis);
 }
 
@@ -114,13 +112,12 @@ std::optional<std::pair<std::size_t, std::size_t>> self_contact(const std::vecto
 std::vector<Point> legs_between_interfaces(const Scene& scene, const Point& from, const Point& to) {
   // An end that stands on an interface: one that follows the rock is a millimetre or so off it (see ahead_cells).
   const double on_it = 0.1 * scene.numerics.cell_m / std::hypot(to[0] - from[0], to[1] - from[1]);
-  const std::size_t axis = scene.strata.along == Strata::Along::y ? 1 : 0;
+  const std::size_t axis = scene.strata.upwards() ? 1 : 0;
   std::vector<double> shares;
   const auto& layers = scene.strata.layers;
   for (std::size_t k = 0; k + 1 < layers.size(); ++k) {
     const InterfacePlace& place = scene.strata.interfaces[k];
-    const bool passes_all = scene.laws[place.law].kind == InterfaceLaw::Kind::perfect;
-    if (passes_all && layers[k].has_stress_of(layers[k + 1])) continue;
+    if (!scene.has_law(place) && layers[k].has_stress_of(layers[k + 1])) continue;
     const double share = (place.at_m - from[axis]) / (to[axis] - from[axis]);
     if (share > on_it && share < 1.0 - on_it) shares.push_back(share);
   }

@@ -10,10 +10,9 @@ namespace {
 
 // Length of the straight way from x along the unit vector d until it leaves the block.
 double way_to_edge(const Domain& domain, const Point& x, const Point& d) {
-  const Point far{domain.width_m, domain.height_m};
   double way = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < 2; ++k) {
-    if (d[k] > 0.0) way = std::min(way, (far[k] - x[k]) / d[k]);
+    if (d[k] > 0.0) way = std::min(way, (domain.extent_m(k) - x[k]) / d[k]);
     if (d[k] < 0.0) way = std::min(way, -x[k] / d[k]);
   }
   return std::max(0.0, way);
@@ -131,37 +130,32 @@ std::vector<GrowthWay> ways_of_growth(const Scene& scene) {
   return ways;
 }
 
-std::vector<Stretch> fine_stretches(const Scene& scene, int axis) {
-  const auto k = static_cast<std::size_t>(axis);
+std::vector<Stretch> fine_stretches(const Scene& scene, std::size_t axis) {
   const double h = scene.numerics.cell_m;
-  const double extent = axis == 0 ? scene.domain.width_m : scene.domain.height_m;
   std::vector<Stretch> fine;
   if (scene.fracture) {
     std::vector<Point> places = scene.fracture->path_m;
     for (const GrowthWay& way : ways_of_growth(scene)) places.push_back(way.end);
-    const auto [low, high] = std::ranges::minmax_element(places, {}, [k](const Point& x) { return x[k]; });
+    const auto [low, high] = std::ranges::minmax(places, {}, [axis](const Point& x) { return x[axis]; });
     const Numerics& numerics = scene.numerics;
     const auto& from = axis == 0 ? numerics.fine_left_m : numerics.fine_bottom_m;
     const auto& to = axis == 0 ? numerics.fine_right_m : numerics.fine_top_m;
     fine.push_back(
-        {from.value_or((*low)[k] - fine_cells_at_fracture * h), to.value_or((*high)[k] + fine_cells_at_fracture * h)});
+        {from.value_or(low[axis] - fine_cells_at_fracture * h), to.value_or(high[axis] + fine_cells_at_fracture * h)});
   }
-  const bool along_y = scene.strata.along == Strata::Along::y;
-  for (const InterfacePlace& place : scene.strata.interfaces) {
-    if (along_y != (axis == 0)) continue;
-    for (const auto& end : {place.from_m, place.to_m}) {
-      if (end) fine.push_back({*end - fine_cells_at_interface * h, *end + fine_cells_at_interface * h});
-    }
-  }
-  const bool across = (scene.strata.along == Strata::Along::x) == (axis == 0);
-  for (std::size_t n = 0; across && n < scene.strata.interfaces.size(); ++n) {
-    if (!scene.changes_at(n)) continue;
-    const double at = scene.strata.interfaces[n].at_m;
+  const auto add_around = [&](double at) {
     fine.push_back({at - fine_cells_at_interface * h, at + fine_cells_at_interface * h});
+  };
+  for (std::size_t n = 0; n < scene.strata.interfaces.size(); ++n) {
+    const InterfacePlace& place = scene.strata.interfaces[n];
+    const bool runs_along = scene.strata.upwards() == (axis == 0);
+    if (!runs_along && scene.changes_at(n)) add_around(place.at_m);
+    for (const auto& end : {place.from_m, place.to_m})
+      if (runs_along && end) add_around(*end);
   }
   std::ranges::sort(fine, {}, &Stretch::from);
   std::vector<Stretch> between_nodes;
-  for (const auto& [first, last] : fine_nodes(h, std::lround(extent / h), fine))
+  for (const auto& [first, last] : fine_nodes(h, std::lround(scene.domain.extent_m(axis) / h), fine))
     between_nodes.push_back({static_cast<double>(first) * h, static_cast<double>(last) * h});
   return between_nodes;
 }
@@ -197,19 +191,19 @@ std::vector<double> graded_knots(const Grading& axis) {
   return t;
 }
 
-std::vector<double> scene_knots(const Scene& scene, int axis) {
+std::vector<double> scene_knots(const Scene& scene, std::size_t axis) {
   const double h = scene.numerics.cell_m, far = scene.numerics.far_cell_m.value_or(h);
   const Domain& domain = scene.domain;
   const bool goes_on = domain.beyond_m > 0.0, grows = graded(scene.numerics);
   if (!grows && !goes_on) return {};
-  const double extent = axis == 0 ? domain.width_m : domain.height_m;
+  const double extent = domain.extent_m(axis);
   const Stretch rock = axis == 0 ? domain.along_x() : domain.along_y();
   const std::vector<Stretch> fine = grows ? fine_stretches(scene, axis) : std::vector<Stretch>{{0.0, extent}};
   return graded_knots({extent, h, far, fine, -rock.from, rock.to - extent});
 }
 
 bool mirror_symmetric(const Scene& scene) {
-  if (!scene.fracture || scene.strata.along != Strata::Along::y) return false;
+  if (!scene.fracture || !scene.strata.upwards()) return false;
   const InSitu& in_situ = scene.in_situ;
   if (scene.body.acceleration_m_s2 || !in_situ.vertical_Pa.formula.empty())
     return false;  // formulas need not be symmetric

@@ -35,7 +35,7 @@ std::vector<GrowthWay> ways_of_growth(const Scene& scene);
 /// its tips, which ends at stop.tip_y_m or else at the block's edge (or up to where the scene says,
 /// numerics.fine_left_m and its like), and around the places where rocks or interfaces meet. In order, cut at the
 /// block's edges, none touching the next.
-std::vector<Stretch> fine_stretches(const Scene& scene, int axis);
+std::vector<Stretch> fine_stretches(const Scene& scene, std::size_t axis);
 
 // What an axis of a graded grid is to have (m).
 struct Grading {
@@ -55,7 +55,7 @@ struct Grading {
 std::vector<double> graded_knots(const Grading& axis);
 
 /// Knots along x (axis 0) or y (1) of a scene's grid; none where it is uniform.
-std::vector<double> scene_knots(const Scene& scene, int axis);
+std::vector<double> scene_knots(const Scene& scene, std::size_t axis);
 
 /// Whether scene and grid are mirror-symmetric about the vertical through the fracture, and stay so: layers stacked
 /// upwards, a straight vertical fracture in the middle of the block, columns that are their own mirror image, sides

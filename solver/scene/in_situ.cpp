@@ -30,7 +30,7 @@ double mass_above(const Scene& scene, const Point& x) {
   const auto& layers = scene.strata.layers;
   const auto rho = [&](std::size_t k) { return scene.rocks[layers[k].rock].density_kg_m3; };
   const std::size_t own = layer_at(scene, x);
-  if (scene.strata.along == Strata::Along::x || own + 1 == layers.size()) return rho(own) * (top - x[1]);
+  if (!scene.strata.upwards() || own + 1 == layers.size()) return rho(own) * (top - x[1]);
   double mass = rho(own) * (layers[own].to_m - x[1]);
   for (std::size_t k = own + 1; k < layers.size(); ++k) mass += rho(k) * (layers[k].to_m - layers[k].from_m);
   return mass;
@@ -38,7 +38,7 @@ double mass_above(const Scene& scene, const Point& x) {
 
 // The stress that a layer has along the interfaces beside it, which it may have of its own.
 const std::optional<Field>& own_stress(const Scene& scene, const Layer& layer) {
-  return scene.strata.along == Strata::Along::y ? layer.horizontal_Pa : layer.vertical_Pa;
+  return scene.strata.upwards() ? layer.horizontal_Pa : layer.vertical_Pa;
 }
 
 // A key of the scene and what it was given.
@@ -54,11 +54,10 @@ std::string typed(const Looked& of) {
 // Places in layer k, 65 in rows along the axis (0: x) on which a stress must be in equilibrium.
 std::vector<Point> places_in(const Scene& scene, std::size_t k, std::size_t axis) {
   const Layer& layer = scene.strata.layers[k];
-  const std::size_t stacked = scene.strata.along == Strata::Along::y ? 1 : 0;
-  const std::array<double, 2> size = {scene.domain.width_m, scene.domain.height_m};
+  const std::size_t stacked = scene.strata.upwards() ? 1 : 0;
   const auto at = [&](std::size_t of, std::size_t n, std::size_t count) {
     const double share = (static_cast<double>(n) + 0.5) / static_cast<double>(count);
-    return of == stacked ? layer.from_m + share * (layer.to_m - layer.from_m) : share * size[of];
+    return of == stacked ? layer.from_m + share * (layer.to_m - layer.from_m) : share * scene.domain.extent_m(of);
   };
   constexpr std::size_t along = 65, across = 9;
   std::vector<Point> out;
@@ -108,7 +107,7 @@ std::optional<KeyFault> imbalance(const Scene& scene, std::size_t k, std::size_t
 }  // namespace
 
 std::vector<InSituStress> in_situ_stress(const Scene& scene, const std::vector<Point>& places) {
-  const bool upwards = scene.strata.along == Strata::Along::y;
+  const bool upwards = scene.strata.upwards();
   std::vector<double> horizontal = values_of(scene.in_situ.horizontal_Pa, places),
                       vertical = values_of(scene.in_situ.vertical_Pa, places);
   std::vector<char> weighs(places.size(), scene.in_situ.weight && !has_Y(scene.in_situ.vertical_Pa) ? 1 : 0);
@@ -137,9 +136,8 @@ double largest_in_situ(const Scene& scene) {
     const double inside = 1e-9 * (layer.to_m - layer.from_m);
     for (const double along : {layer.from_m, layer.to_m - inside}) {
       for (const double share : {0.0, 1.0}) {
-        const bool upwards = scene.strata.along == Strata::Along::y;
-        ends.push_back(upwards ? Point{share * scene.domain.width_m, along}
-                               : Point{along, share * scene.domain.height_m});
+        ends.push_back(scene.strata.upwards() ? Point{share * scene.domain.width_m, along}
+                                              : Point{along, share * scene.domain.height_m});
       }
     }
   }
@@ -152,7 +150,7 @@ double largest_in_situ(const Scene& scene) {
 std::vector<KeyFault> in_situ_faults(const Scene& scene) {
   std::vector<KeyFault> out;
   const InSitu& in_situ = scene.in_situ;
-  const bool upwards = scene.strata.along == Strata::Along::y;
+  const bool upwards = scene.strata.upwards();
   const Looked horizontal{"in_situ.horizontal_Pa", in_situ.horizontal_Pa},
       vertical{"in_situ.vertical_Pa", in_situ.vertical_Pa};
   if (in_situ.shear_Pa != 0.0 && scene.domain.bottom == Edge::symmetry)

@@ -61,6 +61,7 @@ struct Domain {
   // From edge to edge of the rock, with what goes on beyond the block.
   Stretch along_x() const { return {-beyond_m, width_m + beyond_m}; }
   Stretch along_y() const { return {bottom == Edge::symmetry ? 0.0 : -beyond_m, height_m + beyond_m}; }
+  double extent_m(std::size_t axis) const { return axis == 0 ? width_m : height_m; }  // of the block along x (0), y (1)
 
   // Whether an edge holds the block's motion along x or y; what none holds is free as a whole.
   bool holds_x() const { return sides == Edge::fixed; }
@@ -170,6 +171,8 @@ struct Strata {
   Along along = Along::y;
   std::vector<Layer> layers;
   std::vector<InterfacePlace> interfaces;  // layers.size() - 1 of them
+
+  bool upwards() const { return along == Along::y; }  // interfaces run along x
   bool operator==(const Strata&) const = default;
 };
 
@@ -300,10 +303,11 @@ struct Scene {
     return before.youngs_modulus_Pa != beyond.youngs_modulus_Pa || before.poisson_ratio != beyond.poisson_ratio;
   }
 
+  bool has_law(const InterfacePlace& place) const { return laws[place.law].kind != InterfaceLaw::Kind::perfect; }
+
   // Whether an interface is more than a border of toughness or in-situ stress: a law, or another stiffness beyond it.
   bool changes_at(std::size_t interface) const {
-    return laws[strata.interfaces[interface].law].kind != InterfaceLaw::Kind::perfect ||
-           stiffness_changes_at(interface);
+    return has_law(strata.interfaces[interface]) || stiffness_changes_at(interface);
   }
 
   // The same at a place along it (m).
@@ -320,15 +324,15 @@ struct Scene {
   bool parts_by_energy() const { return std::ranges::any_of(laws, &InterfaceLaw::has_toughness); }
 
   // From edge to edge of the rock along interfaces, and where the law of one holds (m).
-  Stretch along_interfaces() const { return strata.along == Strata::Along::y ? domain.along_x() : domain.along_y(); }
+  Stretch along_interfaces() const { return strata.upwards() ? domain.along_x() : domain.along_y(); }
   Stretch held_by(const InterfacePlace& place) const {
     const Stretch rock = along_interfaces();
     return {place.from_m.value_or(rock.from), place.to_m.value_or(rock.to)};
   }
 
   // Coordinates of a place (m): along interfaces, and that along which layers are stacked.
-  double beside(const auto& x) const { return strata.along == Strata::Along::y ? x[0] : x[1]; }
-  double stacking(const auto& x) const { return strata.along == Strata::Along::y ? x[1] : x[0]; }
+  double beside(const auto& x) const { return strata.upwards() ? x[0] : x[1]; }
+  double stacking(const auto& x) const { return strata.upwards() ? x[1] : x[0]; }
   bool operator==(const Scene&) const = default;
 };
 

@@ -115,7 +115,7 @@ void check_lie(Reading& reading) {
   const Scene& scene = reading.scene;
   const auto& path_m = scene.fracture->path_m;
   const double tolerance_m = round_off * scene.numerics.cell_m;
-  const std::size_t across = scene.strata.along == Strata::Along::y ? 1 : 0;
+  const std::size_t across = scene.strata.upwards() ? 1 : 0;
   for (std::size_t k = 0; k + 1 < path_m.size(); ++k) {
     for (const std::size_t axis : {0U, 1U}) {
       const double at_m = path_m[k][axis];
@@ -127,12 +127,10 @@ void check_lie(Reading& reading) {
                        text);
       }
       for (const InterfacePlace& place : scene.strata.interfaces) {
-        const InterfaceLaw& law = scene.laws[place.law];
-        const bool perfect = law.kind == InterfaceLaw::Kind::perfect;
-        if (axis != across || perfect || std::abs(place.at_m - at_m) > tolerance_m) continue;
+        if (axis != across || !scene.has_law(place) || std::abs(place.at_m - at_m) > tolerance_m) continue;
         reading.refuse("fracture.path_m",
                        "{} on the interface \"{}\". Make that interface perfect, or move the fracture.", text,
-                       law.name);
+                       scene.laws[place.law].name);
       }
     }
   }
@@ -376,8 +374,7 @@ void check_numbers(Reading& reading) {
   constexpr std::size_t most_surfaces = 31, most_rocks = 255;
   const Scene& scene = reading.scene;
   std::size_t surfaces = scene.fracture ? 1 : 0;
-  for (const InterfacePlace& place : scene.strata.interfaces)
-    surfaces += scene.laws[place.law].kind != InterfaceLaw::Kind::perfect ? 1 : 0;
+  for (const InterfacePlace& place : scene.strata.interfaces) surfaces += scene.has_law(place) ? 1 : 0;
   if (surfaces > most_surfaces)
     reading.refuse("strata.interfaces",
                    "strata.interfaces: {} surfaces{} are more than {}. Make some interfaces perfect.", surfaces,
@@ -392,9 +389,8 @@ void check_numbers(Reading& reading) {
 void check_scene(Reading& reading) {
   bool cells_sound = reading.usable("numerics.cell_m") && reading.sound("numerics.particles_per_cell");
   if (cells_sound && reading.usable("domain.width_m", "domain.height_m")) cells_sound = check_cells(reading);
-  const bool along_y = reading.scene.strata.along == Strata::Along::y;
-  const bool layers_sound =
-      reading.usable("strata.layers", along_y ? "domain.height_m" : "domain.width_m") && reading.sound("strata.along");
+  const char* extent = reading.scene.strata.upwards() ? "domain.height_m" : "domain.width_m";
+  const bool layers_sound = reading.usable("strata.layers", extent) && reading.sound("strata.along");
   if (cells_sound && layers_sound) check_interfaces(reading);
   if (layers_sound && reading.usable("domain.width_m", "domain.height_m")) {
     for (const auto& [key, text] : in_situ_faults(reading.scene)) reading.refuse(key, "{}", text);
