@@ -15,83 +15,10 @@
 namespace strata {
 namespace {
 
-// What its keys mean is put above them, also above a line "# key = value".
-constexpr std::string_view scene_to_start_from = R"(title = "TITLE"
-
-[domain]
-width_m = 20
-height_m = 20
-bottom = "symmetry"
-sides = "fixed"
-
-[in_situ]
-vertical_Pa = 3.0e6
-horizontal_Pa = 2.0e6
-
-[rock.shale]
-youngs_modulus_Pa = 10.0e9
-poisson_ratio = 0.2
-density_kg_m3 = 2500
-toughness_Pa_sqrt_m = 1.45e6
-# leakoff_m_sqrt_s = 1e-5
-
-[rock.sandstone]
-youngs_modulus_Pa = 20.0e9
-toughness_Pa_sqrt_m = 1.0e6
-
-[interface.bedding]
-law = "soft"
-normal_stiffness_Pa_m = 0.5e6
-shear_stiffness_Pa_m = 0.5e6
-
-[interface.joint]
-law = "friction"
-coefficient = 0.6
-
-[interface.clay]
-law = "weak"
-shear_strength_Pa = 0.5e6
-tensile_strength_Pa = 0.5e6
-
-[strata]
-along = "y"
-layers = [{rock = "shale", thickness_m = 10}, {rock = "sandstone", horizontal_Pa = 2.2e6}]
-interfaces = ["bedding"]
-
-[fracture]
-path_m = [[10, 0], [10, 5]]
-growth = "J"
-increment_m = 1.0
-direction = "straight"
-
-[fluid]
-law = "uniform"
-# viscosity_Pa_s = 0.1
-
-[fluid.inlet]
-start_Pa = 2.0e6
-rate_Pa_s = 0.35e6
-# Instead of both, with law "reynolds":
-# rate_m2_s = 1e-4
-
-[numerics]
-mechanics = "quasistatic"
-cell_m = 0.5
-# With mechanics "explicit":
-# damping_1_s = 20
-
-[stop]
-tip_y_m = 14
-inlet_Pa = 4.5e6
-# time_s = 60
-
-# strata run FILE --variant clay
-[variants.clay]
-strata.interfaces = ["clay"]
-
-[variants.joint]
-strata.interfaces = ["joint"]
-)";
+// The text of new_scene.toml. What its keys mean is put above them, also above a line "# key = value".
+constexpr std::string_view scene_to_start_from =
+#include "new_scene.toml.hpp"
+    ;
 
 // What the list of keys says of a key, and of those of its elements, as lines of a comment.
 std::string comment_on(const Key& key, std::string_view indent = "") {
