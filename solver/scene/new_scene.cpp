@@ -50,7 +50,6 @@ std::string new_scene_text(std::string_view title) {
     if (key != nullptr && explained.insert(key->path).second) text += comment_on(*key);
     text += line + '\n';
   }
-  text.pop_back();  // the line behind the last end of line
   return text.replace(text.find("TITLE"), 5, title);
 }
 

@@ -16,6 +16,9 @@ namespace strata {
 namespace {
 
 constexpr double units_per_m = 1e4;  // lengths are whole numbers of 0.1 mm, as half feet are
+constexpr std::string_view text_of_scene =
+#include "well_log.toml.hpp"
+    ;
 constexpr std::string_view needed = "top_m, youngs_modulus_Pa, poisson_ratio, toughness_Pa_sqrt_m, horizontal_Pa";
 
 // Until layers are stacked, to_m holds the depth of a layer's top.
@@ -237,41 +240,13 @@ inlet = {{start_Pa = {}, rate_Pa_s = 0.1e6}}    # from the stress that closes th
     fluid = "law = \"reynolds\"\nviscosity_Pa_s = 0.1    # open\ninlet = {rate_m2_s = 1e-4}    # open";
     stop = "time_s = 100.0    # open";
   }
-  return fmt::format(
-      R"(# A well log. SI units, each in its key. "open": the log does not say; look at it.
-# y = 0 is the log's bottom: a depth d is at y = {bottom} - d.
-title = "Fracture in a well log"
-
-[domain]
-width_m = {width}
-height_m = {height}
-beyond_m = {beyond}    # open: the outermost layers go on so far
-bottom = "traction"
-
-[in_situ]
-vertical_Pa = {vertical:.4e}    # open: 25 kPa for each metre down to the log's middle
-{strata}
-
-[fracture]
-path_m = [[{x}, {low}], [{x}, {high}]]    # open: half of the layer of least stress
-increment_m = {cell}
-crossing_increment_m = {pair}    # open: two cells, as failure_length_m
-
-[fluid]
-{fluid}
-
-[numerics]
-mechanics = "quasistatic"
-cell_m = {cell}    # divides all layers
-far_cell_m = {far}
-
-[stop]
-{stop})",
-      fmt::arg("bottom", metres(bottom_m)), fmt::arg("width", metres(2.0 * x)), fmt::arg("height", metres(height)),
-      fmt::arg("beyond", metres(20.0 * height)), fmt::arg("vertical", 25e3 * (bottom_m - height / 2.0)),
-      fmt::arg("strata", strata_text(scene, bottom_m)), fmt::arg("x", metres(x)), fmt::arg("low", metres(from)),
-      fmt::arg("high", metres(to)), fmt::arg("cell", metres(cell)), fmt::arg("pair", metres(2.0 * cell)),
-      fmt::arg("far", metres(8.0 * cell)), fmt::arg("fluid", fluid), fmt::arg("stop", stop));
+  return fmt::format(text_of_scene, fmt::arg("bottom", metres(bottom_m)), fmt::arg("width", metres(2.0 * x)),
+                     fmt::arg("height", metres(height)), fmt::arg("beyond", metres(20.0 * height)),
+                     fmt::arg("vertical", 25e3 * (bottom_m - height / 2.0)),
+                     fmt::arg("strata", strata_text(scene, bottom_m)), fmt::arg("x", metres(x)),
+                     fmt::arg("low", metres(from)), fmt::arg("high", metres(to)), fmt::arg("cell", metres(cell)),
+                     fmt::arg("pair", metres(2.0 * cell)), fmt::arg("far", metres(8.0 * cell)),
+                     fmt::arg("fluid", fluid), fmt::arg("stop", stop));
 }
 
 }  // namespace
