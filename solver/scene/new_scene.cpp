@@ -17,7 +17,7 @@ namespace {
 
 // The text of new_scene.toml. What its keys mean is put above them, also above a line "# key = value".
 constexpr std::string_view scene_to_start_from =
-#include "new_scene.toml.hpp"
+#include <new_scene.toml.hpp>
     ;
 
 // What the list of keys says of a key, and of those of its elements, as lines of a comment.

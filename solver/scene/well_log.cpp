@@ -17,7 +17,7 @@ namespace {
 
 constexpr double units_per_m = 1e4;  // lengths are whole numbers of 0.1 mm, as half feet are
 constexpr std::string_view text_of_scene =
-#include "well_log.toml.hpp"
+#include <well_log.toml.hpp>
     ;
 constexpr std::string_view needed = "top_m, youngs_modulus_Pa, poisson_ratio, toughness_Pa_sqrt_m, horizontal_Pa";
 
