@@ -79,7 +79,10 @@ def observed(run: Run) -> Row:
     for name in ("x_m", "y_m", "K_I_Pa_sqrt_m", "K_II_Pa_sqrt_m", "J_N_m"):
         row[f"highest_tip_{name}"] = getattr(ends[-1], name) if ends else math.nan
     row |= {name: getattr(run.summary, name) for name in ("inlet_Pa", "time_s", "mouth_opening_m", "fracture_volume_m2")}
-    return row | {"suspect": " ".join(mark.monitor for mark in run.summary.suspect)}
+    row |= {"suspect": " ".join(mark.monitor for mark in run.summary.suspect)}
+    for name in ("x_m", "K_I_Pa_sqrt_m", "K_II_Pa_sqrt_m", "J_N_m", "G_N_m"):
+        row[f"lowest_tip_{name}"] = getattr(ends[0], name) if ends else math.nan
+    return row | {"highest_tip_G_N_m": ends[-1].G_N_m if ends else math.nan}
 
 
 def observer(name: str) -> Callable[[Run], Row]:

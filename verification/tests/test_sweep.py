@@ -114,18 +114,20 @@ def test_every_run_is_checked_where_its_value_stands(tmp_path: Path) -> None:
 
 
 def test_what_a_row_says(tmp_path: Path) -> None:
-    """On a made-up climb: first events' pressures, two arrests (on the way and at the end) and one restart; of two tips K and place of the highest, the height of
-    the lowest."""
+    """On a made-up climb: first events' pressures, two arrests (on the way and at the end) and one restart; of two tips place, K,
+    J and G of the highest and of the lowest. Mutations that fail: the other tip's, or the highest one's twice."""
     write_run(tmp_path / "a" / "run", end_Pa=3e6, steps=climb(to_m=14.0, plateaus={10.0: 0.2e6}), mechanics="quasistatic")
     row = sweep.observed(load(tmp_path / "a" / "run"))
     events = {event.kind: event for event in reversed(load(tmp_path / "a" / "run").summary.events)}
     assert (row["start_Pa"], row["arrest_Pa"], row["restart_Pa"], row["stop_Pa"]) == tuple(events[kind].inlet_Pa for kind in ("start", "arrest", "restart", "stop"))
     assert (row["arrests"], row["restarts"], row["arrest_y_m"]) == (2, 1, 10.0) and row["restart_Pa"] > row["arrest_Pa"] and math.isnan(row["reach_interface_Pa"])
     run = load(tmp_path / "a" / "run")
-    low = replace(run.summary.tips[0], y_m=-3.0, K_I_Pa_sqrt_m=7.0)
-    both = sweep.observed(replace(run, summary=replace(run.summary, tips=(run.summary.tips[0], low))))
-    assert row["highest_tip_y_m"] == row["lowest_tip_y_m"] == both["highest_tip_y_m"] == run.summary.tips[0].y_m
-    assert both["lowest_tip_y_m"] == -3.0 and both["highest_tip_K_I_Pa_sqrt_m"] != 7.0
+    high = replace(run.summary.tips[0], G_N_m=9.0)
+    low = replace(high, x_m=-2.0, y_m=-3.0, K_I_Pa_sqrt_m=7.0, K_II_Pa_sqrt_m=-1.0, J_N_m=5.0, G_N_m=4.0)
+    both = sweep.observed(replace(run, summary=replace(run.summary, tips=(high, low))))
+    assert row["highest_tip_y_m"] == row["lowest_tip_y_m"] == high.y_m
+    for name in ("x_m", "y_m", "K_I_Pa_sqrt_m", "K_II_Pa_sqrt_m", "J_N_m", "G_N_m"):
+        assert (both[f"lowest_tip_{name}"], both[f"highest_tip_{name}"]) == (getattr(low, name), getattr(high, name)), name
 
 
 AXES = "[sweep]\nin_situ.vertical_Pa = [2e6, 4e6]\ninterface.joint.coefficient = [0.0, 0.6]\n"
