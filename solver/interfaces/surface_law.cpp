@@ -48,7 +48,7 @@ LawLines lines_of(const InterfaceLaw& law, double k, const LawStart& start, doub
 
 LawStart start_of(const SurfacePoint& s) {
   const Vec2 t = tangent_of(s.n);
-  return {s.w.dot(t), s.reaction.dot(t), s.memory};
+  return {s.w.dot(t), s.reaction.dot(t), s.memory, s.reaction.dot(s.n)};
 }
 
 void remember(const InterfaceLaw& law, double /*w_n*/, double dw_t, InterfaceLaw::Memory& memory) {

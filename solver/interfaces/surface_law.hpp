@@ -38,6 +38,7 @@ struct FreeJump {
 struct LawStart {
   double w_t = 0.0, r_t = 0.0;  // tangential jump (m) and reaction (Pa)
   InterfaceLaw::Memory memory;
+  double r_n = 0.0;  // normal reaction (Pa)
 };
 
 // A line of a law, r = r_0 - D (w - w_0).

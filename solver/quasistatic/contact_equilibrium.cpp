@@ -1,28 +1,17 @@
 #include "quasistatic/contact_equilibrium.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
 
+#include "quasistatic/falling_cohesion.hpp"
+
 namespace strata {
 namespace {
-
-using Shear = LawAnswer::Shear;
-
-// The linear piece of a law that sticks, for one that slides.
-LawAnswer sticking(const ContactPlace& place, LawAnswer r) {
-  r.set(Shear::sticks);
-  r.t_0 = place.start.r_t + place.k * place.start.w_t;
-  r.dt_dt = -place.k, r.dt_dn = 0.0;
-  return r;
-}
-
-// 1, -1: slides so; 0: does not.
-int sense(const LawAnswer& r) {
-  return r.shear() == Shear::slips_plus ? 1 : r.shear() == Shear::slips_minus ? -1 : 0;
-}
 
 void add_to_row(SparseRow& row, const Unknown& unknown, double weight) {
   if (unknown.index < 0) return;
@@ -45,9 +34,12 @@ Vec2 jump_of(const ContactPlace& place, const Eigen::VectorXd& j) {
   return {times(place.D[0], j), times(place.D[1], j)};
 }
 
+LawLines lines_at(const State& state, const ContactPlace& place) {
+  return lines_of(place.law, place.k, place.start, place.in_situ.dot(place.n) - point_of(state, place).P);
+}
+
 LawAnswer answer_at(const State& state, const ContactPlace& place, const Vec2& w) {
-  return lines_of(place.law, place.k, place.start, place.in_situ.dot(place.n) - point_of(state, place).P)
-      .at(w.dot(place.n), w.dot(place.t()), place.bound);
+  return lines_at(state, place).at(w.dot(place.n), w.dot(place.t()), place.bound);
 }
 
 void add_force(const ContactPlace& place, const Vec2& traction, Eigen::VectorXd& f) {
@@ -302,19 +294,28 @@ bool iterate(const State& state, const Condensed& condensed, const Places& place
   return false;
 }
 
-// Friction by bounds that are held while the jumps are found, from `start` on, and renewed from the normal reactions.
-Equilibrium solve_with_fixed_bounds(const State& state, const Condensed& condensed, Places places,
-                                    const Eigen::VectorXd& start, TangentFactor& factor) {
+// Whether the jumps of `at` are an equilibrium; makes the tangent that follows from it.
+bool ends_at(const State& state, const Condensed& condensed, const Places& places, TangentFactor& factor,
+             Equilibrium& at) {
+  evaluate(state, condensed, places, at);
+  factor.pieces.clear();  // bounds that follow the normal reaction have another tangent
+  if (!(at.residual < 1e-8)) return false;
+  if (!factor_tangent(condensed, places, at.answers, state, factor)) report_mechanism(state, places);
+  return true;
+}
+
+// Friction by bounds that are held while the jumps are found, from at.j on, and renewed from the normal reactions;
+// false where that does not end, and then at.residual is the smaller force out of balance.
+bool solve_with_fixed_bounds(const State& state, const Condensed& condensed, Places places, TangentFactor& factor,
+                             Equilibrium& at) {
   constexpr int most_rounds = 400;
-  constexpr double renewed = 1e-10;  // change of a bound against the largest
-  Equilibrium at;
-  at.j = start;
+  constexpr int fewest_to_half = 40;  // rounds in which the change of bounds falls to half, where it falls at all
+  constexpr double renewed = 1e-10;   // change of a bound against the largest
   evaluate(state, condensed, places, at);
   factor.pieces.clear();
-  double change = 0.0;
-  for (int round = 0; round < most_rounds; ++round) {
-    double largest = 0.0;
-    change = 0.0;
+  double least = HUGE_VAL;
+  for (int round = 0, least_in = 0; round < most_rounds; ++round) {
+    double largest = 0.0, change = 0.0;
     for (std::size_t k = 0; k < places.size(); ++k) {
       ContactPlace& place = places[k];
       if (!place.law.slides()) continue;
@@ -324,60 +325,70 @@ Equilibrium solve_with_fixed_bounds(const State& state, const Condensed& condens
       place.bound = bound;
     }
     if (round > 0 && change <= renewed * largest) break;
+    if (change < 0.5 * least) least = change, least_in = round;
+    if (round - least_in > fewest_to_half) break;
     if (iterate(state, condensed, places, factor, true, at)) continue;
     at.j.setZero();  // from the last round it went round: the problem is convex, so any start will do
     factor = TangentFactor{};
     if (!iterate(state, condensed, places, factor, true, at)) break;
   }
   for (ContactPlace& place : places) place.bound = -1.0;
-  const double found = at.residual;
-  evaluate(state, condensed, places, at);
-  factor.pieces.clear();  // bounds that follow the normal reaction have another tangent
-  if (at.residual < 1e-8) {
-    if (factor_tangent(condensed, places, at.answers, state, factor)) return at;
-    report_mechanism(state, places);
+  return ends_at(state, condensed, places, factor, at);
+}
+
+// The equilibrium that a cohesion leads to as it falls to nothing; the cohesion (Pa) that is left where it does not
+// fall so far: 0 at an equilibrium.
+double solve_by_falling_cohesion(const State& state, const Condensed& condensed, const Places& places,
+                                 TangentFactor& factor, Equilibrium& at) {
+  Places stuck = places;
+  for (ContactPlace& place : stuck) place.bound = place.law.slides() ? HUGE_VAL : -1.0;
+  at.j = Eigen::VectorXd::Zero(condensed.size());
+  factor = TangentFactor{};
+  if (!iterate(state, condensed, stuck, factor, true, at)) return HUGE_VAL;
+  PathEquations equations;
+  for (const ContactPlace& place : places) equations.lines.push_back(lines_at(state, place));
+  equations.solve = [&](const Answers& answers) {
+    const bool follows = factor.holds(condensed.size()) && factor.follow(places, answers);
+    if (!follows && !factor.factorise(tangent(condensed.S, places, answers), places, answers)) return Eigen::VectorXd();
+    return solve_on_pieces(state, condensed, places, answers, factor);
+  };
+  equations.jump = [&](std::size_t k, const Eigen::VectorXd& j) {
+    const Vec2 w = jump_of(places[k], j) - places[k].bonded;
+    return Vec2{w.dot(places[k].n), w.dot(places[k].t())};
+  };
+  factor = TangentFactor{};
+  const CohesionPath path = follow_falling_cohesion(equations, at.j);
+  at.j = path.j;
+  factor = TangentFactor{};
+  if (path.cohesion > 0.0) return path.cohesion;
+  if (iterate(state, condensed, places, factor, false, at)) return 0.0;  // with the digits that the path has lost
+  at.j = path.j;
+  return ends_at(state, condensed, places, factor, at) ? 0.0 : HUGE_VAL;
+}
+
+// Where Newton's steps go round: other ways to the same equations, one after the other.
+void solve_otherwise(const State& state, const Condensed& condensed, const Places& places, TangentFactor& factor,
+                     Equilibrium& at) {
+  std::string why;
+  try {
+    if (solve_with_fixed_bounds(state, condensed, places, factor, at)) return;
+  } catch (const NumericalFailure& mechanism) {  // of the bounds, perhaps not of the laws
+    why = mechanism.what();
   }
-  throw NumericalFailure("no equilibrium of the surfaces was found; the force out of balance is " +
-                         std::to_string(std::max(found, at.residual)) +
-                         " of the load. Use less friction or a smaller load step");
+  const double out_of_balance = at.residual, cohesion = solve_by_falling_cohesion(state, condensed, places, factor, at);
+  if (cohesion == 0.0) return;
+  if (!why.empty()) throw NumericalFailure(why);
+  throw NumericalFailure(
+      fmt::format("no equilibrium of the surfaces was found; the force out of balance is {:.2g} of the load{}. "
+                  "Use less friction or a smaller load step",
+                  out_of_balance,
+                  std::isfinite(cohesion) ? fmt::format(", and faces held by a cohesion slide on when that has fallen "
+                                                        "to {:.4g} Pa: with so much friction there may be none",
+                                                        cohesion)
+                                          : ""));
 }
 
 }  // namespace
-
-Pieces pieces_of(const Answers& answers) {
-  Pieces pieces;
-  pieces.reserve(answers.size());
-  for (const LawAnswer& r : answers) pieces.push_back(r.piece);
-  return pieces;
-}
-
-Answers first_pieces(const Places& places, const Answers& laws, bool guessed) {
-  Answers on = laws;
-  for (std::size_t k = 0; k < on.size() && !guessed; ++k) {
-    if (sense(on[k]) != 0) on[k] = sticking(places[k], on[k]);
-  }
-  return on;
-}
-
-void pivot(const Places& places, const Answers& laws, Pivoting& pivoting) {
-  constexpr int steps_without_gain = 3;  // with 10 Experiment 6 friction takes 2 % more of them
-  Answers& on = pivoting.on;
-  std::vector<std::size_t> differ;
-  for (std::size_t k = 0; k < laws.size(); ++k) {
-    if (laws[k].piece != on[k].piece) differ.push_back(k);
-  }
-  if (differ.size() < pivoting.fewest) {
-    pivoting.fewest = differ.size();
-    pivoting.patience = steps_without_gain;
-  } else {
-    --pivoting.patience;
-  }
-  for (const std::size_t k : differ) {
-    if (pivoting.patience < 0 && k != differ.back()) continue;
-    const bool turns = sense(on[k]) * sense(laws[k]) < 0;
-    on[k] = turns ? sticking(places[k], laws[k]) : laws[k];
-  }
-}
 
 std::array<SparseRow, 2> jump_rows(const Condensed& condensed, const SurfaceStencil& stencil) {
   std::array<SparseRow, 2> rows;
@@ -428,7 +439,10 @@ Equilibrium solve_equilibrium(const State& state, const Condensed& condensed, co
       start.size() == condensed.size() ? start : Eigen::VectorXd(Eigen::VectorXd::Zero(condensed.size()));
   at.j = first;
   if (iterate(state, condensed, places, factor, false, at)) return at;
-  return solve_with_fixed_bounds(state, condensed, places, first, factor);
+  at = Equilibrium{};
+  at.j = first;
+  solve_otherwise(state, condensed, places, factor, at);
+  return at;
 }
 
 Eigen::MatrixXd opening_per_pressure(const State& state, const Condensed& condensed, const Places& places,

@@ -2,35 +2,12 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <vector>
 
 #include "quasistatic/condensed.hpp"
-#include "quasistatic/tangent_factor.hpp"
+#include "quasistatic/pivoting.hpp"
 
 namespace strata {
-
-// The pieces of Newton's last step, and how it went: by block pivoting (Judice and Pires, Computers Ops Res. 21, 1994),
-// which ends where the tangents are P-matrices, as without friction or with little of it. A step takes the pieces that
-// the laws answer at all places, as long as fewer and fewer of these are others than the last step took; where that
-// fails a few times, the last such place alone changes until there are fewer than ever.
-struct Pivoting {
-  Answers on;  // of the last step, one a place: only their linear pieces count
-  std::size_t fewest = std::numeric_limits<std::size_t>::max();
-  int patience = 0;
-};
-
-/// The pieces of answers. Throws nothing.
-Pieces pieces_of(const Answers& answers);
-
-/// The pieces of the first step: those of the laws' answers at the first guess. Where nothing was guessed, what slides
-/// at no jump at all has come there by the jump that friction remembers, and sticks. Throws nothing.
-Answers first_pieces(const Places& places, const Answers& laws, bool guessed);
-
-/// Goes on to the pieces of the next step, where `laws` answer to the last one. A place that would turn round sticks
-/// first: contact is so stiff that a law answers the smallest way back by full sliding to the other side. Throws
-/// nothing.
-void pivot(const Places& places, const Answers& laws, Pivoting& pivoting);
 
 struct Equilibrium {
   Eigen::VectorXd j;    // m
@@ -58,9 +35,11 @@ Places contact_places(const Scene& scene, const Rocks& rocks, const State& state
 /// Solves S j = sum_s A_s D_s^T (P n - t_in_situ + r(D j)) + condensed.load.jumps for the pressures that the state's
 /// points hold, by Newton's method on the pieces of the laws (semismooth, by block pivoting). Where that does not end
 /// by itself, friction's bounds are held fixed, so that the problem is the minimum of a convex energy (Newton with a
-/// line search), and renewed until they agree with the normal reactions. What is returned depends on loads and memory
-/// only, not on `start` (the first guess, or empty). `factor` is reused where the pieces are the same, and left for
-/// what follows. Throws NumericalFailure where parts of the block move freely, or where no equilibrium is found.
+/// line search), and renewed until they agree with the normal reactions; and where that goes round too, a cohesion
+/// falls to nothing (falling_cohesion.hpp): of several equilibria the one that this leads to. What is returned depends
+/// on loads and memory only, not on `start` (the first guess, or empty). `factor` is reused where the pieces are the
+/// same, and left for what follows. Throws NumericalFailure where parts of the block move freely, or where no
+/// equilibrium is found.
 Equilibrium solve_equilibrium(const State& state, const Condensed& condensed, const Places& places,
                               const Eigen::VectorXd& start, TangentFactor& factor);
 

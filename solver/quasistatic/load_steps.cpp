@@ -74,9 +74,9 @@ void return_to(const LoadPoint& from, State& state) {
 
 // Work of the fluid since an earlier load, as if its pressure and what surfaces have released of the in-situ traction
 // had changed with the jumps (J/m): sum A (P + P')/2 n . (w' - w); the traction's in `in_situ`. The fracture may have
-// become longer in between. In a long step of flow that conserves volume closed faces part: what holds them counts with
-// P.
-double work_of_loads(const State& state, const LoadPoint& before, double& in_situ) {
+// become longer. What holds its faces counts with P where they part or close under a changing load (`loaded`: they are
+// apart from P + r on) and in a long step of flow that conserves volume.
+double work_of_loads(const State& state, const LoadPoint& before, bool loaded, double& in_situ) {
   double fluid = 0.0;
   in_situ = 0.0;
   for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
@@ -91,8 +91,9 @@ double work_of_loads(const State& state, const LoadPoint& before, double& in_sit
       const bool is_new = q < shift || q - shift >= then.size();
       const SurfacePoint& old = is_new ? s : then[q - shift];
       const Vec2 dw = is_new || !old.split ? s.w : Vec2{s.w - old.w};
-      const bool parts = state.reynolds.size() > 0 && state.surfaces[k].kind == Surface::Kind::fracture;
-      const double held = parts ? s.n.dot(s.reaction + old.reaction) : 0.0;
+      const bool parts = loaded && (s.n.dot(s.reaction) > 0.0) != (s.n.dot(old.reaction) > 0.0);
+      const bool counts = state.surfaces[k].kind == Surface::Kind::fracture && (parts || state.reynolds.size() > 0);
+      const double held = counts ? s.n.dot(s.reaction + old.reaction) : 0.0;
       fluid += s.A * 0.5 * (s.P + old.P + held) * s.n.dot(dw);
       in_situ -= s.A * (0.5 * (s.in_situ + old.in_situ)).dot(dw);
     }
@@ -117,15 +118,15 @@ enum class Change { load, growth, failure };
 void close_ledger(const Quasistatic& run, const LoadPoint& before, Change change, double surface, State& state) {
   Ledger& ledger = state.ledger;
   double in_situ = 0.0;
-  const double fluid = work_of_loads(state, before, in_situ), stored = ledger.strain + ledger.interface_strain;
+  const double fluid = work_of_loads(state, before, change == Change::load, in_situ);
+  const double stored = ledger.strain + ledger.interface_strain, body = work_of_body(state, before);
   ledger.fluid_work += fluid;
   ledger.in_situ_work += in_situ;
-  const double body = work_of_body(state, before);
   ledger.body_work += body;
   ledger.strain = run.equilibrium.strain;
   ledger.interface_strain = stored_in_surfaces(run.model, run.equilibrium);
   const double released = fluid + in_situ + body - (ledger.strain + ledger.interface_strain - stored);
-  const double friction = dissipated_by_friction(run.model, run.equilibrium);
+  const double friction = dissipated_by_friction(run.model, run.equilibrium, change == Change::load);
   ledger.friction += friction;
   if (change == Change::failure) ledger.failure += released - friction;
   if (change == Change::growth) ledger.excess += released - friction - surface;
@@ -459,7 +460,6 @@ void start_quasistatic(const Scene& scene, const Rocks& rocks, State& state, Qua
     return point;
   }();
   close_ledger(run, unloaded, Change::load, 0.0, state);
-  state.ledger.friction *= 0.5;
   remember(state, run.model, run.equilibrium);
 }
 

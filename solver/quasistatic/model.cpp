@@ -170,7 +170,7 @@ void load_body(const Scene& scene, double time, const IntactBody& body, State& s
 
 // Plastic slip of a place since friction's memory (m): the tangential jump less what the stick spring gives way.
 double plastic_slip(const ContactPlace& place, const LawAnswer& r, const Vec2& w) {
-  if (r.dt_dn == 0.0) return 0.0;
+  if (!place.law.slides() || r.shear() == LawAnswer::Shear::sticks) return 0.0;
   return w.dot(place.t()) - place.start.w_t + (r.t - place.start.r_t) / place.k;
 }
 
@@ -242,21 +242,36 @@ void remember(State& state, QuasistaticModel& model, const Equilibrium& equilibr
     InterfaceLaw::Memory& memory = point_of(state, place).memory;
     const double w_n = equilibrium.w[k].dot(place.n), w_t = equilibrium.w[k].dot(place.t());
     remember(place.law, w_n, w_t - place.start.w_t, memory);
-    place.start = {w_t, equilibrium.answers[k].t, memory};
+    place.start = {w_t, equilibrium.answers[k].t, memory, equilibrium.answers[k].n};
   }
 }
 
 double stored_in_surfaces(const QuasistaticModel& model, const Equilibrium& equilibrium) {
   double energy = 0.0;
-  for (std::size_t k = 0; k < model.places.size(); ++k) energy += model.places[k].A * equilibrium.answers[k].energy;
+  for (std::size_t k = 0; k < model.places.size(); ++k) {
+    const ContactPlace& place = model.places[k];
+    const LawAnswer& r = equilibrium.answers[k];
+    const bool shears = place.law.slides() && r.shear() != LawAnswer::Shear::free;
+    const double before = shears ? place.start.r_t * place.start.r_t / (2.0 * place.k) : 0.0;
+    energy += place.A * (r.energy + before);  // which counts the spring of faces that stick from the start on
+  }
   return energy;
 }
 
-double dissipated_by_friction(const QuasistaticModel& model, const Equilibrium& equilibrium) {
+double dissipated_by_friction(const QuasistaticModel& model, const Equilibrium& equilibrium, bool with_load) {
   double energy = 0.0;
   for (std::size_t k = 0; k < model.places.size(); ++k) {
+    const ContactPlace& place = model.places[k];
     const LawAnswer& r = equilibrium.answers[k];
-    energy -= model.places[k].A * r.t * plastic_slip(model.places[k], r, equilibrium.w[k]);
+    const double slip = plastic_slip(place, r, equilibrium.w[k]);
+    if (slip == 0.0) continue;
+    const double against = slip > 0.0 ? -1.0 : 1.0, last = against * r.t;
+    double first = last;
+    if (with_load) {
+      const double bound = place.law.friction() * std::max(0.0, place.start.r_n);
+      first = std::clamp(against * place.start.r_t, std::min(bound, last), std::max(bound, last));
+    }
+    energy += place.A * 0.5 * (first + last) * std::abs(slip);
   }
   return energy;
 }

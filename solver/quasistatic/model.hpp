@@ -55,10 +55,13 @@ void set_all_particles(const Scene& scene, State& state, const QuasistaticModel&
 /// Makes the equilibrium that the state holds the one that laws remember.
 void remember(State& state, QuasistaticModel& model, const Equilibrium& equilibrium);
 
-/// Energy stored in the laws of surfaces and the springs of tips (J/m).
+/// Energy stored in the laws of surfaces and the springs of tips, that of faces that stick included (J/m).
 double stored_in_surfaces(const QuasistaticModel& model, const Equilibrium& equilibrium);
 
-/// What friction has dissipated since the equilibrium that it remembers (J/m).
-double dissipated_by_friction(const QuasistaticModel& model, const Equilibrium& equilibrium);
+/// What friction has dissipated since the equilibrium that it remembers (J/m): by what it holds now, as where all
+/// happens at one load; with_load: as the load went from there to here, also on faces that have parted since. The shear
+/// on the way is then the mean of that at which sliding begins and that at its end: faces that slid go on, others begin
+/// where the bound falls to what they held or, if it does not fall so far, at the nearer of its two ends.
+double dissipated_by_friction(const QuasistaticModel& model, const Equilibrium& equilibrium, bool with_load = false);
 
 }  // namespace strata
