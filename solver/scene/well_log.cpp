@@ -218,6 +218,17 @@ std::string strata_text(Scene& scene, double bottom_m) {
                      interfaces);
 }
 
+// Stops by the tips, 5 cells before the log's ends, where rings no longer fit into fine cells; of a tip that begins
+// there none.
+std::string tip_stops(double height, double cell, double low, double high) {
+  constexpr double clear = 5.0;  // cells
+  const double least = clear * cell, most = height - clear * cell, slack = 0.5 * cell;
+  std::string text;
+  if (high < most - slack) text += fmt::format("\ntip_y_m = {}    # 5 cells below the log's top", metres(most));
+  if (low > least + slack) text += fmt::format("\nlower_tip_y_m = {}    # 5 cells above its bottom", metres(least));
+  return text;
+}
+
 // The scene: a fracture in the layer of least stress, the thickest of such, under a pressure that no layer withstands.
 std::string scene_text(Scene& scene) {
   const double bottom_m = stack(scene), cell = scene.numerics.cell_m, height = scene.domain.height_m;
@@ -240,6 +251,7 @@ inlet = {{start_Pa = {}, rate_Pa_s = 0.1e6}}    # from the stress that closes th
     fluid = "law = \"reynolds\"\nviscosity_Pa_s = 0.1    # open\ninlet = {rate_m2_s = 1e-4}    # open";
     stop = "time_s = 100.0    # open";
   }
+  stop += tip_stops(height, cell, from, to);
   return fmt::format(text_of_scene, fmt::arg("bottom", metres(bottom_m)), fmt::arg("width", metres(2.0 * x)),
                      fmt::arg("height", metres(height)), fmt::arg("beyond", metres(20.0 * height)),
                      fmt::arg("vertical", 25e3 * (bottom_m - height / 2.0)),

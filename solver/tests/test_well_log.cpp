@@ -72,6 +72,7 @@ TEST_CASE("A log is stacked upwards, with equal rocks once and a fracture in the
   CHECK(scene.fracture->path_m.back()[1] == 5.5);
   CHECK(scene.fluid.start_Pa == 2.0e6);
   CHECK(scene.in_situ.vertical_Pa.number == 25e3 * 106.0);
+  CHECK((scene.stop.tip_y_m == 9.5 && scene.stop.lower_tip_y_m == 2.5));  // 5 cells from either end
   CHECK(*scene.stop.inlet_Pa == Approx(1.01 * 3.0e6 + 1.4e6 / std::sqrt(3.14159265 * 0.5)).epsilon(1e-4));
 }
 
@@ -109,6 +110,17 @@ TEST_CASE("A log with leak-off is fed by a law that conserves the fluid") {
 TEST_CASE("Of layers of one stress the thickest has the fracture") {
   const auto path = scene_of(layers({8.0, 4.0, 12.0, 4.0})).fracture->path_m;  // from the bottom 4 to 16 m
   CHECK((path.front()[1] == 7.0 && path.back()[1] == 13.0));
+}
+
+// Requires that a run ends before a tip is held at an end of the log, but for a tip that begins within 5 cells of it.
+// Mutations that fail: stops at the ends themselves, both left out where one tip begins there.
+TEST_CASE("A log's run ends 5 cells before the log does") {
+  const std::string below = header + "0,a,20e9,0.2,1e6,3e6,\n8,b,20e9,0.2,1e6,2e6,\n12\n",
+                    above = header + "0,a,20e9,0.2,1e6,2e6,\n4,b,20e9,0.2,1e6,3e6,\n12\n";
+  const Stop bottom = scene_of(below).stop, top = scene_of(above).stop, both = scene_of(layers({8.0, 8.0, 8.0})).stop;
+  CHECK((bottom.tip_y_m == 7.0 && !bottom.lower_tip_y_m));  // from 1 to 3 m, in cells of 1 m
+  CHECK((!top.tip_y_m && top.lower_tip_y_m == 5.0));
+  CHECK((both.tip_y_m == 14.0 && !both.lower_tip_y_m));
 }
 
 TEST_CASE("All mistakes of a log are said in one pass, each with its place") {
