@@ -22,9 +22,9 @@ VARIANTS = {"one_modulus": "strata, one modulus", "perfect": "strata, moduli of 
 
 
 def fractures_of(run: Run) -> list[tuple[float, float, float]]:
-    """The fracture at seven outputs, evenly apart until the upper tip is where it ends: pressure (MPa), depths of its lower and its upper end (m)."""
+    """The fracture at seven outputs, evenly apart until it is as long as it ends: pressure (MPa), depths of its lower and its upper end (m)."""
     stored = frames(run, "fracture")
-    last = next(k for k, (_, fields) in enumerate(stored) if fields["y_m"].max() > stored[-1][1]["y_m"].max() - 1e-3)
+    last = next(k for k, (_, fields) in enumerate(stored) if np.ptp(fields["y_m"]) > np.ptp(stored[-1][1]["y_m"]) - 1e-3)
     chosen = [stored[k] for k in np.linspace(0, last, 7).round().astype(int)]
     return [(float(np.interp(time_s, run.history["time_s"], run.history["inlet_Pa"])) / 1e6, BOTTOM_M - float(fields["y_m"].min()),
              BOTTOM_M - float(fields["y_m"].max())) for time_s, fields in chosen]  # fmt: skip
@@ -42,12 +42,14 @@ def heights_of(runs: list[Run]) -> Shown:
     curves = [("strata-reference layered_height, one modulus", pressures / 1e6, BOTTOM_M - values("layered_height", "top_m", **column_of, pressure_Pa=pressures.tolist()))]
     curves += [(name, run.history["inlet_Pa"] / 1e6, BOTTOM_M - run.history["tip_y_m"]) for run, name in zip(runs, VARIANTS.values())]
     heights = np.unique(one.history["tip_y_m"])[1:]  # above the initial tip, and below where a run keeps it
-    heights = heights[heights < one.history["tip_y_m"].max()]
-    passed = {run.folder.name: np.array([pressure_beyond(run, y) for y in heights]) for run in runs}
-    off = passed["one_modulus"] - values("layered_height", "pressure_to_pass_Pa", **column_of, height_m=heights.tolist())
-    moduli, bedding = (np.abs(after - before).max() / 1e6 for before, after in ((passed["one_modulus"], passed["perfect"]), (passed["perfect"], passed["default"])))
+    heights = heights[heights < min(run.history["tip_y_m"].max() for run in (one, perfect))]
+    passed, with_moduli = (np.array([pressure_beyond(run, y) for y in heights]) for run in (one, perfect))
+    off = passed - values("layered_height", "pressure_to_pass_Pa", **column_of, height_m=heights.tolist())
+    held_m = full.history["tip_y_m"].max()  # where the bedding plane holds the upper tip until the lower one ends the run
+    held = full.summary.inlet_Pa - pressure_beyond(perfect, held_m)
     title = (f"Pressures that pass a height: strata within {np.abs(off).max() / 1e6:.2f} MPa of the reference with one modulus; the log's moduli "
-             f"move them by up to {moduli:.2f} MPa, its weak bedding plane by {bedding:.2f} MPa")
+             f"move them by up to {np.abs(with_moduli - passed).max() / 1e6:.2f} MPa, its weak bedding plane holds the upper tip at {BOTTOM_M - held_m:.0f} m "
+             f"for {held / 1e6:.2f} MPa and more")
     shown = [Shown(rock=layer["rock"], top_m=top, thickness_m=bottom - top, stress_MPa=layer["horizontal_Pa"] / 1e6,
                    modulus_GPa=full.scene["rock"][layer["rock"]]["youngs_modulus_Pa"] / 1e9) for layer, top, bottom in zip(layers, tops, bottoms)]
     beds = [(top, name) for top, name in zip(tops, full.scene["strata"]["interfaces"]) if name != "perfect"]
