@@ -58,9 +58,10 @@ TEST_CASE("a place sticks or slides as its cohesion falls") {
 }
 
 // Requires that the path turns round where the place would jam: above the critical friction, q mu = 1.5, slip at
-// n = 1.5 - c/2 begins at c = 0.5 and goes back with c rising to 1.5, where the faces part; from there it falls to the
-// only equilibrium, open: w = K^-1 f. With a smaller shear there are three, and the place stays stuck. Mutations that
-// fail: a cohesion that only falls, none on open faces, a change of both contact and shear at once.
+// n = 1.5 - c begins at c = 0.5 and goes back with c rising to 1.5, where the faces part, held by the cohesion still;
+// from there it falls to the only equilibrium, open: w = K^-1 f. With a smaller shear there are three, and the place
+// stays stuck. Mutations that fail: a cohesion that only falls, shear at its bound with the other sign, margins of the
+// other way, no cohesion on open faces.
 TEST_CASE("the path turns round where friction jams") {
   const CohesionPath open = path_of(coupled(0.5), {-1.0, 3.5}, 3.0);
   CAPTURE(open.j, open.cohesion, open.changes);
@@ -68,6 +69,8 @@ TEST_CASE("the path turns round where friction jams") {
   CHECK(open.j[0] == Approx(1.0).epsilon(1e-8));
   CHECK(open.j[1] == Approx(4.0).epsilon(1e-8));
   CHECK(path_of(coupled(0.5), {-1.0, 2.5}, 3.0).j.norm() < 1e-9);
+  const LawAnswer held = answer_on(one_place(coupled(0.5), Vec2::Zero(), 3.0).lines[0], {false, -1}, 1.5);
+  CHECK((held.n_0 == 0.0 && held.dn_dn == 0.0 && held.t_0 == -1.5 && held.dt_dn == 0.0 && held.dt_dt == 0.0));
 }
 
 // Requires that what nothing but friction holds against sliding is said to need the cohesion that is missing: the load
