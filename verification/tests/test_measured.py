@@ -104,9 +104,6 @@ def test_wu_the_side_of_less_stress_goes_on() -> None:
     assert bottoms[1] - bottoms[-1] > 0.11 and tops[-1] - tops[1] < 0.005
 
 
-FAILED_RUNS = {"inclined": [(0.8, 60.0), (0.9, 60.0), (1.0, 60.0)]}
-
-
 def made(folder: Path, rise_Pa: float, slid_m: float, at_Pa: float = 2.42e6, to_m: float = 14.0, slip_m: float = 1e-4, end_Pa: float = 3e6) -> Verdict:
     """The verdict on a run that comes to 10 m at 2.38 MPa and goes on so much later, of whose interface a length slides at a pressure."""
     outputs = [(2.3e6, 0.0), (at_Pa, slid_m), (2.95e6, slid_m)]
@@ -193,13 +190,12 @@ def test_tables(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", list(MAPS))
 def test_kept_tables_are_whole(name: str, tmp_path: Path) -> None:
-    """Every run of a map has its line, and none failed, but for those that README.md names."""
+    """Every run of a map has its line, and none failed."""
     one = MAPS[name]
     kept = read_table(one)
     rows = [sweep.axes_of(job) for job in sweep.jobs_of(one.scene(tmp_path), tmp_path)]
     assert list(kept) == [(one.x.value(row), one.y.value(row)) for row in rows]
-    failed = [at for at, found in kept.items() if found.verdict not in (CROSSES, STOPS, GIVES_WAY)]
-    assert failed == FAILED_RUNS.get(name, [])
+    assert not [at for at, found in kept.items() if found.verdict not in (CROSSES, STOPS, GIVES_WAY)]
 
 
 def test_the_border_is_where_slip_comes_two_metres_far() -> None:
