@@ -366,12 +366,12 @@ double solve_by_falling_cohesion(const State& state, const Condensed& condensed,
   return ends_at(state, condensed, places, factor, at) ? 0.0 : HUGE_VAL;
 }
 
-// Where Newton's steps go round, or come through pieces on which parts move freely (`why`): other ways to the same
-// equations, one after the other.
+// Where Newton's steps go round: other ways to the same equations, one after the other.
 void solve_otherwise(const State& state, const Condensed& condensed, const Places& places, TangentFactor& factor,
-                     Equilibrium& at, std::string why) {
+                     Equilibrium& at) {
+  std::string why;
   try {
-    if (why.empty() && solve_with_fixed_bounds(state, condensed, places, factor, at)) return;
+    if (solve_with_fixed_bounds(state, condensed, places, factor, at)) return;
   } catch (const NumericalFailure& mechanism) {  // of the bounds, perhaps not of the laws
     why = mechanism.what();
   }
@@ -438,17 +438,10 @@ Equilibrium solve_equilibrium(const State& state, const Condensed& condensed, co
   const Eigen::VectorXd first =
       start.size() == condensed.size() ? start : Eigen::VectorXd(Eigen::VectorXd::Zero(condensed.size()));
   at.j = first;
-  std::string why;
-  try {
-    if (iterate(state, condensed, places, factor, false, at)) return at;
-  } catch (const NumericalFailure& mechanism) {
-    const bool rubs = std::ranges::any_of(places, [](const ContactPlace& p) { return p.law.friction() > 0.0; });
-    if (!rubs) throw;  // without friction the energy is convex: nothing else is to be found
-    why = mechanism.what();
-  }
+  if (iterate(state, condensed, places, factor, false, at)) return at;
   at = Equilibrium{};
   at.j = first;
-  solve_otherwise(state, condensed, places, factor, at, why);
+  solve_otherwise(state, condensed, places, factor, at);
   return at;
 }
 
