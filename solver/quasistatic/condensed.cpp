@@ -176,12 +176,12 @@ void condense_some(const IntactBody& body, std::span<const std::size_t> some, co
     G.push_back(summed(std::move(entries[k])));
     loaded.insert(loaded.end(), G.back().index.begin(), G.back().index.end());
   }
-  TreeFactor::SideBySide y(factor, factor.branches(loaded));
+  TreeFactor::SideBySide y = TreeFactor::SideBySide::Zero(factor.size(), TreeFactor::together);
   for (std::size_t c = 0; c < some.size(); ++c) {
     for (std::size_t e = 0; e < G[c].index.size(); ++e)
-      y[factor.row(G[c].index[e])][static_cast<Eigen::Index>(c)] = G[c].value[e];
+      y(factor.row(G[c].index[e]), static_cast<Eigen::Index>(c)) = G[c].value[e];
   }
-  factor.forward(y);
+  factor.forward(factor.branches(loaded), y);
   for (std::size_t c = 0; c < some.size(); ++c) {
     auto column = std::make_shared<JumpColumn>(*out.columns[some[c]]);
     column->Y = factor.on_branches(factor.branches(G[c].index), y, c);
@@ -190,8 +190,8 @@ void condense_some(const IntactBody& body, std::span<const std::size_t> some, co
   }
   for (std::size_t b = 0; b < out.columns.size(); ++b) {
     const SparseVector& Y = out.columns[b]->Y;
-    TreeFactor::SideBySide::Row product = TreeFactor::SideBySide::Row::Zero();
-    for (std::size_t e = 0; e < Y.index.size(); ++e) product += Y.value[e] * y[Y.index[e]];
+    Eigen::RowVector<double, TreeFactor::together> product = Eigen::RowVector<double, TreeFactor::together>::Zero();
+    for (std::size_t e = 0; e < Y.index.size(); ++e) product += Y.value[e] * y.row(Y.index[e]);
     for (std::size_t c = 0; c < some.size(); ++c) {
       if (fresh[b] != 0 && b > some[c]) continue;  // its turn comes
       const auto i = static_cast<Eigen::Index>(some[c]), j = static_cast<Eigen::Index>(b);
@@ -259,7 +259,7 @@ Condensed condense(const Scene& scene, const Rocks& rocks, const State& state, c
     if (fresh[k] != 0) made.push_back(k);
   }
   std::vector<Entries> entries = assemble_jumps(scene, rocks, state, body, fresh, out);
-  constexpr std::size_t most = TreeFactor::SideBySide::most;
+  constexpr std::size_t most = TreeFactor::together;
   for (std::size_t from = 0; from < made.size(); from += most) {
     const auto some = std::span(made).subspan(from, std::min(most, made.size() - from));
     condense_some(body, some, fresh, entries, out);

@@ -1,16 +1,18 @@
 // Sparse Cholesky factor for solves with few loads of which few displacements are asked for.
 //
-// L L^T = P K P^T. Columns of L with the same rows below them form supernodes, here cut into blocks of up to eight
-// columns. A block passes its load on to its parent in the elimination tree, which holds the first row below it, and to
-// others further up the same branch (Liu, SIAM J. Matrix Anal. Appl. 11, 1990): L y = P f fills y on the branches from
-// the loaded rows to the root alone, and L^T x = y needs, for a few entries of x, no rows but those on their branches.
-// Both sums are those of the whole solve less terms that are 0, so they give the same digits.
+// L L^T = P K P^T. Columns of L with the same rows below them form supernodes. A supernode passes its load on to its
+// parent in the elimination tree, which holds the first row below it, and to others further up the same branch (Liu,
+// SIAM J. Matrix Anal. Appl. 11, 1990): L y = P f fills y on the branches from the loaded rows to the root alone, and
+// L^T x = y needs, for a few entries of x, no rows but those on their branches. Both sums are those of the whole solve
+// less terms that are 0, so they give the same digits.
 #pragma once
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
-#include <cstdint>
+#include <memory>
 #include <vector>
+
+struct cholmod_factor_struct;
 
 namespace strata {
 
@@ -22,8 +24,12 @@ struct SparseVector {
 
 class TreeFactor {
  public:
-  /// Blocks of the factor, rising, with each block its parents up to the root.
+  /// Supernodes of the factor, rising, with each its parents up to the root.
   using Branches = std::vector<int>;
+
+  // Vectors in rows of the factor, always so many: the digits of one do not depend on the others.
+  static constexpr std::size_t together = 16;
+  using SideBySide = Eigen::Matrix<double, Eigen::Dynamic, together, Eigen::RowMajor>;
 
   TreeFactor() = default;
 
@@ -34,7 +40,7 @@ class TreeFactor {
   /// The branches on which the given unknowns lie. Throws nothing.
   Branches branches(const std::vector<int>& unknowns) const;
 
-  /// All blocks.
+  /// All supernodes.
   const Branches& all() const { return all_; }
 
   /// The row of an unknown.
@@ -47,54 +53,26 @@ class TreeFactor {
   /// x = K^-1 f by unknowns, whole. Throws nothing.
   Eigen::VectorXd solve(const Eigen::VectorXd& f) const;
 
-  // Up to 16 vectors side by side in rows of the factor, with room for those on some branches; all others are 0.
-  class SideBySide {
-   public:
-    static constexpr std::size_t most = 16;
-    using Row = Eigen::Array<double, most, 1>;
-    SideBySide(const TreeFactor& factor, Branches branches);
-    Row& operator[](int row) { return values_[place_[static_cast<std::size_t>(row)]]; }
-    const Branches& branches() const { return branches_; }
+  /// Puts Y = L^-1 P g in the place of each g, which are 0 off the branches `loaded`. Throws nothing.
+  void forward(const Branches& loaded, SideBySide& g) const;
 
-   private:
-    Branches branches_;
-    std::vector<std::uint32_t> place_;  // of each row among the values; 0: the one of all without room
-    std::vector<Row> values_;
-  };
-
-  /// Puts Y = L^-1 P g in the place of each g, given in rows of the factor; the digits of one do not depend on the
-  /// others. Throws nothing.
-  void forward(SideBySide& g) const;
-
-  /// One of them on some branches of its own. Throws nothing.
-  SparseVector on_branches(const Branches& branches, SideBySide& y, std::size_t which) const;
+  /// One of some vectors on some branches. Throws nothing.
+  SparseVector on_branches(const Branches& branches, const SideBySide& y, std::size_t which) const;
 
   int size() const { return static_cast<int>(place_.size()); }
 
  private:
-  static constexpr int width = 8;  // columns of a block: a vector of the processor
-  using Eight = Eigen::Array<double, width, 1>;
+  struct Supernode;
 
-  // Columns [first, first + columns) and the rows below them.
-  struct Block {
-    int first = 0, columns = 0;
-    int parent = -1;           // -1: a root
-    std::size_t rows = 0;      // where its rows below begin in row_
-    std::size_t last_row = 0;  // and end
-    std::size_t values = 0;    // where its values begin in values_: of its own rows, unit ones to make eight, then of
-                               // those below; one Eight a row, a value a column
-  };
+  Supernode supernode(int s) const;
+  template <class Rows>
+  void down(int s, Rows& y) const;
+  void up(int s, Eigen::VectorXd& y) const;
 
-  void add_block(int first, int columns, const double* values, std::size_t stride, const int* rows, std::size_t count);
-  void up(const Block& block, Eigen::VectorXd& y) const;
-  template <class Row, class Rows>
-  void down(const Block& block, const Row& zero, Rows& y) const;
-
+  std::shared_ptr<const cholmod_factor_struct> L_;
   std::vector<int> place_;  // row of an unknown
-  std::vector<Block> blocks_;
-  std::vector<int> block_of_row_;
-  std::vector<int> row_;
-  std::vector<Eight> values_;
+  std::vector<int> supernode_of_row_;
+  std::vector<int> parent_;  // of a supernode; -1: a root
   Branches all_;
 };
 

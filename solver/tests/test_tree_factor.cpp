@@ -41,18 +41,18 @@ Eigen::VectorXd dense(const SparseVector& v, Eigen::Index n) {
 
 // Y = L^-1 P g of each g, up to 16 at a time.
 std::vector<SparseVector> forward(const TreeFactor& factor, const std::vector<SparseVector>& g) {
-  constexpr std::size_t most = TreeFactor::SideBySide::most;
+  constexpr std::size_t most = TreeFactor::together;
   std::vector<SparseVector> Y;
   for (std::size_t from = 0; from < g.size(); from += most) {
     const std::size_t to = std::min(from + most, g.size());
     std::vector<int> loaded;
     for (std::size_t k = from; k < to; ++k) loaded.insert(loaded.end(), g[k].index.begin(), g[k].index.end());
-    TreeFactor::SideBySide y(factor, factor.branches(loaded));
+    TreeFactor::SideBySide y = TreeFactor::SideBySide::Zero(factor.size(), most);
     for (std::size_t k = from; k < to; ++k) {
       for (std::size_t e = 0; e < g[k].index.size(); ++e)
-        y[factor.row(g[k].index[e])][static_cast<Eigen::Index>(k - from)] = g[k].value[e];
+        y(factor.row(g[k].index[e]), static_cast<Eigen::Index>(k - from)) = g[k].value[e];
     }
-    factor.forward(y);
+    factor.forward(factor.branches(loaded), y);
     for (std::size_t k = from; k < to; ++k) Y.push_back(factor.on_branches(factor.branches(g[k].index), y, k - from));
   }
   return Y;
