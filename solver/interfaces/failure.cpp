@@ -10,8 +10,8 @@
 #include <tuple>
 #include <vector>
 
+#include "state/particle_loop.hpp"
 #include "state/rebuild.hpp"
-#include "state/shape_functions.hpp"
 
 namespace strata {
 namespace {
@@ -93,10 +93,8 @@ constexpr double least_share = 0.1;  // of a cell: a column that reaches less of
 bool split_by_fracture(const State& state, const Band& band, int column, SideWord sides, bool plus) {
   const int across = plus ? band.last : band.first;
   const int node = band.along_x ? state.grid.node(column, across) : state.grid.node(across, column);
-  const int c = state.copies.cut_of_node[static_cast<std::size_t>(node)];
-  if (c < 0) return false;
-  const CutNode& cut = state.copies.cut[static_cast<std::size_t>(c)];
-  return cut.key(sides | cut.fracture) != cut.key(sides & ~cut.fracture);
+  const CutNode* cut = state.copies.cut_at(node);
+  return cut != nullptr && cut->key(sides | cut->fracture) != cut->key(sides & ~cut->fracture);
 }
 
 // Column, side of the interface, side of the fracture (-1: not told apart).
@@ -197,14 +195,13 @@ bool begins_stretch(const State& state, const Band& band, const Surface& surface
 void add_inertia(SampleBuilder& b) {
   if (b.scene.numerics.mechanics == Numerics::Mechanics::quasistatic) return;
   const Particles& p = b.state.particles;
-  const Grid& grid = b.state.grid;
   const std::vector<std::size_t> bin_of = bins_of_particles(b.state);
   for (auto& [key, sample] : b.samples) {
     std::map<int, double> masses;
     for (const BondSample::Share& share : sample.particles) {
       const std::size_t q = share.index;
       const Bin& bin = b.state.bins[bin_of[q]];
-      const Gradients g = gradients_at(b.scene, grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
+      const Gradients g = gradients_at(b.scene, b.state, bin, q);
       for (std::size_t n = 0; n < 9; ++n) {
         const int i = bin.i + static_cast<int>(n % 3) - 1, j = bin.j + static_cast<int>(n / 3) - 1;
         const bool own = (b.band.along_x ? i : j) == std::get<0>(key) && b.band.holds(b.band.along_x ? j : i);

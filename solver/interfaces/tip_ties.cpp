@@ -61,7 +61,7 @@ void update_tip_ties(const Scene& scene, const Rocks& rocks, State& state) {
     const Elasticity& rock = rocks[rock_at(scene, place_ahead(state, tip))];
     for (const CutNode& cut : state.copies.cut) {
       if (cut.fracture == 0 || cut.records.size() < 2) continue;
-      const int node = state.copies.node_of_record[static_cast<std::size_t>(cut.records.front())];
+      const int node = state.copies.node(cut.records.front());
       const Vec2 x{state.grid.x(state.grid.column(node)), state.grid.y(state.grid.row(node))};
       // A tied node is less than a cell behind the tip and no more than 1.5 cells across: never as far as this.
       if ((x - at).norm() > 3.0 * state.grid.h) continue;

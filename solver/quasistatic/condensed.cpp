@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <numeric>
+#include <ranges>
 #include <span>
 #include <utility>
 
-#include "state/stiffness.hpp"
+#include "state/particle_loop.hpp"
 
 namespace strata {
 namespace {
@@ -40,7 +42,7 @@ void number_jumps(const State& state, const IntactBody& body, Condensed& out) {
   out.jump_of_record.assign(static_cast<std::size_t>(state.copies.records()), {-1, -1});
   for (const CutNode& cut : state.copies.cut) {
     if (cut.records.size() < 2) continue;
-    const int node = state.copies.node_of_record[static_cast<std::size_t>(cut.records.front())];
+    const int node = state.copies.node(cut.records.front());
     const Master& intact = body.masters[static_cast<std::size_t>(node)];
     for (int component = 0; component < 2; ++component) {
       bool carries_u = intact.record == node && intact.of(component) != 0.0;
@@ -83,16 +85,14 @@ std::vector<char> reuse_columns(const Condensed* before, Condensed& out) {
   return fresh;
 }
 
-using Entries = std::vector<std::pair<int, double>>;
-
 // Adds what one particle contributes to G of the new unknowns and to their K_jj, in the place of S.
 void add_particle(const LocalStiffness& K, const Bin& bin, const IntactBody& body, const State& state,
-                  const std::vector<char>& fresh, Condensed& out, std::vector<Entries>& G) {
+                  const std::vector<char>& fresh, Condensed& out, std::vector<SparseVector>& G) {
   std::array<Unknown, 18> base, jump;
   for (int k = 0; k < 18; ++k) {
     const auto at = static_cast<std::size_t>(k);
     const int record = bin.record[at / 2];
-    base[at] = unknown_of(body.masters, state.copies.node_of_record[static_cast<std::size_t>(record)], k % 2);
+    base[at] = unknown_of(body.masters, state.copies.node(record), k % 2);
     jump[at] = jump_unknown(out, record, k % 2);
   }
   for (int b = 0; b < 18; ++b) {
@@ -111,9 +111,9 @@ void add_particle(const LocalStiffness& K, const Bin& bin, const IntactBody& bod
 
 // Assembles G and K_jj of the new unknowns. Particles come cell by cell in the order of their ids, so that sums do not
 // depend on how copies group them into bins.
-std::vector<Entries> assemble_jumps(const Scene& scene, const Rocks& rocks, const State& state, const IntactBody& body,
-                                    const std::vector<char>& fresh, Condensed& out) {
-  std::vector<Entries> G(out.columns.size());
+std::vector<SparseVector> assemble_jumps(const Scene& scene, const Rocks& rocks, const State& state,
+                                         const IntactBody& body, const std::vector<char>& fresh, Condensed& out) {
+  std::vector<SparseVector> G(out.columns.size());
   const Particles& p = state.particles;
   const auto touches_new = [&](const Bin& bin) {
     for (const int record : bin.record) {
@@ -145,7 +145,7 @@ std::vector<Entries> assemble_jumps(const Scene& scene, const Rocks& rocks, cons
     for (const Member& m : members) {
       if (body.halved && p.x[m.q] > 0.5 * scene.domain.width_m) continue;
       LocalStiffness K = LocalStiffness::Zero();
-      const Gradients g = gradients_at(scene, state.grid, m.bin->i, m.bin->j, {p.x[m.q], p.y[m.q]}, p.half(m.q));
+      const Gradients g = gradients_at(scene, state, *m.bin, m.q);
       add_stiffness(rocks[p.rock[m.q]], g, body.halved ? 2.0 * p.V[m.q] : p.V[m.q], K);
       add_particle(K, *m.bin, body, state, fresh, out, G);
     }
@@ -153,45 +153,30 @@ std::vector<Entries> assemble_jumps(const Scene& scene, const Rocks& rocks, cons
   return G;
 }
 
-SparseVector summed(Entries entries) {
+SparseVector summed(SparseVector entries) {
   std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   SparseVector out;
   for (const auto& [index, value] : entries) {
-    if (out.index.empty() || out.index.back() != index) {
-      out.index.push_back(index);
-      out.value.push_back(0.0);
-    }
-    out.value.back() += value;
+    if (out.empty() || out.back().first != index) out.emplace_back(index, 0.0);
+    out.back().second += value;
   }
   return out;
 }
 
 // G and Y of new unknowns, so many side by side, and their S = K_jj - Y^T Y against all whose Y is known.
 void condense_some(const IntactBody& body, std::span<const std::size_t> some, const std::vector<char>& fresh,
-                   std::vector<Entries>& entries, Condensed& out) {
-  const TreeFactor& factor = body.factor;
+                   std::vector<SparseVector>& entries, Condensed& out) {
   std::vector<SparseVector> G;
-  std::vector<int> loaded;
-  for (const std::size_t k : some) {
-    G.push_back(summed(std::move(entries[k])));
-    loaded.insert(loaded.end(), G.back().index.begin(), G.back().index.end());
-  }
-  TreeFactor::SideBySide y = TreeFactor::SideBySide::Zero(factor.size(), TreeFactor::together);
+  for (const std::size_t k : some) G.push_back(summed(std::move(entries[k])));
+  TreeFactor::SideBySide y;
+  std::vector<SparseVector> Y = body.factor.forward(G, y);
   for (std::size_t c = 0; c < some.size(); ++c) {
-    for (std::size_t e = 0; e < G[c].index.size(); ++e)
-      y(factor.row(G[c].index[e]), static_cast<Eigen::Index>(c)) = G[c].value[e];
-  }
-  factor.forward(factor.branches(loaded), y);
-  for (std::size_t c = 0; c < some.size(); ++c) {
-    auto column = std::make_shared<JumpColumn>(*out.columns[some[c]]);
-    column->Y = factor.on_branches(factor.branches(G[c].index), y, c);
-    column->G = std::move(G[c]);
-    out.columns[some[c]] = std::move(column);
+    auto& column = out.columns[some[c]];
+    column = std::make_shared<JumpColumn>(JumpColumn{column->key, std::move(G[c]), std::move(Y[c])});
   }
   for (std::size_t b = 0; b < out.columns.size(); ++b) {
-    const SparseVector& Y = out.columns[b]->Y;
     Eigen::RowVector<double, TreeFactor::together> product = Eigen::RowVector<double, TreeFactor::together>::Zero();
-    for (std::size_t e = 0; e < Y.index.size(); ++e) product += Y.value[e] * y.row(Y.index[e]);
+    for (const auto& [row, value] : out.columns[b]->Y) product += value * y.row(row);
     for (std::size_t c = 0; c < some.size(); ++c) {
       if (fresh[b] != 0 && b > some[c]) continue;  // its turn comes
       const auto i = static_cast<Eigen::Index>(some[c]), j = static_cast<Eigen::Index>(b);
@@ -214,25 +199,20 @@ void remove_rigid_motion(const Scene& scene, const State& state, bool halved, st
   const Vec2 centre{0.5 * scene.domain.width_m, 0.5 * scene.domain.height_m};
   Vec2 mean = Vec2::Zero();
   double turn = 0.0, polar = 0.0, area = 0.0;
-  for (const Bin& bin : state.bins) {
-    for (const std::size_t q : bin) {
-      const Vec2 x{p.x[q], p.y[q]};
-      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, x, p.half(q));
-      Vec2 u_p = Vec2::Zero();
-      for (std::size_t n = 0; n < 9; ++n) u_p += g.N[n] * u[static_cast<std::size_t>(bin.record[n])];
-      mean += p.V[q] * u_p;
-      turn += p.V[q] * cross(x - centre, u_p);
-      polar += p.V[q] * (x - centre).squaredNorm();
-      area += p.V[q];
-    }
-  }
+  for_each_particle(scene, state, state.bins, [&](const Bin& bin, std::size_t q, const Gradients& g) {
+    const Vec2 arm = Vec2{p.x[q], p.y[q]} - centre, u_p = interpolate(g, bin, u);
+    mean += p.V[q] * u_p;
+    turn += p.V[q] * cross(arm, u_p);
+    polar += p.V[q] * arm.squaredNorm();
+    area += p.V[q];
+  });
   mean /= area;
   turn = !x_held && !y_held ? turn / polar : 0.0;
   if (x_held) mean.x() = 0.0;
   if (y_held) mean.y() = 0.0;
   const Grid& grid = state.grid;
   for (std::size_t r = 0; r < u.size(); ++r) {
-    const int node = state.copies.node_of_record[r];
+    const int node = state.copies.node(static_cast<int>(r));
     const Vec2 arm = Vec2{grid.x(grid.column(node)), grid.y(grid.row(node))} - centre;
     u[r] -= mean + turn * Vec2{-arm.y(), arm.x()};
   }
@@ -258,14 +238,14 @@ Condensed condense(const Scene& scene, const Rocks& rocks, const State& state, c
   for (std::size_t k = 0; k < fresh.size(); ++k) {
     if (fresh[k] != 0) made.push_back(k);
   }
-  std::vector<Entries> entries = assemble_jumps(scene, rocks, state, body, fresh, out);
+  std::vector<SparseVector> entries = assemble_jumps(scene, rocks, state, body, fresh, out);
   constexpr std::size_t most = TreeFactor::together;
   for (std::size_t from = 0; from < made.size(); from += most) {
     const auto some = std::span(made).subspan(from, std::min(most, made.size() - from));
     condense_some(body, some, fresh, entries, out);
   }
   std::vector<int> loaded;
-  for (const auto& column : out.columns) loaded.insert(loaded.end(), column->G.index.begin(), column->G.index.end());
+  for (const auto& column : out.columns) std::ranges::copy(std::views::keys(column->G), std::back_inserter(loaded));
   out.loaded = body.factor.branches(loaded);
   return out;
 }
@@ -279,7 +259,7 @@ Asked ask_for(const Scene& scene, const State& state, const IntactBody& body, co
   records.erase(std::unique(records.begin(), records.end()), records.end());
   std::vector<int> unknowns;
   for (const int record : records) {
-    const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
+    const int node = state.copies.node(record);
     for (int component = 0; component < 2; ++component) {
       const Unknown from = unknown_of(body.masters, node, component);
       if (from.index >= 0) unknowns.push_back(from.index);
@@ -303,14 +283,13 @@ std::vector<Vec2> displacements(const Scene& scene, const State& state, const In
   Eigen::VectorXd base = Eigen::VectorXd::Zero(factor.size());
   for (int k = 0; k < condensed.load.intact.size(); ++k) base[factor.row(k)] = condensed.load.intact[k];
   for (std::size_t k = 0; k < condensed.columns.size(); ++k) {
-    const SparseVector& G = condensed.columns[k]->G;
-    for (std::size_t e = 0; e < G.index.size(); ++e)
-      base[factor.row(G.index[e])] -= G.value[e] * j[static_cast<Eigen::Index>(k)];
+    for (const auto& [unknown, value] : condensed.columns[k]->G)
+      base[factor.row(unknown)] -= value * j[static_cast<Eigen::Index>(k)];
   }
   factor.solve(loaded, asked.blocks, base);
   std::vector<Vec2> u(static_cast<std::size_t>(state.copies.records()), Vec2::Zero());
   for (const int record : asked.records) {
-    const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
+    const int node = state.copies.node(record);
     Vec2& u_r = u[static_cast<std::size_t>(record)];
     for (int component = 0; component < 2; ++component) {
       const Unknown from = unknown_of(body.masters, node, component), jump = jump_unknown(condensed, record, component);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "state/particle_loop.hpp"
 #include "state/rebuild.hpp"
 #include "state/stiffness.hpp"
 
@@ -17,14 +18,12 @@ int mirror_node(const Grid& g, int node) {
 // The record across the mirror line: the other side of the fracture, the same side of everything else.
 int mirror_record(const State& state, int record) {
   const Copies& copies = state.copies;
-  const int node = copies.node_of_record[static_cast<std::size_t>(record)];
-  const int c = copies.cut_of_node[static_cast<std::size_t>(node)];
-  if (c < 0) return mirror_node(state.grid, node);
-  const CutNode& cut = copies.cut[static_cast<std::size_t>(c)];
-  const auto at = std::find(cut.records.begin(), cut.records.end(), record);
-  if (at == cut.records.end()) return record;  // not in use
-  const SideWord key = cut.keys[static_cast<std::size_t>(at - cut.records.begin())];
-  const int found = record_of(copies, mirror_node(state.grid, node), key ^ cut.fracture);
+  const int node = copies.node(record);
+  const CutNode* cut = copies.cut_at(node);
+  if (cut == nullptr) return mirror_node(state.grid, node);
+  const auto key = cut->key_of(record);
+  if (!key) return record;  // not in use
+  const int found = record_of(copies, mirror_node(state.grid, node), *key ^ cut->fracture);
   if (found < 0) throw std::logic_error("a record has no image across the mirror line");
   return found;
 }
@@ -84,7 +83,7 @@ std::vector<Master> mirrored(const State& state, std::vector<Master> masters) {
   const Grid& g = state.grid;
   const std::vector<Master> edges = masters;
   for (Master& master : masters) {
-    const int node = state.copies.node_of_record[static_cast<std::size_t>(master.record)];
+    const int node = state.copies.node(master.record);
     const int column = g.column(node);
     if (2 * column < g.nx) continue;
     const int image = mirror_record(state, master.record);
@@ -131,21 +130,18 @@ void load_in_situ(const Scene& scene, const Rocks& rocks, State& state) {
   if (scene.domain.bottom == Edge::traction) load_edge(loaded, state, corners[0], corners[1], {0.0, vertical}, f);
   const Eigen::VectorXd u = body.factor.solve(f);
   Particles& p = state.particles;
-  for (const Bin& bin : state.bins) {
-    for (const std::size_t q : bin) {
-      const Gradients g = gradients_at(loaded, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
-      double e[2][2] = {};
-      for (std::size_t n = 0; n < 9; ++n) {
-        for (int component = 0; component < 2; ++component) {
-          const Unknown at = unknown_of(state.masters, bin.record[n], component);
-          const double value = at.index < 0 ? 0.0 : at.factor * u[at.index];
-          e[component][0] += value * g.N_x[n], e[component][1] += value * g.N_y[n];
-        }
+  for_each_particle(loaded, state, state.bins, [&](const Bin& bin, std::size_t q, const Gradients& g) {
+    double e[2][2] = {};
+    for (std::size_t n = 0; n < 9; ++n) {
+      for (int component = 0; component < 2; ++component) {
+        const Unknown at = unknown_of(state.masters, bin.record[n], component);
+        const double value = at.index < 0 ? 0.0 : at.factor * u[at.index];
+        e[component][0] += value * g.N_x[n], e[component][1] += value * g.N_y[n];
       }
-      p.in_situ[q] =
-          p.in_situ[q] + -1.0 * edges_stress(scene) + stress_of(rocks[p.rock[q]], e[0][0], e[0][1], e[1][0], e[1][1]);
     }
-  }
+    p.in_situ[q] =
+        p.in_situ[q] + -1.0 * edges_stress(scene) + stress_of(rocks[p.rock[q]], e[0][0], e[0][1], e[1][0], e[1][1]);
+  });
 }
 
 }  // namespace strata

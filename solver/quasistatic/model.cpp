@@ -11,15 +11,11 @@
 #include "interfaces/tip_ties.hpp"
 #include "scene/graded_cells.hpp"
 #include "state/body_force.hpp"
+#include "state/particle_loop.hpp"
 #include "state/stiffness.hpp"
 
 namespace strata {
 namespace {
-
-Gradients gradients_of_particle(const Scene& scene, const State& state, const Bin& bin, std::size_t q) {
-  const Particles& p = state.particles;
-  return gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
-}
 
 // Fields of the particles of some bins.
 void set_particles(const Scene& scene, const std::vector<std::size_t>& bins, const std::vector<Vec2>& u, State& state) {
@@ -95,14 +91,11 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> jumps_at_vertices(const State& stat
 // Masses of the copies of cut nodes (kg/m), which tell those that have rock; others' are not complete.
 void weigh_copies(const Scene& scene, State& state) {
   state.sums.clear(state.sums.size());
-  const Particles& p = state.particles;
-  for (const std::size_t b : state.cut_bins) {
-    const Bin& bin = state.bins[b];
-    for (const std::size_t q : bin) {
-      const Gradients g = gradients_of_particle(scene, state, bin, q);
-      for (std::size_t n = 0; n < 9; ++n) state.sums[static_cast<std::size_t>(bin.record[n])].m += g.N[n] * p.m[q];
-    }
-  }
+  for_each_particle(scene, state, bins_at(state, state.cut_bins),
+                    [&](const Bin& bin, std::size_t q, const Gradients& g) {
+                      for (std::size_t n = 0; n < 9; ++n)
+                        state.sums[static_cast<std::size_t>(bin.record[n])].m += g.N[n] * state.particles.m[q];
+                    });
 }
 
 // Corners that stand in for edges that hold nothing would have to carry what a force pushes the whole block with.
@@ -144,26 +137,22 @@ void load_body(const Scene& scene, double time, const IntactBody& body, State& s
   load.time = time;
   load.intact = Eigen::VectorXd::Zero(body.unknowns());
   load.jumps = Eigen::VectorXd::Zero(condensed.size());
-  for (const Bin& bin : state.bins) {
-    for (const std::size_t q : bin) {
-      const Gradients g = gradients_of_particle(scene, state, bin, q);
-      for (std::size_t n = 0; n < 9; ++n) {
-        const int node = state.copies.node_of_record[static_cast<std::size_t>(bin.record[n])];
-        for (int component = 0; component < 2; ++component) {
-          const double f = g.N[n] * p.m[q] * state.body[q][component];
-          const Unknown base = unknown_of(body.masters, node, component);
-          const Unknown jump = jump_unknown(condensed, bin.record[n], component);
-          if (base.index >= 0) load.intact[base.index] += base.factor * f;
-          if (jump.index >= 0) load.jumps[jump.index] += jump.factor * f;
-        }
+  for_each_particle(scene, state, state.bins, [&](const Bin& bin, std::size_t q, const Gradients& g) {
+    for (std::size_t n = 0; n < 9; ++n) {
+      const int node = state.copies.node(bin.record[n]);
+      for (int component = 0; component < 2; ++component) {
+        const double f = g.N[n] * p.m[q] * state.body[q][component];
+        const Unknown base = unknown_of(body.masters, node, component);
+        const Unknown jump = jump_unknown(condensed, bin.record[n], component);
+        if (base.index >= 0) load.intact[base.index] += base.factor * f;
+        if (jump.index >= 0) load.jumps[jump.index] += jump.factor * f;
       }
     }
-  }
+  });
   const Eigen::VectorXd u_0 = body.factor.solve(load.intact);
   for (std::size_t k = 0; k < condensed.columns.size(); ++k) {
-    const SparseVector& G = condensed.columns[k]->G;
-    for (std::size_t e = 0; e < G.index.size(); ++e)
-      load.jumps[static_cast<Eigen::Index>(k)] -= G.value[e] * u_0[G.index[e]];
+    for (const auto& [unknown, value] : condensed.columns[k]->G)
+      load.jumps[static_cast<Eigen::Index>(k)] -= value * u_0[unknown];
   }
   load.strain = 0.5 * load.intact.dot(u_0);
 }
@@ -189,7 +178,7 @@ void update_equations(const Scene& scene, const Rocks& rocks, State& state, Quas
   weigh_copies(scene, state);
   update_stencil_weights(scene, state);
   const bool halved = halve && mirror_symmetric(scene);
-  const bool same_body = model.body && model.body->points == state.particles.next_id;  // a trial has some of them
+  const bool same_body = model.body && model.body->points == state.particles.next_id;
   if (!same_body) {
     model.body.reset();  // two are not to be held at a time
     model.body = std::make_shared<const IntactBody>(scene, rocks, state, halved);

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "interfaces/surface_law.hpp"
+#include "quasistatic/tree_factor.hpp"
 #include "state/types.hpp"
 
 namespace strata {
 
-// A row of a jump in terms of the jump unknowns: their indices and weights.
-using SparseRow = std::vector<std::pair<int, double>>;
+using SparseRow = SparseVector;  // a row of a jump in terms of the jump unknowns
 
 // A split place of a surface, or the spring behind a tip, in terms of the jump unknowns: its jump is D j - bonded.
 struct ContactPlace {

@@ -129,18 +129,28 @@ Eigen::VectorXd TreeFactor::solve(const Eigen::VectorXd& f) const {
   return x;
 }
 
-void TreeFactor::forward(const Branches& loaded, SideBySide& g) const {
-  for (const int s : loaded) down(s, g);
-}
-
-SparseVector TreeFactor::on_branches(const Branches& branches, const SideBySide& y, std::size_t which) const {
-  SparseVector out;
-  for (const int s : branches) {
-    const Supernode at = supernode(s);
-    for (int k = at.first; k < at.first + at.own.cols(); ++k)
-      out.index.push_back(k), out.value.push_back(y(k, static_cast<Eigen::Index>(which)));
+std::vector<SparseVector> TreeFactor::forward(const std::vector<SparseVector>& g, SideBySide& y) const {
+  y.setZero(size(), together);
+  std::vector<SparseVector> Y(g.size());
+  std::vector<Branches> own;
+  std::vector<char> loaded(all_.size(), 0);
+  for (std::size_t c = 0; c < g.size(); ++c) {
+    std::vector<int> unknowns;
+    for (const auto& [unknown, value] : g[c])
+      unknowns.push_back(unknown), y(row(unknown), static_cast<Eigen::Index>(c)) = value;
+    for (const int s : own.emplace_back(branches(unknowns))) loaded[static_cast<std::size_t>(s)] = 1;
   }
-  return out;
+  for (const int s : all_) {
+    if (loaded[static_cast<std::size_t>(s)] != 0) down(s, y);
+  }
+  for (std::size_t c = 0; c < g.size(); ++c) {
+    for (const int s : own[c]) {
+      const Supernode at = supernode(s);
+      for (int k = at.first; k < at.first + at.own.cols(); ++k)
+        Y[c].emplace_back(k, y(k, static_cast<Eigen::Index>(c)));
+    }
+  }
+  return Y;
 }
 
 }  // namespace strata

@@ -10,24 +10,22 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <memory>
+#include <utility>
 #include <vector>
 
 struct cholmod_factor_struct;
 
 namespace strata {
 
-// Entries of a vector, their indices rising.
-struct SparseVector {
-  std::vector<int> index;
-  std::vector<double> value;
-};
+// Indices and values of a vector's entries.
+using SparseVector = std::vector<std::pair<int, double>>;
 
 class TreeFactor {
  public:
   /// Supernodes of the factor, rising, with each its parents up to the root.
   using Branches = std::vector<int>;
 
-  // Vectors in rows of the factor, always so many: the digits of one do not depend on the others.
+  // Some vectors in rows of the factor, always so many: the digits of one do not depend on the others.
   static constexpr std::size_t together = 16;
   using SideBySide = Eigen::Matrix<double, Eigen::Dynamic, together, Eigen::RowMajor>;
 
@@ -53,11 +51,9 @@ class TreeFactor {
   /// x = K^-1 f by unknowns, whole. Throws nothing.
   Eigen::VectorXd solve(const Eigen::VectorXd& f) const;
 
-  /// Puts Y = L^-1 P g in the place of each g, which are 0 off the branches `loaded`. Throws nothing.
-  void forward(const Branches& loaded, SideBySide& g) const;
-
-  /// One of some vectors on some branches. Throws nothing.
-  SparseVector on_branches(const Branches& branches, const SideBySide& y, std::size_t which) const;
+  /// Y = L^-1 P g in rows of the factor of up to `together` g, which are given by unknowns: side by side in y, and each
+  /// on its own branches. Throws nothing.
+  std::vector<SparseVector> forward(const std::vector<SparseVector>& g, SideBySide& y) const;
 
   int size() const { return static_cast<int>(place_.size()); }
 

@@ -91,7 +91,7 @@ void number_along_rows(Copies& copies, std::vector<Bin>& bins) {
   for (const CutNode& cut : copies.cut) {
     for (std::size_t k = 0; k < cut.keys.size(); ++k) {
       if (cut.records[k] < nodes) continue;
-      further.push_back({cut.keys[k], copies.node_of_record[static_cast<std::size_t>(cut.records[k])], cut.records[k]});
+      further.push_back({cut.keys[k], copies.node(cut.records[k]), cut.records[k]});
     }
   }
   std::ranges::sort(further);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "scene/scene.hpp"
@@ -25,6 +26,9 @@ struct CutNode {
   std::vector<int> records;    // and the record of each
 
   SideWord key(SideWord sides) const;
+
+  // That of one of its records; none where the record is not in use.
+  std::optional<SideWord> key_of(int record) const;
 };
 
 struct Copies {
@@ -32,6 +36,13 @@ struct Copies {
   std::vector<CutNode> cut;
   std::vector<int> node_of_record;  // grid node of each record; records beyond Grid::nodes() are further copies
   int records() const { return static_cast<int>(node_of_record.size()); }
+  int node(int record) const { return node_of_record[static_cast<std::size_t>(record)]; }
+
+  // What a node is cut into; nullptr: nothing.
+  const CutNode* cut_at(int node) const {
+    const int c = cut_of_node[static_cast<std::size_t>(node)];
+    return c < 0 ? nullptr : &cut[static_cast<std::size_t>(c)];
+  }
 };
 
 // Neighbouring bins of a row whose records are neighbours too may form a block: each is a lane of vectors (see

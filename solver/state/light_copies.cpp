@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "state/shape_functions.hpp"
+#include "state/particle_loop.hpp"
 
 namespace strata {
 namespace {
@@ -44,7 +44,7 @@ std::vector<double> worth_of_particles(const Scene& scene, const State& state, s
     std::ranges::transform(bin.record, at.begin(), index);
     if (std::ranges::all_of(at, [](int r) { return r < 0; })) continue;
     for (const std::size_t q : bin) {
-      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
+      const Gradients g = gradients_at(scene, state, bin, q);
       for (std::size_t n = 0; n < 9; ++n) {
         const double slope = std::sqrt(g.N_x[n] * g.N_x[n] + g.N_y[n] * g.N_y[n]);  // |grad N_n| (1/m)
         if (at[n] >= 0) worth[static_cast<std::size_t>(at[n])] += p.V[q] * slope;
@@ -85,7 +85,7 @@ void join_corners(const Scene& scene, State& state) {
   std::vector<char> leans(static_cast<std::size_t>(copies.records()), 0);  // of corners' records
   for (const CutNode& cut : copies.cut) {                                  // without particles a ghost has no corner
     if (cut.fracture == 0 || cut.mask == cut.fracture || cut.keys.size() < 3) continue;
-    if (!leans_at(state, copies.node_of_record[static_cast<std::size_t>(cut.records.front())])) continue;
+    if (!leans_at(state, copies.node(cut.records.front()))) continue;
     for (const int record : cut.records) leans[static_cast<std::size_t>(record)] = 1;
   }
   if (std::ranges::count(leans, 1) == 0) return;

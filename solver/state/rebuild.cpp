@@ -297,15 +297,13 @@ void list_bins(const std::vector<SideWord>& reach, State& state) {
 
 Master master_of(const Scene& scene, State& state, int record) {
   Copies& copies = state.copies;
-  const int node = copies.node_of_record[static_cast<std::size_t>(record)];
+  const int node = copies.node(record);
   Master master = mirror_of(scene, state.grid, node);
-  const int c = copies.cut_of_node[static_cast<std::size_t>(node)];
-  if (c < 0) return master;
-  const CutNode& cut = copies.cut[static_cast<std::size_t>(c)];
-  const auto at = std::ranges::find(cut.records, record);
-  if (at == cut.records.end()) return {record};  // not in use
-  const SideWord key = cut.keys[static_cast<std::size_t>(at - cut.records.begin())];
-  master.record = master.record == node ? record : record_for(copies, master.record, key);
+  const CutNode* cut = copies.cut_at(node);
+  if (cut == nullptr) return master;
+  const auto key = cut->key_of(record);
+  if (!key) return {record};  // not in use
+  master.record = master.record == node ? record : record_for(copies, master.record, *key);
   return master;
 }
 
@@ -357,6 +355,11 @@ SideWord CutNode::key(SideWord sides) const {
   return corner == joined.end() ? own : (*corner)[1];
 }
 
+std::optional<SideWord> CutNode::key_of(int record) const {
+  const auto at = static_cast<std::size_t>(std::ranges::find(records, record) - records.begin());
+  return at == records.size() ? std::nullopt : std::optional(keys[at]);
+}
+
 std::vector<Vec2> nodal_reactions(const Surface& surface, const std::vector<SurfaceStencil>& stencils) {
   struct Force {
     Vec2 r = Vec2::Zero();  // N/m
@@ -390,11 +393,10 @@ std::vector<Vec2> nodal_reactions(const Surface& surface, const std::vector<Surf
 }
 
 int record_of(const Copies& copies, int node, SideWord sides) {
-  const int c = copies.cut_of_node[static_cast<std::size_t>(node)];
-  if (c < 0) return node;
-  const CutNode& cut = copies.cut[static_cast<std::size_t>(c)];
-  const auto at = std::ranges::find(cut.keys, cut.key(sides));
-  return at == cut.keys.end() ? -1 : cut.records[static_cast<std::size_t>(at - cut.keys.begin())];
+  const CutNode* cut = copies.cut_at(node);
+  if (cut == nullptr) return node;
+  const auto at = std::ranges::find(cut->keys, cut->key(sides)) - cut->keys.begin();
+  return at == std::ssize(cut->keys) ? -1 : cut->records[static_cast<std::size_t>(at)];
 }
 
 SideWord sides_ahead(const State& state, const Tip& tip) {

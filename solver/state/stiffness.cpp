@@ -1,5 +1,7 @@
 #include "state/stiffness.hpp"
 
+#include "state/particle_loop.hpp"
+
 namespace strata {
 
 void add_stiffness(const Elasticity& rock, const Gradients& g, double V, LocalStiffness& K) {
@@ -28,7 +30,7 @@ Eigen::SparseMatrix<double> assemble_stiffness(const Scene& scene, const Rocks& 
   for (const Bin& bin : state.bins) {
     LocalStiffness K = LocalStiffness::Zero();
     for (const std::size_t q : bin) {
-      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
+      const Gradients g = gradients_at(scene, state, bin, q);
       add_stiffness(rocks[p.rock[q]], g, p.V[q], K);
     }
     for (int r = 0; r < 18; ++r) {

@@ -10,31 +10,13 @@
 #include "explicit/transfers.hpp"
 #include "interfaces/failure.hpp"
 #include "interfaces/surface_tractions.hpp"
+#include "state/particle_loop.hpp"
 #include "state/parts.hpp"
 #include "state/rebuild.hpp"
-#include "state/shape_functions.hpp"
 
 namespace strata {
 
 namespace {
-
-// Calls visit(bin, particle, its weights) for the particles of some bins.
-template <class Visit>
-void for_each_particle(const Scene& scene, const State& state, const std::vector<Bin>& bins, Visit visit) {
-  const Particles& p = state.particles;
-  with_shape(scene.numerics.shape, [&](auto shape) {
-    for (const Bin& bin : bins) {
-      for (const std::size_t q : bin)
-        visit(bin, q, gradients_of<decltype(shape)>(state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q)));
-    }
-  });
-}
-
-Vec2 interpolate(const Gradients& g, const Bin& bin, const std::vector<Vec2>& v) {
-  Vec2 sum = Vec2::Zero();
-  for (std::size_t n = 0; n < 9; ++n) sum += g.N[n] * v[static_cast<std::size_t>(bin.record[n])];
-  return sum;
-}
 
 // The mean of values by the masses that brought them.
 void add_mass(double m, const Vec2& value, const NodalSums::Record& sum) {
@@ -162,8 +144,8 @@ void carry_velocities(const Scene& scene, const RecordVelocities& before, State&
   v.clear();
   for (const int node : state.copies.node_of_record) v.push_back(before.v[static_cast<std::size_t>(node)]);
   const auto was_cut = [&](int record) {
-    const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
-    return before.copies.cut_of_node[static_cast<std::size_t>(node)] >= 0;
+    const int node = state.copies.node(record);
+    return before.copies.cut_at(node) != nullptr;
   };
   std::vector<Bin> near;
   std::ranges::copy_if(state.bins, std::back_inserter(near),
@@ -173,7 +155,7 @@ void carry_velocities(const Scene& scene, const RecordVelocities& before, State&
     for (std::size_t n = 0; n < 9; ++n) {
       const int record = bin.record[n];
       if (!was_cut(record)) continue;
-      const int node = state.copies.node_of_record[static_cast<std::size_t>(record)];
+      const int node = state.copies.node(record);
       const int old = record_of(before.copies, node, state.particles.sides[q]);
       add_mass(state.particles.m[q] * g.N[n], before.v[static_cast<std::size_t>(old >= 0 ? old : node)],
                sums[static_cast<std::size_t>(record)]);
@@ -213,7 +195,7 @@ std::vector<BondSensor> make_bond_sensors(const Scene& scene, const Rocks& rocks
     for (const auto& [q, weight, Phi] : sample.particles) {
       const Bin& bin = state.bins[bin_of[q]];
       const Elasticity& rock = rocks[p.rock[q]];
-      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
+      const Gradients g = gradients_at(scene, state, bin, q);
       for (std::size_t k = 0; k < 9; ++k) {
         const Master& master = state.masters[static_cast<std::size_t>(bin.record[k])];
         Eigen::Matrix2d& T = entry_at(sensor, master).T;

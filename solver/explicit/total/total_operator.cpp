@@ -9,8 +9,8 @@
 
 #include "explicit/transfers.hpp"
 #include "state/lanes.hpp"
+#include "state/particle_loop.hpp"
 #include "state/parts.hpp"
-#include "state/shape_functions.hpp"
 #include "state/stiffness.hpp"
 
 namespace strata {
@@ -64,7 +64,7 @@ BinKind make_kind(const Scene& scene, const Rocks& rocks, const State& state, co
   const Particles& p = state.particles;
   BinKind kind;
   for (const std::size_t q : bin) {
-    const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
+    const Gradients g = gradients_at(scene, state, bin, q);
     add_stiffness(rocks[p.rock[q]], g, p.V[q], kind.K);
     for (std::size_t n = 0; n < 9; ++n) kind.m[n] += g.N[n] * p.m[q];
   }
@@ -266,7 +266,7 @@ void apply_particles(const Scene& scene, const Rocks& rocks, State& state) {
     std::array<Vec2, 9> u;
     for (std::size_t n = 0; n < 9; ++n) u[n] = total_displacement(state, bin.record[n]);
     for (const std::size_t q : bin) {
-      const Gradients g = gradients_at(scene, state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q));
+      const Gradients g = gradients_at(scene, state, bin, q);
       Vec2 u_1 = Vec2::Zero(), u_2 = Vec2::Zero();
       for (std::size_t n = 0; n < 9; ++n) u_1 += g.N_x[n] * u[n], u_2 += g.N_y[n] * u[n];
       const Stress s = stress_of(rocks[p.rock[q]], u_1.x(), u_2.x(), u_1.y(), u_2.y());
