@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "flow/flow_monitors.hpp"
 #include "flow/paper_flow.hpp"
@@ -48,8 +49,15 @@ struct LoadPoint {
   std::vector<Vec2> u, body;  // displacement (m) and body force per mass (m/s^2) of particles by id; none without that
 };
 
+// What a state and a load point have both.
+template <class AnyState>
+auto load_of(AnyState& at) {
+  return std::tie(at.time, at.fluid, at.reynolds, at.balance, at.surfaces, at.tips);
+}
+
 LoadPoint load_point(const State& state) {
-  LoadPoint point{state.time, state.fluid, state.reynolds, state.balance, state.surfaces, state.tips, {}, {}};
+  LoadPoint point;
+  load_of(point) = load_of(state);
   if (state.body.empty()) return point;
   const Particles& p = state.particles;
   point.u.resize(static_cast<std::size_t>(p.next_id), Vec2::Zero());
@@ -64,12 +72,7 @@ LoadPoint load_point(const State& state) {
 
 // Takes a state back to the load it had, on the same surfaces; its fields do not follow.
 void return_to(const LoadPoint& from, State& state) {
-  state.time = from.time;
-  state.fluid = from.fluid;
-  state.reynolds = from.reynolds;
-  state.balance = from.balance;
-  state.surfaces = from.surfaces;
-  state.tips = from.tips;
+  load_of(state) = load_of(from);
 }
 
 // Work of the fluid since an earlier load, as if its pressure and what surfaces have released of the in-situ traction
@@ -155,7 +158,7 @@ void rebuild_all(const Scene& scene, const Rocks& rocks, State& state, Quasistat
   run.trials.clear();  // two bodies are not to be held at a time
   update_model(scene, rocks, state, run.model);
   state.monitors.mirror = run.model.body->halved;
-  run.rules = make_tip_rules(scene, rocks, state);
+  make_tip_rules(scene, rocks, state, run.rules);
   state.ledger.excess = excess;  // what springs of tips give back is in the difference of stored energy already
   run.trials = build_trials(scene, rocks, state, run.model);
 }
