@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "fracture/growth.hpp"
-#include "state/rebuild.hpp"
 
 namespace strata {
 namespace {
@@ -45,38 +44,10 @@ void inherit_friction(const State& state, const Places& places, GrowthTrial& tri
   }
 }
 
-// The state with the particles alone that its surfaces, a length (m) longer from some places on (m), reach: of all
-// others a trial takes what the intact body says. A body force loads them all.
-State beside_surfaces(const Scene& scene, State& state, const std::vector<Vec2>& ends, double length) {
-  State beside;
-  Particles all = std::exchange(state.particles, {});
-  static_cast<SavedState&>(beside) = state;
-  state.particles = std::move(all);
-  const double reach = 2.0 * (extension(state.grid) + std::abs(length)) + 2.0 * state.grid.h;
-  std::vector<std::size_t> kept;
-  auto cut = state.cut_bins.begin();
-  for (std::size_t b = 0; b < state.bins.size(); ++b) {
-    const Bin& bin = state.bins[b];
-    const bool is_cut = cut != state.cut_bins.end() && *cut == b;
-    if (is_cut) ++cut;
-    const Vec2 node{state.grid.x(bin.i), state.grid.y(bin.j)};
-    const bool near = std::ranges::any_of(ends, [&](const Vec2& at) { return (node - at).norm() < reach; });
-    if (!is_cut && !near && !scene.body.acceleration_m_s2) continue;
-    for (const std::size_t q : bin) kept.push_back(q);
-  }
-  beside.particles = chosen(state.particles, kept);
-  return beside;
-}
-
-// Makes the state of a trial; false where there is not a whole piece to take away.
-bool change_length(const Scene& scene, State& state, double length, GrowthTrial& trial) {
-  trial.state = beside_surfaces(scene, state, {tip_position(state, state.tips[trial.tip])}, length);
-  const auto extend = [&] { return extend_tip(scene, trial.state, trial.state.tips[trial.tip], length); };
-  trial.length = length > 0.0 ? extend() : -shorten_tip(trial.state, trial.state.tips[trial.tip], -length);
-  if (trial.state.particles.next_id != state.particles.next_id) {  // with those divided the body is another
-    trial.state = state;
-    trial.length = extend();
-  }
+// Makes the fracture of a trial longer or shorter; false where there is not a whole piece to take away.
+bool change_length(const Scene& scene, double length, GrowthTrial& trial) {
+  Tip& tip = trial.state.tips[trial.tip];
+  trial.length = length > 0.0 ? extend_tip(scene, trial.state, tip, length) : -shorten_tip(trial.state, tip, -length);
   return trial.length != 0.0;
 }
 
@@ -109,11 +80,18 @@ bool may_grow(const Scene& scene, const State& state, const Tip& tip) {
 std::vector<GrowthTrial> build_trials(const Scene& scene, const Rocks& rocks, State& state,
                                       const QuasistaticModel& model, bool halve) {
   std::vector<GrowthTrial> trials;
+  const auto begin = [&](std::size_t tip) -> GrowthTrial& {
+    GrowthTrial& trial = trials.emplace_back();
+    trial.tip = tip;
+    static_cast<SavedState&>(trial.state) = state;
+    return trial;
+  };
   const auto prepare = [&](GrowthTrial& trial) {
     trial.turn = state.tips[trial.tip].turn;
     trial.model.body = model.body;
     trial.model.condensed = model.condensed;
     update_equations(scene, rocks, trial.state, trial.model, halve);
+    if (!scene.body.acceleration_m_s2) trial.state.particles = {}, trial.state.bins = {};  // they have said all
   };
   for (std::size_t k = 0; k < state.tips.size(); ++k) {
     Tip& tip = state.tips[k];
@@ -124,9 +102,8 @@ std::vector<GrowthTrial> build_trials(const Scene& scene, const Rocks& rocks, St
     if (tip.criterion == Criterion::slope)
       lengths = {state.grid.h, -std::min(state.grid.h, past_open_interface(scene, state, tip))};
     for (const double length : lengths) {
-      GrowthTrial& trial = trials.emplace_back();
-      trial.tip = k;
-      if (change_length(scene, state, length, trial)) {
+      GrowthTrial& trial = begin(k);
+      if (change_length(scene, length, trial)) {
         prepare(trial);
       } else {
         trials.pop_back();
@@ -134,10 +111,8 @@ std::vector<GrowthTrial> build_trials(const Scene& scene, const Rocks& rocks, St
     }
   }
   for (Parting& parting : next_partings(scene, rocks, state, model.bonds)) {
-    GrowthTrial& trial = trials.emplace_back();
-    trial.tip = nearest_tip(state, parting.from[0]);
+    GrowthTrial& trial = begin(nearest_tip(state, parting.from[0]));
     trial.length = parting.length;
-    trial.state = beside_surfaces(scene, state, parting.from, parting.length);
     for (const auto& [surface, column] : parting.columns) {
       for (SurfacePoint& s : trial.state.surfaces[surface].points)
         s.split = s.split || (s.column == column && (s.sides & parting.mask) == parting.sides);

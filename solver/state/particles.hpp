@@ -46,31 +46,13 @@ struct MotionReport {
 };
 using ParticleReport = MotionReport<double>;
 
-// Calls visit(array ...) for each array of some particles side by side, so that reordering, copying and saving are
-// written once.
-template <class Visit, class... AnyParticles>
-void for_each_array_of(Visit visit, AnyParticles&... p) {
-  visit(p.x...), visit(p.y...), visit(p.u_x...), visit(p.u_y...), visit(p.v_x...), visit(p.v_y...);
-  visit(p.g_xx...), visit(p.g_xy...), visit(p.g_yx...), visit(p.g_yy...);
-  visit(p.m...), visit(p.V...), visit(p.half_x...), visit(p.half_y...);
-  visit(p.rock...), visit(p.sides...), visit(p.in_situ...), visit(p.id...);
-}
-
+// Calls visit(array) for each array of some particles, so that reordering and saving are written once.
 template <class AnyParticles, class Visit>
 void for_each_array(AnyParticles& p, Visit visit) {
-  for_each_array_of(visit, p);
-}
-
-/// Some particles (by place, rising). Throws nothing.
-inline Particles chosen(const Particles& p, const std::vector<std::size_t>& places) {
-  Particles out;
-  out.next_id = p.next_id;
-  const auto choose = [&](const auto& from, auto& to) {
-    to.reserve(places.size());
-    for (const std::size_t q : places) to.push_back(from[q]);
-  };
-  for_each_array_of(choose, p, out);
-  return out;
+  visit(p.x), visit(p.y), visit(p.u_x), visit(p.u_y), visit(p.v_x), visit(p.v_y);
+  visit(p.g_xx), visit(p.g_xy), visit(p.g_yx), visit(p.g_yy);
+  visit(p.m), visit(p.V), visit(p.half_x), visit(p.half_y);
+  visit(p.rock), visit(p.sides), visit(p.in_situ), visit(p.id);
 }
 
 }  // namespace strata
