@@ -316,7 +316,7 @@ double trusted_fraction(const Step& step, const Trial& trial, const VectorXd& dx
 // fluxes allow.
 bool balanced(const Step& step, const Trial& trial, const Balance& b, const MatrixXd& J) {
   const double total = std::max(b.held.sum(), step.dt * std::abs(b.injected));
-  const double digit = 4.0 * std::numeric_limits<double>::epsilon() * trial.P.maxCoeff();
+  const double digit = 4.0 * std::numeric_limits<double>::epsilon() * std::max(trial.P.maxCoeff(), b.rock.cancels);
   VectorXd of_cell = VectorXd::Zero(b.residual.size());  // round-off
   double of_whole = 0.0;
   for (Index j = 0; j < b.residual.size(); ++j) {
@@ -426,19 +426,24 @@ ReynoldsLine full_line(const Fluid& fluid, const std::vector<double>& length, st
   for (std::size_t k = 0; k < static_cast<std::size_t>(rise.size()); ++k)
     line.P[k] = std::max(P - rise(static_cast<Index>(k)), fluid.cavitation_Pa);
   line.phi.assign(n, 1.0);
-  line.w = as_vector(w);
   line.w_rate.assign(n, 0.0);
   line.wet_s.assign(n, 0.0);
   line.leaked.assign(n, 0.0);
   line.inlet = inlet;
   line.inlet_Pa = line.P[0];
+  fill_openings(fluid, w, line, balance);
+  return line;
+}
+
+void fill_openings(const Fluid& fluid, const Eigen::VectorXd& w, ReynoldsLine& line, FluidBalance& balance) {
+  line.w = as_vector(w);
+  line.content.resize(line.size());
   balance = {};
-  for (std::size_t k = 0; k < n; ++k) {
-    line.content.push_back(density(fluid, line.P[k]) * storage_opening(line.w[k]) * length[k]);
+  for (std::size_t k = 0; k < line.size(); ++k) {
+    line.content[k] = line.phi[k] * density(fluid, line.P[k]) * storage_opening(line.w[k]) * line.length[k];
     balance.stored_at_start += line.content[k];
   }
   balance.stored = balance.stored_at_start;
-  return line;
 }
 
 void leave_dry(const Fluid& fluid, std::size_t cell, ReynoldsLine& line, FluidBalance& balance) {

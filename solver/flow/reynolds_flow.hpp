@@ -26,8 +26,9 @@ namespace strata {
 
 // The rock under a pressure: the opening at the fracture's points (m; about 0 where faces touch), and its change per
 // pressure at the points (m/Pa), row: opening, column: pressure; and what tells how a pressure within a cell parts its
-// faces, E/(1 - nu^2) and the closing stress there (Pa), or nothing where they part by cells alone; and what a rock
-// that takes up fluid has taken, as volume at the pressure of the fracture.
+// faces, E/(1 - nu^2) and the closing stress there (Pa), or nothing where they part by cells alone; what a rock that
+// takes up fluid has taken, as volume at the pressure of the fracture; and up to how much its openings follow from
+// pressures by their digits.
 struct RockResponse {
   Eigen::VectorXd w;
   Eigen::MatrixXd dw_dP;
@@ -36,6 +37,7 @@ struct RockResponse {
   Eigen::VectorXd front = {};  // front_conductances(), or none
   Eigen::VectorXd most = {};   // that flows to a front, signed, or no number: see limit_to_front()
   Eigen::VectorXd rise = {};   // rho g times each cell's height above the inlet (Pa), or nothing: without weight
+  double cancels = 0.0;        // the largest of the stresses whose difference holds faces (Pa)
 };
 using RockModel = std::function<RockResponse(const Eigen::VectorXd& P)>;  // P absolute, one a point (Pa)
 
@@ -79,6 +81,10 @@ struct ReynoldsOptions {
 /// `balance` to nothing injected.
 ReynoldsLine full_line(const Fluid& fluid, const std::vector<double>& length, std::size_t inlet, double P,
                        const Eigen::VectorXd& w, FluidBalance& balance, const Eigen::VectorXd& rise = {});
+
+/// Fills the cells of a line anew at the pressures and filled parts that they have, in rock with other openings w (m);
+/// nothing is injected by it.
+void fill_openings(const Fluid& fluid, const Eigen::VectorXd& w, ReynoldsLine& line, FluidBalance& balance);
 
 /// Takes the fluid out of a cell that has not been wet yet: nothing flows to it until wet_s is finite.
 void leave_dry(const Fluid& fluid, std::size_t cell, ReynoldsLine& line, FluidBalance& balance);

@@ -448,7 +448,8 @@ Equilibrium solve_equilibrium(const State& state, const Condensed& condensed, co
 Eigen::MatrixXd opening_per_pressure(const State& state, const Condensed& condensed, const Places& places,
                                      const Equilibrium& equilibrium, const TangentFactor& factor) {
   const auto n = static_cast<Eigen::Index>(state.fracture().points.size());
-  // Rows of the openings; on a closed face the reaction gives way as much as the pressure rises.
+  // Rows of the openings; on a closed face the reaction gives way as much as the pressure rises, and with it what
+  // friction holds where the face slides.
   Eigen::MatrixXd opening = Eigen::MatrixXd::Zero(condensed.size(), n), load = opening;
   for (std::size_t k = 0; k < places.size(); ++k) {
     const ContactPlace& place = places[k];
@@ -458,7 +459,13 @@ Eigen::MatrixXd opening_per_pressure(const State& state, const Condensed& conden
       for (const auto& [index, value] : place.D[c])
         opening(index, column) += value * place.n[static_cast<Eigen::Index>(c)];
     }
-    if (equilibrium.pieces[k] == LawAnswer::Piece::open) load.col(column) = place.A * opening.col(column);
+    const LawAnswer& r = equilibrium.answers[k];
+    if (r.piece == LawAnswer::Piece::open) load.col(column) = place.A * opening.col(column);
+    if (r.dt_dn == 0.0) continue;
+    const Vec2 less = -place.A * r.dt_dn / r.dn_dn * place.t();
+    for (std::size_t c = 0; c < 2; ++c) {
+      for (const auto& [index, value] : place.D[c]) load(index, column) += value * less[static_cast<Eigen::Index>(c)];
+    }
   }
   return opening.transpose() * factor.solve(load);
 }

@@ -1,5 +1,7 @@
 #include "quasistatic/event_margin.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -65,6 +67,24 @@ double margin_of(const Scene& scene, const Rocks& rocks, State& state, Quasistat
   for (const Tip& tip : state.tips) sound = sound && std::isfinite(tip.G_trial);
   if (!sound) throw NumericalFailure("the energy released or the load of a bonded interface is not finite");
   return std::max({run.tip_margin, run.parting_margin, run.model.bonds.worst});
+}
+
+void require_dry_tips_at_rest(const Scene& scene, const Rocks& rocks, const State& state) {
+  for (const Tip& tip : state.tips) {
+    const Elasticity& rock = rocks[rock_ahead(scene, state, tip)];
+    const bool at_rest = rock.J_c == 0.0 || tip.K_II * tip.K_II < rock.J_c * rock.E_prime;
+    if (state.reynolds.dry_cells(tip.at_back) == 0 || at_rest) continue;
+    double holds = 0.0;
+    for (const SurfacePoint& s : state.fracture().points)
+      holds = std::max(holds, std::abs(s.in_situ.dot(tangent_of(s.n))) / s.closing_stress());
+    const Vec2 at = tip_position(state, tip);
+    throw NumericalFailure(fmt::format(
+        "at t = {:.6g} s the tip at ({:.6g}, {:.6g}) m has K_II = {:.4g} Pa sqrt(m), more than its rock's toughness, "
+        "{:.4g}, before the fluid comes to it: the shear of the in-situ stress lets the closed fracture slide, which "
+        "would grow without fluid. Use fracture.friction (from {:.3g} on it holds the faces everywhere), more "
+        "rock.*.toughness_Pa_sqrt_m, a fracture.path_m under less shear, or fracture.growth = \"none\"",
+        state.time, at.x(), at.y(), tip.K_II, std::sqrt(rock.J_c * rock.E_prime), holds));
+  }
 }
 
 }  // namespace strata

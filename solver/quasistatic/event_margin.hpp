@@ -16,4 +16,9 @@ double tip_margin(const Scene& scene, const Rocks& rocks, State& state, Quasista
 /// find_forces() does.
 double margin_of(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run);
 
+/// Throws NumericalFailure where a tip that the fluid has not come to through the initial fracture would grow by the
+/// slip of its closed faces, sqrt(K_II^2/E') at J_c or above: the fluid's front, which decides there, knows nothing of
+/// that.
+void require_dry_tips_at_rest(const Scene& scene, const Rocks& rocks, const State& state);
+
 }  // namespace strata

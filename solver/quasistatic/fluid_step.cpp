@@ -80,6 +80,13 @@ void add_place(const ContactPlace& place, const LawAnswer& r, double w, RockResp
   rock.dw_dP(k, k) += roughness / closing;
 }
 
+// The largest of the stresses whose difference a place's law answers (Pa): its normal and its tangential jump are sums
+// over x and y, of which the stiff springs of contact answer what is left. Where faces that are not along the grid
+// slide by millimetres, 1e14 Pa/m times that: the reaction's round-off is 1e4 times that of the pressure.
+double cancelling(const ContactPlace& place, const LawAnswer& r, const Vec2& w) {
+  return -r.dn_dn * place.n.cwiseProduct(w).lpNorm<1>() - r.dt_dt * place.t().cwiseProduct(w).lpNorm<1>();
+}
+
 // What both faces of each cell have lost to the rock by a time (s), 2 (2 C_L sqrt(t - t_0)) A (m^2; Carter, in Howard &
 // Fast 1957), with fronts that are at their tips at a time `there`; nothing where no rock takes up fluid.
 Eigen::VectorXd lost_by(const Scene& scene, double time, double there, const State& state) {
@@ -160,6 +167,7 @@ RockModel rock_of(const Scene& scene, double time, double there, State& state, Q
     rock.w = Eigen::VectorXd::Zero(P.size()), rock.dw_dP = model.dw_dP;
     for (std::size_t k = 0; k < model.places.size(); ++k) {
       const ContactPlace& place = model.places[k];
+      rock.cancels = std::max(rock.cancels, cancelling(place, at.answers[k], at.w[k]));
       if (place.tie < 0 && place.surface == 0) add_place(place, at.answers[k], at.w[k].dot(place.n), rock);
     }
     return rock;
@@ -175,10 +183,13 @@ Inlet inlet_over(const Scene& scene, const State& state, double start, double en
   return {Inlet::Drive::rate, scene.fluid.inlet_rate(0.5 * (start + end)) * (half ? 0.5 : 1.0)};
 }
 
-// At closed ends the fluid is at rest.
-void rest_at_ends(const Fluid& fluid, State& state) {
+// Passes the pressures of the line on to the fracture's points and vertices. At closed ends the fluid is at rest.
+void pass_on(const Fluid& fluid, State& state) {
   const auto &vertices = state.fracture().vertices, &points = state.fracture().points;
-  std::vector<double>& P = state.fluid.P;
+  const std::vector<double>& of_cells = state.reynolds.P;
+  set_point_pressures(Eigen::Map<const Eigen::VectorXd>(of_cells.data(), std::ssize(of_cells)), state);
+  state.fluid.inlet_Pa = state.reynolds.inlet_Pa;
+  std::vector<double>& P = state.fluid.P = vertex_pressures(state.reynolds);
   if (state.fluid.inlet > 0) P.front() = fluid.at_rest(P.front(), vertices.front().x.y() - points.front().x.y());
   if (state.fluid.inlet < points.size())
     P.back() = fluid.at_rest(P.back(), vertices.back().x.y() - points.back().x.y());
@@ -200,12 +211,7 @@ FluidStep couple(const Scene& scene, double dt, bool on_the_way, State& state, Q
   state.time = end;
   state.reynolds = std::move(from.line);
   state.balance = from.balance;
-  state.fluid.P = vertex_pressures(state.reynolds);
-  rest_at_ends(scene.fluid, state);
-  state.fluid.inlet_Pa = report.inlet_Pa;
-  set_point_pressures(
-      Eigen::Map<const Eigen::VectorXd>(state.reynolds.P.data(), static_cast<Eigen::Index>(state.reynolds.P.size())),
-      state);
+  pass_on(scene.fluid, state);
   state.monitors.volume_balance = state.balance.closure();
   return {true, report.error_w / allowed, ""};
 }
@@ -249,7 +255,7 @@ void fill_fracture(const Scene& scene, State& state, QuasistaticModel& model) {
   std::vector<double> length;
   for (const SurfacePoint& s : points) length.push_back(s.A);
   state.reynolds = full_line(scene.fluid, length, state.fluid.inlet, P, rock.w, state.balance, rise);
-  state.fluid.inlet_Pa = P;
+  state.reynolds.inlet_Pa = state.fluid.inlet_Pa = P;
   rest_fluid(scene.fluid, state);
   if (!scene.fluid.rate_m2_s) return;
   for (const Tip& tip : state.tips) {
@@ -263,6 +269,12 @@ void fill_fracture(const Scene& scene, State& state, QuasistaticModel& model) {
     }
     wet_cells(scene, tip.at_back, 0.0, state);
   }
+  if (std::ranges::none_of(state.tips, [&](const Tip& t) { return state.reynolds.dry_cells(t.at_back) > 0; })) return;
+  // Where they are dry friction holds the faces: what it has let slide under the pressure of the fluid has not.
+  const Eigen::Map<const Eigen::VectorXd> now(state.reynolds.P.data(), std::ssize(points));
+  fill_openings(scene.fluid, rock_of(scene, state.time, state.time, state, model)(now).w, state.reynolds,
+                state.balance);
+  pass_on(scene.fluid, state);
 }
 
 double lag_error(const Scene& scene, const FluidLine& before, std::span<const double> w_before, double time,

@@ -443,7 +443,9 @@ void start_quasistatic(const Scene& scene, const Rocks& rocks, State& state, Qua
   if (state.step == 0) fill_fracture(scene, state, run.model);
   equilibrate(scene, rocks, state, run);
   if (state.step > 0) return;
-  state.dt = first_flow_step, state.ledger = Ledger{};
+  require_dry_tips_at_rest(scene, rocks, state);
+  state.dt = first_flow_step;
+  state.ledger = Ledger{};
   // The in-situ state: the fluid holds the fracture's faces against the stress across it, bonds carry all the rest and
   // give it up as they give way. The work of either, and of friction, is then half of its last value times the jump,
   // and what rock and springs store is as much (Clapeyron).
