@@ -195,15 +195,14 @@ void pass_on(const Fluid& fluid, State& state) {
     P.back() = fluid.at_rest(P.back(), vertices.back().x.y() - points.back().x.y());
 }
 
-FluidStep couple(const Scene& scene, double dt, bool on_the_way, State& state, QuasistaticModel& model) {
+FluidStep couple(const Scene& scene, double dt, double at_tips, State& state, QuasistaticModel& model) {
   // Of the largest opening, a step: some hundred of them add up to less than a per cent, since what one does wrong the
   // next ones heal.
   const double allowed = scene.numerics.flow_error;
   const double end = state.time + std::max(dt, shortest_coupled_step);
   const bool grown = state.grown.line.size() > 0;
   GrownFluid from = grown ? state.grown : GrownFluid{state.time, 0.0, state.reynolds, state.balance};
-  const bool known = from.took < from.time;  // what the first growth took says nothing of the next
-  const double there = on_the_way && known ? std::max(end, from.time + from.took) : end;
+  const double there = std::max(end, at_tips);
   const StepReport report =
       step_reynolds(scene.fluid, inlet_over(scene, state, from.time, end), end - from.time,
                     rock_of(scene, end, there, state, model), from.line, from.balance, {.filled_first = grown});
@@ -342,12 +341,12 @@ void add_fluid_cells(const Scene& scene, bool at_back, std::size_t added, State&
   }
 }
 
-FluidStep advance_fluid(const Scene& scene, double dt, State& state, QuasistaticModel& model, bool on_the_way) {
+FluidStep advance_fluid(const Scene& scene, double dt, State& state, QuasistaticModel& model, double at_tips) {
   if (!state.has_fracture) {
     state.time += dt;
     return {};
   }
-  if (scene.fluid.law == Fluid::Law::reynolds) return couple(scene, dt, on_the_way, state, model);
+  if (scene.fluid.law == Fluid::Law::reynolds) return couple(scene, dt, at_tips, state, model);
   if (scene.fluid.law == Fluid::Law::uniform) {
     if (dt > 0.0) state.fluid.inlet_Pa = scene.fluid.inlet_pressure(state.time + dt);
     rest_fluid(scene.fluid, state);

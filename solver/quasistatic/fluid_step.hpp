@@ -30,9 +30,9 @@ constexpr double shortest_coupled_step = 1e-6;
 /// state.reynolds; state.time moves on. uniform: the inlet's. paper: the study's diffusion in steps that resolve it,
 /// with the openings midway, foreseen from the rates of the step before (state.fluid.w_rate) or by a trial step.
 /// reynolds: flow and rock in one system, over shortest_coupled_step at least. dt = 0: only what growth changed.
-/// on_the_way: the fronts of the last growth take as long as it took to be at their tips, not just dt. Throws
+/// at_tips: when (s) the fronts of the last growth are at their tips, if later than the step's end. Throws
 /// NumericalFailure as find_equilibrium() and diffuse() do.
-FluidStep advance_fluid(const Scene& scene, double dt, State& state, QuasistaticModel& model, bool on_the_way = false);
+FluidStep advance_fluid(const Scene& scene, double dt, State& state, QuasistaticModel& model, double at_tips = 0.0);
 
 /// What a step of the study's law from `before` and its openings (m, one a point) at a time (s) owes to openings midway
 /// that were foreseen, after the equilibrium at its end: half of what the mean of the openings of its ends would have

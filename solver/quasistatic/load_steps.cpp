@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "flow/flow_monitors.hpp"
 #include "flow/paper_flow.hpp"
@@ -13,6 +12,7 @@
 #include "interfaces/monitors.hpp"
 #include "quasistatic/event_margin.hpp"
 #include "quasistatic/fluid_step.hpp"
+#include "quasistatic/load_point.hpp"
 
 namespace strata {
 namespace {
@@ -36,83 +36,6 @@ void equilibrate(const Scene& scene, const Rocks& rocks, State& state, Quasistat
   come_to_rest(scene, rocks, state, run);
   if (!trials_hold(scene, state, run.trials)) run.trials = build_trials(scene, rocks, state, run.model);
   run.margin = margin_of(scene, rocks, state, run);
-}
-
-// What a trial step changes and a rejected one takes back. Particles only hold what follows from it.
-struct LoadPoint {
-  double time = 0.0;
-  FluidLine fluid;
-  ReynoldsLine reynolds;
-  FluidBalance balance;
-  std::vector<Surface> surfaces;
-  std::vector<Tip> tips;
-  std::vector<Vec2> u, body;  // displacement (m) and body force per mass (m/s^2) of particles by id; none without that
-};
-
-// What a state and a load point have both.
-template <class AnyState>
-auto load_of(AnyState& at) {
-  return std::tie(at.time, at.fluid, at.reynolds, at.balance, at.surfaces, at.tips);
-}
-
-LoadPoint load_point(const State& state) {
-  LoadPoint point;
-  load_of(point) = load_of(state);
-  if (state.body.empty()) return point;
-  const Particles& p = state.particles;
-  point.u.resize(static_cast<std::size_t>(p.next_id), Vec2::Zero());
-  point.body = point.u;
-  for (std::size_t q = 0; q < p.size(); ++q) {
-    const auto id = static_cast<std::size_t>(p.id[q]);
-    point.u[id] = {p.u_x[q], p.u_y[q]};
-    point.body[id] = state.body[q];
-  }
-  return point;
-}
-
-// Takes a state back to the load it had, on the same surfaces; its fields do not follow.
-void return_to(const LoadPoint& from, State& state) {
-  load_of(state) = load_of(from);
-}
-
-// Work of the fluid since an earlier load, as if its pressure and what surfaces have released of the in-situ traction
-// had changed with the jumps (J/m): sum A (P + P')/2 n . (w' - w); the traction's in `in_situ`. The fracture may have
-// become longer. What holds its faces counts with P where they part or close under a changing load (`loaded`: they are
-// apart from P + r on) and in a long step of flow that conserves volume.
-double work_of_loads(const State& state, const LoadPoint& before, bool loaded, double& in_situ) {
-  double fluid = 0.0;
-  in_situ = 0.0;
-  for (std::size_t k = 0; k < state.surfaces.size(); ++k) {
-    const auto &now = state.surfaces[k].points, &then = before.surfaces[k].points;
-    // The fracture may have become longer at its front; its older points stay where they were.
-    const auto same =
-        std::find_if(now.begin(), now.end(), [&](const SurfacePoint& s) { return s.x == then.front().x; });
-    const auto shift = static_cast<std::size_t>(same - now.begin());
-    for (std::size_t q = 0; q < now.size(); ++q) {
-      const SurfacePoint& s = now[q];
-      if (!s.split) continue;
-      const bool is_new = q < shift || q - shift >= then.size();
-      const SurfacePoint& old = is_new ? s : then[q - shift];
-      const Vec2 dw = is_new || !old.split ? s.w : Vec2{s.w - old.w};
-      const bool parts = loaded && (s.n.dot(s.reaction) > 0.0) != (s.n.dot(old.reaction) > 0.0);
-      const bool counts = state.surfaces[k].kind == Surface::Kind::fracture && (parts || state.reynolds.size() > 0);
-      const double held = counts ? s.n.dot(s.reaction + old.reaction) : 0.0;
-      fluid += s.A * 0.5 * (s.P + old.P + held) * s.n.dot(dw);
-      in_situ -= s.A * (0.5 * (s.in_situ + old.in_situ)).dot(dw);
-    }
-  }
-  return fluid;
-}
-
-// Work of the body force as if it had changed with the displacements (J/m): sum m (b + b')/2 . (u' - u).
-double work_of_body(const State& state, const LoadPoint& before) {
-  const Particles& p = state.particles;
-  double work = 0.0;
-  for (std::size_t q = 0; q < state.body.size(); ++q) {
-    const auto id = static_cast<std::size_t>(p.id[q]);
-    work += p.m[q] * 0.5 * (before.body[id] + state.body[q]).dot(Vec2{p.u_x[q], p.u_y[q]} - before.u[id]);
-  }
-  return work;
 }
 
 // Energy bookkeeping of an accepted change of load or geometry; surface: what new surface takes (J/m).
@@ -290,10 +213,10 @@ void grow_or_fail(const Scene& scene, const Rocks& rocks, State& state, Quasista
 // From `from` to the load a time dt later: run.margin is the margin there. Under law = "reynolds" there may be no
 // solution within the iterations allowed.
 FluidStep try_step(const Scene& scene, const Rocks& rocks, const LoadPoint& from, double dt, State& state,
-                   Quasistatic& run, bool on_the_way = false) {
+                   Quasistatic& run, double there = 0.0) {
   return_to(from, state);
   try {
-    FluidStep fluid = advance_fluid(scene, dt, state, run.model, on_the_way);
+    FluidStep fluid = advance_fluid(scene, dt, state, run.model, there);
     if (fluid.found) equilibrate(scene, rocks, state, run);
     return fluid;
   } catch (const NumericalFailure& failure) {  // perhaps only beyond the next event
@@ -312,46 +235,69 @@ bool foresees_openings(const Scene& scene, const State& state) {
   return scene.fluid.law == Fluid::Law::paper && state.has_fracture;
 }
 
-// A step that was taken: its length (s), by how much the margin changed, and its error against what is allowed.
+// A step that was taken: its length (s), by how much the margin changed, its error against what is allowed, and when
+// (s) fronts that are on their way at its end are at their tips.
 struct LoadStep {
-  double dt = 0.0, change = 0.0, error = 0.0;
+  double dt = 0.0, change = 0.0, error = 0.0, there = 0.0;
 };
 
-// A time (s), `later` or between that and dt, at which the front is at a tip that still waits, where no flow brings it
-// there within dt; 0: none.
-double front_comes_later(const Scene& scene, const Rocks& rocks, const LoadPoint& from, double dt, double later,
-                         State& state, Quasistatic& run) {
-  if (scene.fluid.next_row(from.time) < from.time + later) return 0.0;  // another rate
-  constexpr int most = 6;  // halvings: what brings the front within a 64th more than dt is not looked for
-  for (int k = 0; k < most && later > dt; ++k, later = 0.5 * (dt + later)) {
-    if (!try_step(scene, rocks, from, later, state, run).found) return 0.0;
-    if (run.margin < 1.0) return later;
-  }
-  return 0.0;
+// When (s) the fronts of the last growth will be at their tips if they take as long as those before; 0: what the first
+// growth took says nothing of the next.
+double expected_there(const State& state) {
+  const GrownFluid& grown = state.grown;
+  return grown.took < grown.time ? grown.time + grown.took : 0.0;
 }
 
-// The step (s) to the next growth, or as far as is left, by flow that is solved anew from the last growth on; it is
-// sought from dt on. 0 where none is found.
-double step_from_growth(const Scene& scene, const Rocks& rocks, const LoadPoint& from, double dt, double left,
-                        State& state, Quasistatic& run) {
-  constexpr double patience = 4.0;  // of the time that the growth before took; then the tip waits for something else
-  if (from.time - state.grown.time > patience * state.grown.took) return 0.0;
-  const double full = state.grown.time + state.grown.took - from.time, margin = run.margin;
+// Of the time that the growth before took; then the tip waits for something else.
+constexpr double patience = 4.0;
+
+// Where no flow brings the front to a tip within dt: a step (s) that does, the shortest of those that are tried, which
+// the state has then made; 0: none. Tried are as long as the growth before took, or twice as long again until one is
+// found, and between that and dt.
+double front_comes_later(const Scene& scene, const Rocks& rocks, const LoadPoint& from, double dt, State& state,
+                         Quasistatic& run) {
+  constexpr int most = 6;  // halvings: what brings the front within a 64th more than dt is not looked for
+  const double since = from.time - state.grown.time, took = state.grown.took;
+  const double longest = std::min(patience * took - since, scene.fluid.next_row(from.time) - from.time);
+  double later = std::max(took - since, 2.0 * dt), shortest = 0.0;
+  while (later <= longest && !try_step(scene, rocks, from, later, state, run).found) later *= 2.0;
+  if (later > longest) return 0.0;
+  for (int k = 0; k < most; ++k) {
+    shortest = later;
+    if (run.margin < 1.0) return shortest;
+    later = 0.5 * (dt + later);
+    if (!try_step(scene, rocks, from, later, state, run).found) break;
+  }
+  try_step(scene, rocks, from, shortest, state, run);
+  return shortest;
+}
+
+// The step to the next growth, or as far as is left (s), by flow that is solved anew from the last growth on; it is
+// sought from dt on. No length where none is found.
+LoadStep step_from_growth(const Scene& scene, const Rocks& rocks, const LoadPoint& from, double dt, double left,
+                          State& state, Quasistatic& run) {
+  // Not sooner or later, or else rows would decide when flow begins to be followed step by step.
+  const double given_up = state.grown.time + patience * state.grown.took - from.time, margin = run.margin;
+  if (given_up < 1e-9 * state.grown.took) return {};
+  left = std::min(left, given_up), dt = std::min(dt, left);
+  const auto step = [&](double length, double there) {
+    return LoadStep{length, std::abs(run.margin - margin), 0.0, there};
+  };
   for (bool shorter = false; dt > std::min(shortest_trial, 0.5 * left);
        dt = shorter ? 0.5 * dt : std::min(2.0 * dt, left)) {
     const bool found = try_step(scene, rocks, from, dt, state, run).found;
-    const bool far = dt == left || from.time + dt - state.grown.time > patience * state.grown.took;
-    if (found && (shorter || far || run.margin >= 1.0)) return dt;
-    const double later = found || shorter ? 0.0 : front_comes_later(scene, rocks, from, dt, full, state, run);
-    if (later > 0.0 && later <= left) return later;
-    if (later > 0.0) {  // after a row, at which the front is on its way
-      const bool row = try_step(scene, rocks, from, left, state, run, true).found;
+    if (found && (shorter || dt == left || run.margin >= 1.0)) return step(dt, expected_there(state));
+    const double later = found || shorter ? 0.0 : front_comes_later(scene, rocks, from, dt, state, run);
+    if (later > 0.0 && later <= left) return step(later, expected_there(state));
+    if (later > left) {  // after a row, at which the front is on its way
+      const double known = expected_there(state), there = known > from.time + left ? known : from.time + later;
+      const bool row = try_step(scene, rocks, from, left, state, run, there).found;
       run.margin = margin;
-      if (row) return left;
+      if (row) return step(left, there);
     }
     shorter = !found;
   }
-  return 0.0;
+  return {};
 }
 
 // Takes the step of state.dt or, where nothing flows, of all the time that is left (s), halved until it is found, its
@@ -362,8 +308,7 @@ LoadStep find_step(const Scene& scene, const Rocks& rocks, const LoadPoint& from
   const double margin = run.margin;
   double dt = flowing ? std::min(state.dt, left) : left;
   if (state.grown.line.size() > 0) {
-    if (const double found = step_from_growth(scene, rocks, from, dt, left, state, run); found > 0.0)
-      return {found, std::abs(run.margin - margin), 0.0};
+    if (const LoadStep found = step_from_growth(scene, rocks, from, dt, left, state, run); found.dt > 0.0) return found;
     state.grown = {};
   }
   for (;; dt *= 0.5) {
@@ -392,7 +337,8 @@ double next_step(const Scene& scene, const LoadStep& step) {
 
 // The step at whose end the margin is 1 or hardly more, no longer than `high`, at which it is larger: regula falsi,
 // which turns the end that stays onto the slope of the parabola through the last three (Anderson and Bjorck, BIT 13,
-// 1973), and bisection where the margin has no size. False where flow from the last growth on has no solution there.
+// 1973), and bisection where the margin has no size. What has no solution lies beyond the event; but flow from the
+// last growth on has none before its fronts can be at their tips. False where that has no solution there.
 bool locate_event(const Scene& scene, const Rocks& rocks, const LoadPoint& from, double margin_low, double high,
                   State& state, Quasistatic& run) {
   const double aim = 1.0 + 0.5 * event_tolerance;
@@ -402,7 +348,11 @@ bool locate_event(const Scene& scene, const Rocks& rocks, const LoadPoint& from,
     const double share = std::isfinite(f_high) && iteration < 50 ? -f_low / (f_high - f_low) : 0.5;
     const double middle = low + (high - low) * std::clamp(share, 1e-3, 1.0 - 1e-3);
     const bool found = try_step(scene, rocks, from, middle, state, run).found;
-    const double margin = found ? run.margin : HUGE_VAL;  // what has no solution lies beyond the event
+    if (!found && state.grown.line.size() > 0) {
+      low = middle, side = 0;
+      continue;
+    }
+    const double margin = found ? run.margin : HUGE_VAL;
     if (margin >= 1.0 && margin <= 1.0 + event_tolerance) return true;
     const bool beyond = margin > aim;
     double &f_same = beyond ? f_high : f_low, &f_other = beyond ? f_low : f_high;
@@ -421,12 +371,12 @@ bool locate_event(const Scene& scene, const Rocks& rocks, const LoadPoint& from,
 
 // What is written between two growths: fronts on their way. Tips stay as near to growth as with fronts that have come
 // to them, which events are sought with.
-void show_front(const Scene& scene, const Rocks& rocks, const LoadPoint& from, double dt, State& state,
+void show_front(const Scene& scene, const Rocks& rocks, const LoadPoint& from, const LoadStep& step, State& state,
                 Quasistatic& run) {
   const double margin = run.margin;
   const std::vector<Tip> tips = state.tips;
-  const bool found = try_step(scene, rocks, from, dt, state, run, true).found;
-  if (!found || failure_due(run)) try_step(scene, rocks, from, dt, state, run);
+  const bool found = try_step(scene, rocks, from, step.dt, state, run, step.there).found;
+  if (!found || failure_due(run)) try_step(scene, rocks, from, step.dt, state, run);
   run.margin = margin;
   state.tips = tips;
 }
@@ -495,7 +445,7 @@ void advance_quasistatic(const Scene& scene, const Rocks& rocks, double until, S
   }
   const bool fed = !scene.fluid.rate_m2_s || scene.fluid.inlet_rate(from.time) > 0.0;  // as fast as before
   if (fed && state.grown.line.size() > 0 && run.margin < 1.0 && scene.fluid.next_row(from.time) > until)
-    show_front(scene, rocks, from, step.dt, state, run);
+    show_front(scene, rocks, from, step, state, run);
   if (foresees_openings(scene, state)) note_rates(openings_of(from.surfaces.front()), state.time - from.time, state);
   accept(scene, from, Change::load, state, run);
   state.dt = next_step(scene, step);
