@@ -1,5 +1,7 @@
 #include "flow/reynolds_flow.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -18,8 +20,17 @@ constexpr int unknowns = 5, inlet_P = 4;
 using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, unknowns, 1>>;
 
 // A step that is halved until it is of no length has more to it than its length.
-constexpr const char* what_to_look_at =
-    "Look at fluid.inlet, viscosity_Pa_s, bulk_modulus_Pa and minimum_opening_m, or use smaller cells";
+std::string what_to_look_at(const Fluid& fluid, const ReynoldsLine& line) {
+  const double widest = std::ranges::max(line.w);
+  if (fluid.minimum_opening_m <= widest)
+    return "Look at fluid.inlet, viscosity_Pa_s, bulk_modulus_Pa and minimum_opening_m, or use smaller cells";
+  return fmt::format(
+      "fluid.minimum_opening_m = {:g} is above all openings, {:.3g} m at most, so that closed faces conduct as open "
+      "ones: "
+      "lower it below the openings that the fluid makes. Else look at fluid.inlet, viscosity_Pa_s and bulk_modulus_Pa, "
+      "or use smaller cells",
+      fluid.minimum_opening_m, widest);
+}
 
 // The roughness that keeps faces apart (m): contact lets w go to about -1e-8 m, and a cell that holds nothing at any
 // pressure would leave its balance without an unknown. 1e-4 of the study's openings.
@@ -362,7 +373,7 @@ StepReport iterate(const Step& step, int max_iterations, Iterate& at) {
     if (report.converged) return report;
     if (report.iterations == max_iterations) {
       report.reason = "the balance of flow and rock did not converge in " + std::to_string(report.iterations) +
-                      " iterations. " + what_to_look_at;
+                      " iterations. " + what_to_look_at(step.fluid, step.line);
       return report;
     }
     const VectorXd dx = J.partialPivLu().solve(-at.b.residual);
@@ -371,7 +382,7 @@ StepReport iterate(const Step& step, int max_iterations, Iterate& at) {
     if (!next) break;
     at = std::move(*next);
   }
-  report.reason = std::string("flow and rock gave values that are not finite. ") + what_to_look_at;
+  report.reason = "flow and rock gave values that are not finite. " + what_to_look_at(step.fluid, step.line);
   return report;
 }
 

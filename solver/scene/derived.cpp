@@ -180,6 +180,12 @@ std::vector<std::string> implausible(const Scene& scene) {
         10.0 * std::max({fluid.start_Pa, end_Pa, largest_in_situ(scene)}),
         "ten times the scene's pressures, which would change the fluid's volume by more than a tenth: is it in GPa? "
         "2.2 GPa is 2.2e9");
+  // Fluids open rock by a millimetre, foams in soft rock by a centimetre or two.
+  if (fluid.minimum_opening_m > 0.05)
+    out.push_back(fmt::format(
+        "fluid.minimum_opening_m = {:g} is more than 0.05, and fluid hardly opens a fracture so far: closed faces then "
+        "conduct as open ones; is it in mm? 0.1 mm is 1e-4",
+        fluid.minimum_opening_m));
   // Hydrogen, the thinnest of gases, has 9e-6 Pa s.
   least("fluid.viscosity_Pa_s", fluid.viscosity_Pa_s, 1e-6, "1e-6, and no fluid is so thin: water has 1e-3 Pa s");
   return out;
