@@ -22,7 +22,13 @@ double fall_in_a_cell(const State& state);
 /// that are at_back): what one tip's new cells hold does not decide about the other. Throws nothing.
 std::array<double, 2> floor_share(const Scene& scene, const State& state);
 
-/// Notes both at the end of a step of the load. Where the inlet's pressure is given, what the flow lags behind is in
+/// What the viscous fluid takes up within a cell of a tip, of the pressure at the inlet: (K(h) - K_Ic)/(p sqrt(pi a)),
+/// K(h) by toughness_from() a cell behind the tip, p the inlet's net pressure, a the length from there to the tip; rock
+/// whose toughness decides leaves 0. A value for the side of the inlet before it, and one for that behind it; 0 where
+/// nothing has grown under law = "reynolds", and without toughness, where K does not decide. Throws nothing.
+std::array<double, 2> viscous_tip(const Scene& scene, const State& state);
+
+/// Notes all at the end of a step of the load. Where the inlet's pressure is given, what the flow lags behind is in
 /// the pressure of the next growth: the largest fall since the growth before counts. A given rate makes up for it: the
 /// fall at growth counts. Throws nothing.
 void watch_flow(const Scene& scene, State& state);

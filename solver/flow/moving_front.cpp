@@ -87,6 +87,14 @@ double front_filling(const Fluid& fluid, const ReynoldsLine& line, bool at_back,
   return held / MovingFront(fluid, added, rock, time).content(0.0, added.length);
 }
 
+double toughness_from(const Fluid& fluid, const ReynoldsLine& line, bool at_back, const TipRock& rock, double time,
+                      double x) {
+  const AddedCells added(line, at_back);
+  if (added.count == 0 || time <= line.wet_s[added.cell(0)]) return rock.K_Ic;
+  return MovingFront(fluid, added, rock, time).shape(std::sqrt(x)) * rock.E_prime / 8.0 *
+         std::sqrt(2.0 * std::numbers::pi);
+}
+
 double last_wet(const ReynoldsLine& line, bool at_back) {
   const AddedCells added(line, at_back);
   return line.wet_s[added.cell(0)];

@@ -41,6 +41,12 @@ void limit_to_front(const Fluid& fluid, const ReynoldsLine& line, bool at_back, 
 /// int_0^L w dx at the speed V with which it has then gone through them: 1 when it is there.
 double front_filling(const Fluid& fluid, const ReynoldsLine& line, bool at_back, const TipRock& rock, double time);
 
+/// The K (Pa sqrt(m)) that the opening stands for at a distance x (m) behind a front which is at the tip at a time (s),
+/// w = 8 K/E' sqrt(x/(2 pi)): the toughness, and what the fall of the fluid's pressure from there to the tip takes up.
+/// The toughness alone where growth has added no cells.
+double toughness_from(const Fluid& fluid, const ReynoldsLine& line, bool at_back, const TipRock& rock, double time,
+                      double x);
+
 /// When the front at an end came to the start of the cells that it is in (s): growth, or the way through the initial
 /// fracture.
 double last_wet(const ReynoldsLine& line, bool at_back);

@@ -333,6 +333,7 @@ void note_growth(State& state, Tip& tip) {
   Monitors& monitors = state.monitors;
   note_largest(monitors.largest_flow_fall, monitors.flow_fall);
   monitors.floor_share_sum += monitors.floor_share[tip.at_back ? 1 : 0];
+  monitors.viscous_at_growth = monitors.viscous_tip[tip.at_back ? 1 : 0];
   if (tip.near != Obstacle::none) {
     ++monitors.growths_apart;
   } else {

@@ -81,7 +81,7 @@ void require_dry_tips_at_rest(const Scene& scene, const Rocks& rocks, const Stat
     throw NumericalFailure(fmt::format(
         "at t = {:.6g} s the tip at ({:.6g}, {:.6g}) m has K_II = {:.4g} Pa sqrt(m), more than its rock's toughness, "
         "{:.4g}, before the fluid comes to it: the shear of the in-situ stress lets the closed fracture slide, which "
-        "would grow without fluid. Use fracture.friction (from {:.3g} on it holds the faces everywhere), more "
+        "would grow without fluid. Use fracture.friction (well above {:.3g}, which just holds dry faces), more "
         "rock.*.toughness_Pa_sqrt_m, a fracture.path_m under less shear, or fracture.growth = \"none\"",
         state.time, at.x(), at.y(), tip.K_II, std::sqrt(rock.J_c * rock.E_prime), holds));
   }

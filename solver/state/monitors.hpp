@@ -57,6 +57,8 @@ struct Monitors {
   double largest_flow_fall = 0.0;          // and the largest at growth
   std::array<double, 2> floor_share = {};  // what the pressure owes to the floor of the opening now, by sides,
   double floor_share_sum = 0.0;            // and summed over growths, of the side that grew
+  std::array<double, 2> viscous_tip = {};  // what the fluid takes up within a cell of a tip now, by sides,
+  double viscous_at_growth = 0.0;          // and at the last growth, of the side that grew
 };
 
 /// Takes up a value that is larger than the largest so far. One that is no number stays: no later one hides it.

@@ -113,12 +113,13 @@ inline Tip made_tip(bool at_back, Numbers& number) {
 inline void fill_monitors(Numbers& number, Monitors& m) {
   m = {number.next(), number.next(), 77, 3, number.next()};
   for (double* value :
-       {&m.contact_residual,  &m.volume_balance,     &m.largest_open_J,     &m.largest_made_J, &m.largest_strain_J,
-        &m.largest_kinetic_J, &m.expected_x,         &m.expected_y,         &m.largest_drift,  &m.largest_momentum,
-        &m.force_balance,     &m.largest_imbalance,  &m.delivered_m2,       &m.J_spread_sum,   &m.largest_J_spread,
-        &m.contact_left,      &m.largest_contact_Pa, &m.largest_tension_Pa, &m.largest_strain, &m.largest_rotation,
-        &m.largest_jump,      &m.net_at_start_Pa,    &m.largest_net_Pa,     &m.flow_fall_Pa,   &m.flow_fall,
-        &m.largest_flow_fall, &m.floor_share[0],     &m.floor_share[1],     &m.floor_share_sum}) {
+       {&m.contact_residual,  &m.volume_balance,     &m.largest_open_J,     &m.largest_made_J,  &m.largest_strain_J,
+        &m.largest_kinetic_J, &m.expected_x,         &m.expected_y,         &m.largest_drift,   &m.largest_momentum,
+        &m.force_balance,     &m.largest_imbalance,  &m.delivered_m2,       &m.J_spread_sum,    &m.largest_J_spread,
+        &m.contact_left,      &m.largest_contact_Pa, &m.largest_tension_Pa, &m.largest_strain,  &m.largest_rotation,
+        &m.largest_jump,      &m.net_at_start_Pa,    &m.largest_net_Pa,     &m.flow_fall_Pa,    &m.flow_fall,
+        &m.largest_flow_fall, &m.floor_share[0],     &m.floor_share[1],     &m.floor_share_sum, &m.viscous_tip[0],
+        &m.viscous_tip[1],    &m.viscous_at_growth}) {
     *value = number.next();
   }
   m.mirror = 1;

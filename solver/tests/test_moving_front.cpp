@@ -181,3 +181,18 @@ TEST_CASE("a front is at its cells' end when they hold as much") {
   for (const std::size_t k : {2, 3}) leave_dry(oil, k, first, balance);
   CHECK(front_filling(oil, first, true, {E_prime, 0.0}, 4.0) == Approx(1.0).epsilon(2e-3));
 }
+
+// Requires the K that an opening of (c^3 + d sqrt(x))^(1/3) sqrt(x) stands for, at either end, and the rock's own where
+// nothing has grown. Mutations that fail: K at the tip, at x in place of its root, V of another time, the toughness
+// left out.
+TEST_CASE("what K the opening behind a front stands for") {
+  constexpr double toughness = 0.2e6, x = 0.4;
+  const Fluid oil = fluid_of(0.1);
+  const double of_K = 8.0 / (E_prime * std::sqrt(2.0 * std::numbers::pi));
+  const double d = 18.0 * std::sqrt(3.0) * 1.2 * (A / 4.0) / E_prime;
+  const double K = std::cbrt(std::pow(of_K * toughness, 3) + d * std::sqrt(x)) / of_K;
+  CHECK(K > 2.0 * toughness);
+  for (const bool at_back : {true, false})
+    CHECK(toughness_from(oil, grown(oil, 1, at_back), at_back, {E_prime, toughness}, 10.0, x) == Approx(K));
+  CHECK(toughness_from(oil, grown(oil, 0, true), true, {E_prime, toughness}, 10.0, x) == toughness);
+}

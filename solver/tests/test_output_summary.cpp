@@ -332,6 +332,7 @@ TEST_CASE("each monitor marks the run beyond its threshold and not below") {
                                         {"fluid_imbalance", rest, &Monitors::largest_imbalance, 0.9e-8, 1.1e-8},
                                         {"fluid_imbalance", rest, &Monitors::volume_balance, -0.9e-8, -1.1e-8},
                                         {"floor_share", rest, &Monitors::floor_share_sum, 0.99, 1.01},
+                                        {"viscous_tip", rest, &Monitors::viscous_at_growth, 0.299, 0.301},
                                         {"J_spread_mean", rest, &Monitors::J_spread_sum, 0.99, 1.01},
                                         {"J_spread_mean", inertia, &Monitors::J_spread_sum, 0.99, 1.01},
                                         {"tension_share", rest, &Monitors::largest_tension_Pa, 0.9e-3, 1.1e-3},

@@ -409,3 +409,46 @@ TEST_CASE("a step that fails changes nothing") {
   CHECK_THAT(s.reason, Catch::Contains("did not converge"));
   CHECK(bench.line.P == P);
 }
+
+// Requires that a step whose rock tells openings to 1e-13 m alone, as its stiff contact has lost digits, is found where
+// the rock says so, with the pressure that exact openings give, and not else. Mutations that fail: no such digits, a
+// hundredth of them.
+TEST_CASE("a balance is solved to the digits that its rock has") {
+  const auto stepped = [](double noise, double cancels, StepReport& report) {
+    Bench bench;
+    int calls = 0;
+    const RockModel rock = [&](const VectorXd& P) {
+      RockResponse r = bench.rock(P);
+      for (Index k = 0; k < P.size(); ++k) r.w(k) += noise * std::sin(7.0 * static_cast<double>(++calls));
+      r.cancels = cancels;
+      return r;
+    };
+    report = step_reynolds(bench.fluid, {Inlet::Drive::rate, 1e-3}, 0.1, rock, bench.line, bench.balance);
+    return bench.line.P.front();
+  };
+  StepReport report;
+  const double P = stepped(0.0, 0.0, report);
+  REQUIRE(report.converged);
+  stepped(1e-13, 0.0, report);
+  CHECK_FALSE(report.converged);
+  CHECK(stepped(1e-13, 1e13, report) == Approx(P).epsilon(1e-7));
+  CHECK(report.converged);
+}
+
+// Requires that what says where to look names a floor that is above all openings, with both, and only then.
+TEST_CASE("a floor above all openings is named where a step fails") {
+  const auto reason = [](double floor) {
+    Bench bench;
+    bench.fluid.minimum_opening_m = floor;
+    return bench
+        .step(0.1,
+              [](const VectorXd& P) {
+                return RockResponse{VectorXd::Constant(P.size(), std::nan("")),
+                                    Eigen::MatrixXd::Zero(P.size(), P.size())};
+              })
+        .reason;
+  };
+  CHECK_THAT(reason(1.0), Catch::Contains("minimum_opening_m = 1 is above all openings, ") &&
+                              Catch::Contains("lower it below the openings"));
+  CHECK_THAT(reason(1e-6), !Catch::Contains("above all openings"));
+}
