@@ -337,8 +337,7 @@ double next_step(const Scene& scene, const LoadStep& step) {
 
 // The step at whose end the margin is 1 or hardly more, no longer than `high`, at which it is larger: regula falsi,
 // which turns the end that stays onto the slope of the parabola through the last three (Anderson and Bjorck, BIT 13,
-// 1973), and bisection where the margin has no size. What has no solution lies beyond the event; but flow from the
-// last growth on has none before its fronts can be at their tips. False where that has no solution there.
+// 1973), and bisection where the margin has no size. False where flow from the last growth on has no solution there.
 bool locate_event(const Scene& scene, const Rocks& rocks, const LoadPoint& from, double margin_low, double high,
                   State& state, Quasistatic& run) {
   const double aim = 1.0 + 0.5 * event_tolerance;
@@ -348,11 +347,7 @@ bool locate_event(const Scene& scene, const Rocks& rocks, const LoadPoint& from,
     const double share = std::isfinite(f_high) && iteration < 50 ? -f_low / (f_high - f_low) : 0.5;
     const double middle = low + (high - low) * std::clamp(share, 1e-3, 1.0 - 1e-3);
     const bool found = try_step(scene, rocks, from, middle, state, run).found;
-    if (!found && state.grown.line.size() > 0) {
-      low = middle, side = 0;
-      continue;
-    }
-    const double margin = found ? run.margin : HUGE_VAL;
+    const double margin = found ? run.margin : HUGE_VAL;  // what has no solution lies beyond the event
     if (margin >= 1.0 && margin <= 1.0 + event_tolerance) return true;
     const bool beyond = margin > aim;
     double &f_same = beyond ? f_high : f_low, &f_other = beyond ? f_low : f_high;

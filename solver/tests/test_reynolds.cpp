@@ -411,8 +411,7 @@ TEST_CASE("a step that fails changes nothing") {
 }
 
 // Requires that a step whose rock tells openings to 1e-13 m alone, as its stiff contact has lost digits, is found where
-// the rock says so, with the pressure that exact openings give, and not else. Mutations that fail: no such digits, a
-// hundredth of them.
+// the rock says so, with the pressure that exact openings give, and not else. Mutation that fails: no such digits.
 TEST_CASE("a balance is solved to the digits that its rock has") {
   const auto stepped = [](double noise, double cancels, StepReport& report) {
     Bench bench;

@@ -42,7 +42,7 @@ def test_a_fracture_that_slides_is_opened_by_the_fluid_as_one_that_does_not(tmp_
     """Griffith: the whole shear slides, K_II = tau sqrt(pi a), since the fluid takes all that presses the faces; and p = Q t E'/(2 pi a^2)
     opens them, K_I = p sqrt(pi a), whatever the slip. It had no solution at t = 0: the balance was asked for digits that contact loses in slip.
 
-    Mutations that fail: RockResponse::cancels left at 0, or the tangential jump alone in it (no solution at 45 degrees).
+    Mutations that fail: RockResponse::cancels of the tangential jump alone, or none (no solution at 45 degrees).
     """
     done = run_in(tmp_path, SCENE, path_at(degrees), *settings)
     assert done.returncode == 0, done.stderr
@@ -73,7 +73,7 @@ def test_friction_holds_the_faces_that_the_fluid_has_not_come_to(tmp_path: Path,
     """At the start the fluid is in an increment on either side of the inlet: only there, and a little beyond, the faces slide, and no K_II
     is at the tips. They slid everywhere, as if they were full of fluid, and stuck then: K_II was 7.3 MPa sqrt(m).
 
-    Mutations that fail: the fluid's pressure in dry cells while the start is found; friction on the net stress of the start.
+    Mutation that fails: the fluid's pressure in dry cells while the start is found.
     """
     settings = (path_at(60), 'fracture.growth="J"', "fracture.friction=0.6", f"fracture.increment_m={increment}", "numerics.cell_m=0.25", "stop.time_s=1e-3")
     assert run_in(tmp_path, SCENE, *settings).returncode == 0
@@ -108,7 +108,8 @@ def test_a_dry_fracture_that_would_slide_open_says_what_to_do(tmp_path: Path, gr
 def test_kinks_and_stress_that_grows_with_depth(tmp_path: Path, settings: tuple[str, ...]) -> None:
     """What is fed is there, in 1 m and 0.5 m cells, and these agree about the fluid's pressure.
 
-    Mutation that fails: RockResponse::cancels left at 0."""
+    Mutation that fails: RockResponse::cancels left at 0.
+    """
     pressure = []
     for cell in (1.0, 0.5):
         done = run_in(tmp_path, SCENE, *settings, f"numerics.cell_m={cell}")

@@ -198,8 +198,7 @@ def test_closed_starts_and_waits_do_not_depend_on_what_is_written(tmp_path: Path
     """A front that no flow brings to a tip by the time of a row is on its way there, also after the first growth and where it takes longer
     than the growth before; and a tip that waits is given up at a time of its own.
 
-    Mutations that fail: no fronts on their way where the growth before says nothing, or after it has taken as long; what has no solution
-    between two growths taken for later than the next one; a tip given up at a row.
+    Mutations that fail: no fronts on their way where the growth before says nothing, or after it has taken as long; a tip given up at a row.
     """
     found = []
     for every in rows:

@@ -27,7 +27,7 @@ stop = {tip_y_m = 12, time_s = 4000}
 def test_a_viscous_tip_within_a_cell_is_marked(tmp_path: Path, viscosity: float, toughness: float, off: tuple[float, float], marked: bool) -> None:
     """Net pressure of the inlet and mouth opening in 23 cells against kgd_leakoff without leak-off (its own errors are 0.5 %).
 
-    Mutations that fail: the viscous part of K left out of the mark; a mark of whatever has toughness."""
+    Mutations that fail: K at the tip in place of that a cell behind it, K_Ic not taken off."""
     settings = (f"fluid.viscosity_Pa_s={viscosity}", f"rock.r.toughness_Pa_sqrt_m={toughness}")
     assert run_in(tmp_path, SCENE, *settings).returncode == 0
     rows = rows_of(tmp_path / "X")
