@@ -24,8 +24,8 @@ void return_to(const LoadPoint& from, State& state);
 
 /// Work of the fluid since an earlier load, as if its pressure and what surfaces have released of the in-situ traction
 /// had changed with the jumps (J/m): sum A (P + P')/2 n . (w' - w); the traction's in `in_situ`. The fracture may have
-/// become longer in between. What holds its faces counts with P where they part or close under a changing load (`loaded`:
-/// they are apart from P + r on) and in a long step of flow that conserves volume. Throws nothing.
+/// become longer in between. What holds its faces counts with P where they part or close under a changing load
+/// (`loaded`: they are apart from P + r on) and in a long step of flow that conserves volume. Throws nothing.
 double work_of_loads(const State& state, const LoadPoint& before, bool loaded, double& in_situ);
 
 /// Work of the body force as if it had changed with the displacements (J/m): sum m (b + b')/2 . (u' - u). Throws
