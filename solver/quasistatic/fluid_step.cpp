@@ -80,11 +80,12 @@ void add_place(const ContactPlace& place, const LawAnswer& r, double w, RockResp
   rock.dw_dP(k, k) += roughness / closing;
 }
 
-// The largest of the stresses whose difference a place's law answers (Pa): its normal and its tangential jump are sums
-// over x and y, of which the stiff springs of contact answer what is left. Where faces that are not along the grid
-// slide by millimetres, 1e14 Pa/m times that: the reaction's round-off is 1e4 times that of the pressure.
+// The largest of the stresses whose difference holds a place (Pa): its normal jump is a sum over x and y, of which
+// stiff contact answers what is left, and openings beside it follow, also of faces that it has let go. Where faces that
+// are not along the grid slide by millimetres, 1e14 Pa/m times that: 1e4 times the round-off of the pressure.
 double cancelling(const ContactPlace& place, const LawAnswer& r, const Vec2& w) {
-  return -r.dn_dn * place.n.cwiseProduct(w).lpNorm<1>() - r.dt_dt * place.t().cwiseProduct(w).lpNorm<1>();
+  return place.k * (place.n.cwiseProduct(w).lpNorm<1>() - std::abs(place.n.dot(w))) -
+         r.dt_dt * place.t().cwiseProduct(w).lpNorm<1>();
 }
 
 // What both faces of each cell have lost to the rock by a time (s), 2 (2 C_L sqrt(t - t_0)) A (m^2; Carter, in Howard &
