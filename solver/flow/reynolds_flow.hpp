@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "flow/reynolds_line.hpp"
 #include "scene/scene.hpp"
 #include "state/fluid_line.hpp"
 
@@ -76,30 +77,9 @@ struct ReynoldsOptions {
   double tolerance = 1e-12;   // of a cell's imbalance, relative to the fluid in the fracture; not below round-off
 };
 
-/// A fracture full of fluid at P (Pa) throughout, or less by its weight over the cells' rise above the inlet, rho g y
-/// (Pa), with openings w (m) in cells of the given lengths (m) and the inlet at a vertex, wet from time 0 on; sets
-/// `balance` to nothing injected.
-ReynoldsLine full_line(const Fluid& fluid, const std::vector<double>& length, std::size_t inlet, double P,
-                       const Eigen::VectorXd& w, FluidBalance& balance, const Eigen::VectorXd& rise = {});
-
-/// Fills the cells of a line anew at the pressures and filled parts that they have, in rock with other openings w (m);
-/// nothing is injected by it.
-void fill_openings(const Fluid& fluid, const Eigen::VectorXd& w, ReynoldsLine& line, FluidBalance& balance);
-
-/// Takes the fluid out of a cell that has not been wet yet: nothing flows to it until wet_s is finite.
-void leave_dry(const Fluid& fluid, std::size_t cell, ReynoldsLine& line, FluidBalance& balance);
-
-/// Adds an empty cell (phi = 0, P = P_c) of the given length (m), wet from `time` (s) on, after the last one (at_back)
-/// or before the first, where the inlet's vertex moves up by one.
-void grow(ReynoldsLine& line, const Fluid& fluid, bool at_back, double length, double time = 0.0);
-
 /// One step dt (s) of flow and rock together: Newton's method on the balance of each cell, with P free in full cells
 /// and phi in others. Changes line and balance only where it converges; throws what the rock throws.
 StepReport step_reynolds(const Fluid& fluid, const Inlet& inlet, double dt, const RockModel& rock, ReynoldsLine& line,
                          FluidBalance& balance, const ReynoldsOptions& options = {});
-
-/// Pressure at the vertices (Pa, one more than cells): linear between the cells' middles, the inlet's own at the inlet,
-/// the last cell's at a closed end, through which nothing flows.
-std::vector<double> vertex_pressures(const ReynoldsLine& line);
 
 }  // namespace strata
