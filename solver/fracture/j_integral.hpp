@@ -34,7 +34,7 @@ struct TipRule {
 };
 
 /// The rules of all tips, good as long as particles and surfaces stay where they are. Throws nothing.
-void make_tip_rules(const Scene& scene, const Rocks& rocks, const State& state, std::vector<TipRule>& rules);
+std::vector<TipRule> make_tip_rules(const Scene& scene, const Rocks& rocks, const State& state);
 
 /// Computes J, K_I, K_II, the next growth direction and how far they can be trusted for every tip, from the fields at
 /// the end of a step (state.motion holds the motion of that step).

@@ -81,7 +81,7 @@ void rebuild_all(const Scene& scene, const Rocks& rocks, State& state, Quasistat
   run.trials.clear();  // two bodies are not to be held at a time
   update_model(scene, rocks, state, run.model);
   state.monitors.mirror = run.model.body->halved;
-  make_tip_rules(scene, rocks, state, run.rules);
+  run.rules = make_tip_rules(scene, rocks, state);
   state.ledger.excess = excess;  // what springs of tips give back is in the difference of stored energy already
   run.trials = build_trials(scene, rocks, state, run.model);
 }

@@ -396,8 +396,7 @@ TEST_CASE("integrals are sums over particles") {
     run.rocks.push_back(other);
     Particles& p = run.state.particles;
     for (std::size_t q = 0; q < p.size(); ++q) p.rock[q] = p.x[q] > 11.3 ? 1 : 0;
-    std::vector<TipRule> rules;
-    make_tip_rules(run.scene, run.rocks, run.state, rules);
+    std::vector<TipRule> rules = make_tip_rules(run.scene, run.rocks, run.state);
     for (TipRule& rule : rules) rule.faces.clear();
     for (const Intensity& K : mixes) {
       impose(run, true, K, 3e5);
