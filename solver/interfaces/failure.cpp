@@ -35,7 +35,7 @@ struct ColumnWeights {
 Band band_of(const Scene& scene, const State& state, const Surface& surface) {
   const Grid& g = state.grid;
   Band band;
-  band.along_x = scene.strata.along == Strata::Along::y;
+  band.along_x = scene.strata.upwards();
   const Vec2 x = surface.vertices.front().x;
   const int at = band.along_x ? g.row_at(x.y()) : g.column_at(x.x());
   const double offset =

@@ -13,7 +13,7 @@ namespace {
 // there.
 Parting parting_from(const Scene& scene, const Rocks& rocks, const State& state, std::span<const BondedPlace> stretch,
                      bool back) {
-  const bool along_x = scene.strata.along == Strata::Along::y;
+  const bool along_x = scene.strata.upwards();
   const auto column_at = [&](int c) { return along_x ? state.grid.x(c) : state.grid.y(c); };
   const BondedPlace &first = back ? stretch.back() : stretch.front(), &last = back ? stretch.front() : stretch.back();
   const Surface& surface = state.surfaces[first.surface];

@@ -75,7 +75,7 @@ void mark_fracture(const Scene& scene, const State& state, std::vector<SideWord>
 // An interface splits the nodes of a grid column (along y: row) whose points have split.
 void mark_interface(const Scene& scene, const State& state, const Surface& s, std::vector<SideWord>& mask) {
   const Grid& g = state.grid;
-  const bool along_x = scene.strata.along == Strata::Along::y;  // layers stacked along y: the interface runs along x
+  const bool along_x = scene.strata.upwards();  // layers stacked along y: the interface runs along x
   const int n = along_x ? g.nx : g.ny;
   std::vector<char> split(static_cast<std::size_t>(n) + 1, 0);
   for (const SurfacePoint& point : s.points) {
@@ -195,7 +195,7 @@ void make_cut_nodes(const Scene& scene, const State& state, const NodeMasks& mas
       cut.entered = entered_sides(state, interfaces, tip < 0 ? nullptr : &state.tips[static_cast<std::size_t>(tip)]);
     for (const auto& [surface, point] : bonded) {  // there it is whole
       const int i = static_cast<int>(node);
-      const int column = scene.strata.along == Strata::Along::y ? state.grid.column(i) : state.grid.row(i);
+      const int column = scene.strata.upwards() ? state.grid.column(i) : state.grid.row(i);
       if ((cut.mask & surface->mask()) == 0 || column != point->column) continue;
       cut.joined.push_back({cut.key(point->sides), cut.key(point->sides | surface->mask())});
     }
