@@ -61,8 +61,8 @@ class TreeFactor {
   struct Supernode;
 
   Supernode supernode(int s) const;
-  template <class Rows>
-  void down(int s, Rows& y) const;
+  void down(int s, Eigen::VectorXd& y) const;
+  void down(int s, SideBySide& y) const;
   void up(int s, Eigen::VectorXd& y) const;
 
   std::shared_ptr<const cholmod_factor_struct> L_;
