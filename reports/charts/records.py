@@ -163,7 +163,7 @@ def _draw_layers(axes: Axes, stress: Axes, data: Shown) -> None:
 def draw_well(data: Shown) -> Figure:
     """Left the layout and the closing stress of each layer; right a line a way to compute the tip's depth."""
     figure = new_figure(TWO_COLUMNS, 115.0)
-    figure.suptitle(wrapped(data.title, 118), x=0.008, ha="left", fontweight="bold")
+    figure.suptitle(wrapped(data.title, 104), x=0.008, ha="left", fontweight="bold")
     layout, stress, right = figure.subplots(1, 3, sharey=True, width_ratios=(1.3, 0.8, 2.2))
     _draw_layers(layout, stress, data)
     right.grid(True)
