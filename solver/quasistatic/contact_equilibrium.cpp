@@ -305,7 +305,7 @@ bool ends_at(const State& state, const Condensed& condensed, const Places& place
 }
 
 // Friction by bounds that are held while the jumps are found, from at.j on, and renewed from the normal reactions;
-// false where that does not end, and then at.residual is the smaller force out of balance.
+// false where that does not end, and then at.residual is the force out of balance.
 bool solve_with_fixed_bounds(const State& state, const Condensed& condensed, Places places, TangentFactor& factor,
                              Equilibrium& at) {
   constexpr int most_rounds = 400;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace strata {
 namespace {
@@ -113,7 +112,8 @@ LawAnswer answer_on(const LawLines& lines, const Branch& branch, double c) {
 }
 
 CohesionPath follow_falling_cohesion(const PathEquations& equations, const Eigen::VectorXd& stuck) {
-  constexpr double above = 1.01;  // of the cohesion that holds all
+  constexpr double above = 1.01;  // of the cohesion that holds all, so that no place begins at its bound
+  // Longer paths, which have not been seen, go round by round-off: every place changes a few times at most.
   const auto most = 20 * static_cast<int>(equations.lines.size()) + 100;
   const double first = above * holding_cohesion(equations, stuck);
   CohesionPath path{stuck, first, 0};

@@ -390,8 +390,8 @@ TEST_CASE("K of faces that stick or rub") {
 // P)^2) from P = N - S/mu on and pi a^2 S^2/E', whatever mu, once it has parted; fluid and in-situ stress together 2 pi
 // a^2 S^2/E' and pi a^2 (P - N)^2/E' (3 %), and the ledger closed to 0.5 % while it slides and 0.02 % at the end.
 // At once from the in-situ state, whose fluid holds the faces, friction is half of its last value times the slip.
-// Mutations that fail: all of that, the shear of the step's end (a quarter of the work missed), faces that have parted
-// left out, half of it, its sign, what holds faces left out of the fluid's work (the ledger 3 % open).
+// Mutations that fail: all of that, the shear of the step's end, faces that have parted
+// left out, half of it, its sign, what holds faces left out of the fluid's work.
 TEST_CASE("works of a closed fracture with friction that the fluid parts") {
   const double S = 2e6, N = 10e6, a = 5.0, E_prime = 10e9 / 0.96, unit = std::numbers::pi * a * a / E_prime;
   for (const double mu : {0.6, 0.8}) {
