@@ -90,14 +90,24 @@ void lengthen_fluid(const Scene& scene, State& state, bool at_back, std::size_t 
   if (!at_back) state.fluid.inlet += pieces;
 }
 
-// Particles ahead of the old tip may change sides as the path turns; those beside the older fracture keep theirs.
-void update_particle_sides(State& state, const Tip& tip, double old_length) {
+// Whether growth leaves the side of a place alone whatever is nearest to it: `off` the old tip it lies behind the new
+// pieces, beside the older fracture or on the outside of the kink, or beside them and what extends them straight on,
+// where it is on the side that it is said to be on. Slack (m): what is nearer to a limit is not told.
+bool keeps_side(const Vec2& off, const Vec2& direction, bool on_left, double slack) {
+  const double ahead = off.dot(direction), left = cross(direction, off);
+  return ahead < -slack || (ahead > slack && (on_left ? left > slack : left < -slack));
+}
+
+// Particles ahead of the old tip (`from`) may change sides as the path turns; those beside the older fracture keep
+// theirs.
+void update_particle_sides(State& state, const Tip& tip, const Vec2& from, double old_length) {
   const Surface& fracture = state.fracture();
-  const Vec2 at = tip_position(state, tip);
-  const double near = extension(state.grid) + fracture.length() - old_length;
+  const Vec2 at = tip_position(state, tip), direction = tip_direction(fracture, tip.at_back);
+  const double near = extension(state.grid) + fracture.length() - old_length, slack = 1e-6 * state.grid.h;
   Particles& p = state.particles;
   for (std::size_t q = 0; q < p.size(); ++q) {
     const Vec2 x{p.x[q], p.y[q]};
+    if (keeps_side(x - from, direction, tip.at_back == ((p.sides[q] & fracture.mask()) != 0), slack)) continue;
     if ((x - at).norm() > 2.0 * near) continue;
     const Projection on = project(fracture, x, extension(state.grid));
     const bool ahead = tip.at_back ? on.arc >= old_length - 1e-9 : on.arc <= fracture.length() - old_length + 1e-9;
@@ -267,7 +277,7 @@ double extend_tip(const Scene& scene, State& state, Tip& tip, double increment, 
   if (scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics && scene.numerics.keeps_places())
     displace_new(state, tip.at_back, pieces);
   const std::size_t first = tip.at_back ? old_points : 0;
-  update_particle_sides(state, tip, old_length);
+  update_particle_sides(state, tip, from, old_length);
   refine_particles(scene, state, first, first + pieces);
   for (Surface& surface : state.surfaces) place_points(scene, state, surface);
   return length;

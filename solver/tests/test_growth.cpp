@@ -197,7 +197,8 @@ TEST_CASE("an oblique increment ends on the interface") {
 
 // Requires of both tips of a fracture that turns again and again, and back, that after each increment every particle is
 // on the side of the nearest place where that lies at the old tip or ahead of it, and where it was where not; some
-// change. Mutations that fail: sides that never change, those ahead told by the other sign or by the other tip.
+// change. What may be told without the nearest place (keeps_side()) is not used here. Mutations that fail: sides that
+// never change, those ahead told by the other sign or by the other tip.
 TEST_CASE("particles ahead of a turn change sides") {
   Scene scene = growing({{5.0, 10.0}, {9.0, 10.2}}, 1.3);
   scene.domain.bottom = Edge::fixed;
