@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "flow/moving_front.hpp"
 #include "flow/reynolds_flow.hpp"
 #include "state/elasticity.hpp"
 
@@ -99,19 +98,16 @@ std::array<double, 2> floor_share(const Scene& scene, const State& state) {
   return of_sides(state, [&](const Side& side) { return missing_along(scene, side) / net; });
 }
 
-std::array<double, 2> viscous_tip(const Scene& scene, const State& state) {
+double viscous_tip(const State& state, const Fluid& fluid, bool at_back, const TipRock& rock) {
   const double net = net_at_inlet(state);
-  if (!(net > 0.0) || scene.fluid.law != Fluid::Law::reynolds || state.grown.line.size() == 0) return {};
-  const Rocks rocks = make_elasticities(scene);
-  return of_sides(state, [&](const Side& side) {
-    const std::size_t r = rock_at(scene, side[side.count - 1].x);
-    const TipRock rock{rocks[r].E_prime, std::sqrt(rocks[r].J_c * rocks[r].E_prime), scene.rocks[r].leakoff_m_sqrt_s};
+  if (!(net > 0.0) || state.grown.line.size() == 0 || state.reynolds.dry_cells(at_back) > 0) return 0.0;
+  const auto [before, behind] = of_sides(state, [](const Side& side) {
     double a = 0.0;
     for (std::size_t k = 0; k < side.count; ++k) a += side[k].A;
-    if (rock.K_Ic == 0.0 || state.reynolds.dry_cells(side.onwards) > 0) return 0.0;
-    const double K = toughness_from(scene.fluid, state.reynolds, side.onwards, rock, state.time, state.grid.h);
-    return (K - rock.K_Ic) / (net * std::sqrt(std::numbers::pi * a));
+    return a;
   });
+  const double K = toughness_from(fluid, state.reynolds, at_back, rock, state.time, state.grid.h);
+  return (K - rock.K_Ic) / (net * std::sqrt(std::numbers::pi * (at_back ? behind : before)));
 }
 
 void watch_flow(const Scene& scene, State& state) {
@@ -124,7 +120,13 @@ void watch_flow(const Scene& scene, State& state) {
   const double net = net_at_inlet(state);
   m.flow_fall = net > 0.0 ? m.flow_fall_Pa / net : 0.0;
   m.floor_share = floor_share(scene, state);
-  m.viscous_tip = viscous_tip(scene, state);
+  m.viscous_tip = {};
+  const Rocks rocks = make_elasticities(scene);
+  for (const Tip& tip : state.tips) {
+    const TipRock rock = tip_rock(scene, rocks, state, tip.at_back);
+    if (tip.criterion != Criterion::J && rock.K_Ic > 0.0)
+      m.viscous_tip[tip.at_back ? 1 : 0] = viscous_tip(state, scene.fluid, tip.at_back, rock);
+  }
 }
 
 }  // namespace strata

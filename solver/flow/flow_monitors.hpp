@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "flow/moving_front.hpp"
 #include "scene/scene.hpp"
 #include "state/state.hpp"
 
@@ -24,9 +25,9 @@ std::array<double, 2> floor_share(const Scene& scene, const State& state);
 
 /// What the viscous fluid takes up within a cell of a tip, of the pressure at the inlet: (K(h) - K_Ic)/(p sqrt(pi a)),
 /// K(h) by toughness_from() a cell behind the tip, p the inlet's net pressure, a the length from there to the tip; rock
-/// whose toughness decides leaves 0. A value for the side of the inlet before it, and one for that behind it; 0 where
-/// nothing has grown under law = "reynolds", and without toughness, where K does not decide. Throws nothing.
-std::array<double, 2> viscous_tip(const Scene& scene, const State& state);
+/// whose toughness decides leaves 0. 0 where nothing has grown, and before the fluid has come to the tip. Throws
+/// nothing.
+double viscous_tip(const State& state, const Fluid& fluid, bool at_back, const TipRock& rock);
 
 /// Notes all at the end of a step of the load. Where the inlet's pressure is given, what the flow lags behind is in
 /// the pressure of the next growth: the largest fall since the growth before counts. A given rate makes up for it: the

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace strata {
 
@@ -78,6 +79,12 @@ struct MovingFront {
 
 }  // namespace
 
+TipRock tip_rock(const Scene& scene, const Rocks& rocks, const State& state, bool at_back) {
+  const auto& points = state.fracture().points;
+  const std::size_t r = rock_at(scene, (at_back ? points.back() : points.front()).x);
+  return {rocks[r].E_prime, std::sqrt(rocks[r].J_c * rocks[r].E_prime), scene.rocks[r].leakoff_m_sqrt_s};
+}
+
 double front_filling(const Fluid& fluid, const ReynoldsLine& line, bool at_back, const TipRock& rock, double time) {
   AddedCells added(line, at_back);
   if (added.count == 0) added.take_first();
@@ -85,6 +92,27 @@ double front_filling(const Fluid& fluid, const ReynoldsLine& line, bool at_back,
   double held = 0.0;
   for (std::size_t j = 0; j < added.count; ++j) held += line.w[added.cell(j)] * added.length_of(j);
   return held / MovingFront(fluid, added, rock, time).content(0.0, added.length);
+}
+
+double opening_behind(const Fluid& fluid, const ReynoldsLine& line, bool at_back, const TipRock& rock, double time,
+                      double from, double to) {
+  const AddedCells added(line, at_back);
+  if (added.count == 0) return 1.0;
+  if (time <= line.wet_s[added.cell(0)]) return 0.0;
+  const MovingFront front(fluid, added, rock, time);
+  const std::size_t side = at_back ? line.size() - line.inlet : line.inlet;
+  double way = 0.0, whole = side == line.size() ? 2.0 : 1.0;
+  for (std::size_t j = 0; j < side; ++j) way += added.length_of(j);
+  whole *= std::accumulate(line.length.begin(), line.length.end(), 0.0);
+  double x = 0.0, held = 0.0, content = 0.0;
+  for (std::size_t j = 0; j < side && x < 0.999 * to; ++j) {
+    const double A = added.length_of(j), near = x;
+    x += A;
+    if (near < 0.999 * std::min(from, 0.5 * way)) continue;
+    held += line.w[added.cell(j)] * A;
+    content += integral_over_x(near, x, [&](double u) { return front.opening(u) * std::sqrt(1.0 - u * u / whole); });
+  }
+  return held / content;
 }
 
 double toughness_from(const Fluid& fluid, const ReynoldsLine& line, bool at_back, const TipRock& rock, double time,

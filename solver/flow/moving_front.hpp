@@ -12,7 +12,8 @@
 #include <vector>
 
 #include "scene/scene.hpp"
-#include "state/fluid_line.hpp"
+#include "state/elasticity.hpp"
+#include "state/state.hpp"
 
 namespace strata {
 
@@ -20,6 +21,9 @@ namespace strata {
 struct TipRock {
   double E_prime = 0.0, K_Ic = 0.0, C_L = 0.0;
 };
+
+/// The rock of the fracture's last point (at_back) or first. Throws nothing.
+TipRock tip_rock(const Scene& scene, const Rocks& rocks, const State& state, bool at_back);
 
 /// What faces between cells conduct by the opening of the cell on the tip's side (m/(Pa s)), a value a face, below 0
 /// where that is the cell before; 0 where no front is near. The tip is at the line's last cell (at_back) or first, and
@@ -40,6 +44,12 @@ void limit_to_front(const Fluid& fluid, const ReynoldsLine& line, bool at_back, 
 /// What the cells hold that the front came to last, over what they hold when it is at their end at a time (s),
 /// int_0^L w dx at the speed V with which it has then gone through them: 1 when it is there.
 double front_filling(const Fluid& fluid, const ReynoldsLine& line, bool at_back, const TipRock& rock, double time);
+
+/// What the cells between two distances (m) behind a tip hold, or those from half of the way to the inlet on, over what
+/// they hold when the front is at the tip, int w sqrt(1 - x/l) dx: l is the fracture's length, or twice that where it
+/// begins at the inlet, and the root what an even pressure makes of w ~ x^(1/2). 1 where growth has added no cells.
+double opening_behind(const Fluid& fluid, const ReynoldsLine& line, bool at_back, const TipRock& rock, double time,
+                      double from, double to);
 
 /// The K (Pa sqrt(m)) that the opening stands for at a distance x (m) behind a front which is at the tip at a time (s),
 /// w = 8 K/E' sqrt(x/(2 pi)): the toughness, and what the fall of the fluid's pressure from there to the tip takes up.

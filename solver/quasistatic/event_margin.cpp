@@ -49,9 +49,10 @@ double tip_margin(const Scene& scene, const Rocks& rocks, State& state, Quasista
     }
   }
   const double G = driving(rock, tip);
-  if (rock.J_c > 0.0) return std::sqrt(std::max(0.0, G) / rock.J_c);
-  if (weighs_energy(tip)) return G > 0.0 ? 2.0 : 0.0;
-  return toughless_margin(state, rock.E_prime, tip);
+  const bool tough = rock.J_c > 0.0;
+  if (!tough && weighs_energy(tip)) return G > 0.0 ? 2.0 : 0.0;
+  const double by_K = tough ? std::sqrt(std::max(0.0, G) / rock.J_c) : toughless_margin(state, rock.E_prime, tip);
+  return fed_margin(scene, rocks, state, tip, std::sqrt(rock.J_c * rock.E_prime), by_K);
 }
 
 double margin_of(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run) {

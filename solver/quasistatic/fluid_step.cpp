@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "flow/flow_monitors.hpp"
 #include "flow/moving_front.hpp"
 #include "flow/paper_flow.hpp"
 #include "flow/reynolds_flow.hpp"
@@ -107,14 +108,11 @@ bool went_on(const State& state, const Tip& tip) {
   return state.grown.time - last_wet(state.reynolds, tip.at_back) < 2.0 * shortest_coupled_step;
 }
 
-// The rock at the fracture's end on a tip's side, without toughness while the initial fracture is dry ahead of the
-// front.
+// The rock of a tip, without toughness while the initial fracture is dry ahead of the front.
 TipRock rock_at_front(const Scene& scene, const Rocks& rocks, const State& state, const Tip& tip) {
-  const auto& points = state.fracture().points;
-  const std::size_t r = rock_at(scene, (tip.at_back ? points.back() : points.front()).x);
-  const bool closed_ahead = state.reynolds.dry_cells(tip.at_back) > 0;
-  const double K_Ic = closed_ahead ? 0.0 : std::sqrt(rocks[r].J_c * rocks[r].E_prime);
-  return {rocks[r].E_prime, K_Ic, scene.rocks[r].leakoff_m_sqrt_s};
+  TipRock rock = tip_rock(scene, rocks, state, tip.at_back);
+  if (state.reynolds.dry_cells(tip.at_back) > 0) rock.K_Ic = 0.0;
+  return rock;
 }
 
 // What conducts near the fronts of tips that go on at a time (s) and, where those of the last growth are at their tips
@@ -319,6 +317,18 @@ double toughless_margin(const State& state, double E_prime, const Tip& tip) {
 double front_margin(const Scene& scene, const Rocks& rocks, const State& state, const Tip& tip) {
   const TipRock rock = rock_at_front(scene, rocks, state, tip);
   return front_filling(scene.fluid, state.reynolds, tip.at_back, rock, state.time);
+}
+
+double fed_margin(const Scene& scene, const Rocks& rocks, const State& state, const Tip& tip, double K_Ic,
+                  double by_K) {
+  constexpr double as_good = 0.18;  // viscous_tip() at which either is off by half a per cent
+  if (state.grown.line.size() == 0 || tip.criterion != Criterion::J) return by_K;
+  TipRock rock = tip_rock(scene, rocks, state, tip.at_back);
+  rock.K_Ic = K_Ic;
+  const double h = state.grid.h, viscous = viscous_tip(state, scene.fluid, tip.at_back, rock);
+  const double by_opening =
+      opening_behind(scene.fluid, state.reynolds, tip.at_back, rock, state.time, 2.0 * h, 4.0 * h);
+  return by_K + (by_opening - by_K) / (1.0 + std::pow(as_good / viscous, 8));
 }
 
 bool fronts_go_on(const Scene& scene, const Rocks& rocks, double least_s, State& state) {
