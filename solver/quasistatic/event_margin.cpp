@@ -49,10 +49,11 @@ double tip_margin(const Scene& scene, const Rocks& rocks, State& state, Quasista
     }
   }
   const double G = driving(rock, tip);
-  const bool tough = rock.J_c > 0.0;
-  if (!tough && weighs_energy(tip)) return G > 0.0 ? 2.0 : 0.0;
-  const double by_K = tough ? std::sqrt(std::max(0.0, G) / rock.J_c) : toughless_margin(state, rock.E_prime, tip);
-  return fed_margin(scene, rocks, state, tip, std::sqrt(rock.J_c * rock.E_prime), by_K);
+  if (rock.J_c > 0.0)
+    return fed_margin(scene, rocks, state, tip, std::sqrt(rock.J_c * rock.E_prime),
+                      std::sqrt(std::max(0.0, G) / rock.J_c));
+  if (weighs_energy(tip)) return G > 0.0 ? 2.0 : 0.0;
+  return toughless_margin(state, rock.E_prime, tip);
 }
 
 double margin_of(const Scene& scene, const Rocks& rocks, State& state, Quasistatic& run) {

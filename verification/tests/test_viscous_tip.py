@@ -1,4 +1,4 @@
-"""Fractures fed at a rate whose fluid is so viscous that a cell does not resolve its tip: what that is worth is marked."""
+"""Fractures fed at a rate whose fluid is so viscous that a cell does not resolve its tip."""
 
 from pathlib import Path
 
@@ -19,24 +19,27 @@ stop = {tip_y_m = 12, time_s = 4000}
 """
 
 
-@pytest.mark.parametrize("viscosity, toughness, off, marked", [
-    (30.0, 1e6, (0.10, 0.20), True),  # toughness number 0.16
-    (30.0, 0.0, (-0.02, 0.02), False),  # the same but for 1e-4 of it, by the fluid's front alone
-    (0.01, 1e6, (-0.02, 0.02), False),  # toughness number 1.18
+@pytest.mark.parametrize("viscosity, toughness, leakoff", [
+    (30.0, 1e6, 0.0),  # toughness number 0.16
+    (30.0, 0.0, 0.0),  # the same but for 1e-4 of it, by the fluid's front alone
+    (1.0, 1e6, 0.0),  # 0.37
+    (0.01, 1e6, 0.0),  # 1.18
+    (0.2, 1e6, 2e-5),  # 0.56, and most of what comes leaks off
 ])  # fmt: skip
-def test_a_viscous_tip_within_a_cell_is_marked(tmp_path: Path, viscosity: float, toughness: float, off: tuple[float, float], marked: bool) -> None:
-    """Net pressure of the inlet and mouth opening in 23 cells against kgd_leakoff without leak-off (its own errors are 0.5 %).
+def test_fractures_whose_tip_a_cell_does_not_resolve(tmp_path: Path, viscosity: float, toughness: float, leakoff: float) -> None:
+    """Length, net pressure of the inlet and mouth opening in 22 cells within 1 % of kgd_leakoff (its own errors are 0.5 %).
 
-    Mutations that fail: K at the tip in place of that a cell behind it, K_Ic not taken off."""
-    settings = (f"fluid.viscosity_Pa_s={viscosity}", f"rock.r.toughness_Pa_sqrt_m={toughness}")
+    Mutations that fail: K alone (length 12, opening 9, pressure 15 % off), openings of the last 2 cells alone (3 %), the crack taken for infinite there (1.6 %)."""
+    settings = (f"fluid.viscosity_Pa_s={viscosity}", f"rock.r.toughness_Pa_sqrt_m={toughness}", f"rock.r.leakoff_m_sqrt_s={leakoff}")
     assert run_in(tmp_path, SCENE, *settings).returncode == 0
     rows = rows_of(tmp_path / "X")
-    last = [b for a, b in zip(rows, rows[1:], strict=False) if a["tip_y_m"] != b["tip_y_m"]][-1]
-    rock = {"toughness_Pa_sqrt_m": max(toughness, 1.0), "viscosity_Pa_s": viscosity, "rate_m2_s": 5e-5, "leakoff_m_sqrt_s": 1e-14}
-    exact = {name: value("kgd_leakoff", name, time_s=float(last["time_s"]), **rock) for name in ("inlet_pressure_Pa", "mouth_opening_m")}
-    assert off[0] < (float(last["inlet_Pa"]) - 20e6) / exact["inlet_pressure_Pa"] - 1.0 < off[1]
-    assert 0.5 * off[0] < float(last["mouth_opening_m"]) / exact["mouth_opening_m"] - 1.0 < off[1]
-    assert ("viscous_tip" in [mark["monitor"] for mark in summary_of(tmp_path / "X")["suspect"]]) == marked
+    before, last = [(a, b) for a, b in zip(rows, rows[1:], strict=False) if a["tip_y_m"] != b["tip_y_m"]][-1]
+    rock = {"toughness_Pa_sqrt_m": max(toughness, 1.0), "viscosity_Pa_s": viscosity, "rate_m2_s": 5e-5, "leakoff_m_sqrt_s": max(leakoff, 1e-14)}
+    found = {
+        "half_length_m": float(before["tip_y_m"]), "inlet_pressure_Pa": float(last["inlet_Pa"]) - 20e6, "mouth_opening_m": float(last["mouth_opening_m"]),
+    }  # fmt: skip
+    assert found == {name: pytest.approx(value("kgd_leakoff", name, time_s=float(last["time_s"]), **rock), rel=0.01) for name in found}
+    assert summary_of(tmp_path / "X")["suspect"] == []
 
 
 def test_a_floor_of_a_decimetre_is_marked(tmp_path: Path) -> None:
