@@ -124,7 +124,7 @@ void watch_flow(const Scene& scene, State& state) {
   const Rocks rocks = make_elasticities(scene);
   for (const Tip& tip : state.tips) {
     const TipRock rock = tip_rock(scene, rocks, state, tip.at_back);
-    if ((weighs_energy(tip) || at_interface(tip)) && rock.K_Ic > 0.0)
+    if (tip.criterion != Criterion::J && rock.K_Ic > 0.0)
       m.viscous_tip[tip.at_back ? 1 : 0] = viscous_tip(state, scene.fluid, tip.at_back, rock);
   }
 }

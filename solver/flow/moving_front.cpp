@@ -47,18 +47,6 @@ double integral_over_x(double from, double to, const Of& f) {
   return integral(std::sqrt(from), std::sqrt(to), [&](double u) { return 2.0 * u * f(u); });
 }
 
-// What a pressure between a and b behind the tip of a half-infinite crack takes, at the same K, of the opening from 0
-// to X (of 4/(pi E') times it; m^2): int int 2 sqrt(x/s) - ln|(sqrt(x) + sqrt(s))/(sqrt(x) - sqrt(s))| ds dx, by point
-// forces (e.g. Tada, Paris & Irwin).
-double beside_K(double X, double a, double b) {
-  const auto to = [X](double s) {
-    if (s == 0.0) return 0.0;
-    const double log = s == X ? 0.0 : std::log(std::abs((std::sqrt(X) + std::sqrt(s)) / (std::sqrt(X) - std::sqrt(s))));
-    return std::sqrt(X * s) * (5.0 / 3.0 * X - s) + 0.5 * (X - s) * (X - s) * log;
-  };
-  return X == 0.0 ? 0.0 : to(b) - to(a);
-}
-
 // What the rock behind a front is like that is at the tip at a time (s): W (m^(1/2)) at u = sqrt(x) (m^(1/2)).
 struct MovingFront {
   double c = 0.0, e = 0.0;  // m^(1/2)
@@ -106,30 +94,23 @@ double front_filling(const Fluid& fluid, const ReynoldsLine& line, bool at_back,
   return held / MovingFront(fluid, added, rock, time).content(0.0, added.length);
 }
 
-double opening_behind(const Fluid& fluid, const State& state, bool at_back, const TipRock& rock, double from,
-                      double to) {
-  const ReynoldsLine& line = state.reynolds;
+double opening_behind(const Fluid& fluid, const ReynoldsLine& line, bool at_back, const TipRock& rock, double time,
+                      double from, double to) {
   const AddedCells added(line, at_back);
   if (added.count == 0) return 1.0;
-  if (state.time <= line.wet_s[added.cell(0)]) return 0.0;
-  const MovingFront front(fluid, added, rock, state.time);
+  if (time <= line.wet_s[added.cell(0)]) return 0.0;
+  const MovingFront front(fluid, added, rock, time);
   const std::size_t side = at_back ? line.size() - line.inlet : line.inlet;
-  double whole = side == line.size() ? 2.0 : 1.0;
+  double way = 0.0, whole = side == line.size() ? 2.0 : 1.0;
+  for (std::size_t j = 0; j < side; ++j) way += added.length_of(j);
   whole *= std::accumulate(line.length.begin(), line.length.end(), 0.0);
-  std::vector<double> x(side + 1);  // where cells begin, and the last one ends
-  for (std::size_t j = 0; j < side; ++j) x[j + 1] = x[j] + added.length_of(j);
-  const auto first = std::ranges::lower_bound(x, 0.999 * std::min(from, 0.5 * x.back()));
-  const auto last = std::min(std::ranges::lower_bound(x, 0.999 * to), x.end() - 1);
-  const double content =
-      integral_over_x(*first, *last, [&](double u) { return front.opening(u) * std::sqrt(1.0 - u * u / whole); });
-  const auto& points = state.fracture().points;
-  double held = 0.0;
-  for (std::size_t j = 0; j < side; ++j) {
-    if (x[j] >= *first && x[j] < *last) held += line.w[added.cell(j)] * added.length_of(j);
-    const double less = points[added.cell(side - 1)].closing_stress() - points[added.cell(j)].closing_stress();
-    if (less == 0.0) continue;
-    const double takes = beside_K(*last, x[j], x[j + 1]) - beside_K(*first, x[j], x[j + 1]);
-    held += 4.0 * std::numbers::inv_pi / rock.E_prime * less * takes;
+  double x = 0.0, held = 0.0, content = 0.0;
+  for (std::size_t j = 0; j < side && x < 0.999 * to; ++j) {
+    const double A = added.length_of(j), near = x;
+    x += A;
+    if (near < 0.999 * std::min(from, 0.5 * way)) continue;
+    held += line.w[added.cell(j)] * A;
+    content += integral_over_x(near, x, [&](double u) { return front.opening(u) * std::sqrt(1.0 - u * u / whole); });
   }
   return held / content;
 }

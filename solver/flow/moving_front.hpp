@@ -47,11 +47,9 @@ double front_filling(const Fluid& fluid, const ReynoldsLine& line, bool at_back,
 
 /// What the cells between two distances (m) behind a tip hold, or those from half of the way to the inlet on, over what
 /// they hold when the front is at the tip, int w sqrt(1 - x/l) dx: l is the fracture's length, or twice that where it
-/// begins at the inlet, and the root what an even pressure makes of w ~ x^(1/2). Where the closing stress is another
-/// than at the inlet, what this changes of the opening at the same K, by a half-infinite crack, is taken off. 1 where
-/// growth has added no cells.
-double opening_behind(const Fluid& fluid, const State& state, bool at_back, const TipRock& rock, double from,
-                      double to);
+/// begins at the inlet, and the root what an even pressure makes of w ~ x^(1/2). 1 where growth has added no cells.
+double opening_behind(const Fluid& fluid, const ReynoldsLine& line, bool at_back, const TipRock& rock, double time,
+                      double from, double to);
 
 /// The K (Pa sqrt(m)) that the opening stands for at a distance x (m) behind a front which is at the tip at a time (s),
 /// w = 8 K/E' sqrt(x/(2 pi)): the toughness, and what the fall of the fluid's pressure from there to the tip takes up.

@@ -321,12 +321,13 @@ double front_margin(const Scene& scene, const Rocks& rocks, const State& state, 
 
 double fed_margin(const Scene& scene, const Rocks& rocks, const State& state, const Tip& tip, double K_Ic,
                   double by_K) {
-  constexpr double as_good = 0.13;  // viscous_tip() at which openings and K are
-  if (state.grown.line.size() == 0 || weighs_energy(tip) || at_interface(tip)) return by_K;
+  constexpr double as_good = 0.1;  // viscous_tip() at which openings and K are
+  if (!tip.has_grown || state.grown.line.size() == 0 || tip.criterion != Criterion::J) return by_K;
   TipRock rock = tip_rock(scene, rocks, state, tip.at_back);
   rock.K_Ic = K_Ic;
   const double h = state.grid.h, viscous = viscous_tip(state, scene.fluid, tip.at_back, rock);
-  const double by_opening = opening_behind(scene.fluid, state, tip.at_back, rock, 2.0 * h, 4.0 * h);
+  const double by_opening =
+      opening_behind(scene.fluid, state.reynolds, tip.at_back, rock, state.time, 2.0 * h, 4.0 * h);
   return by_K + (by_opening - by_K) / (1.0 + std::pow(as_good / viscous, 8));
 }
 

@@ -51,10 +51,10 @@ void start_fronts(double took, State& state);
 /// front_filling().
 double front_margin(const Scene& scene, const Rocks& rocks, const State& state, const Tip& tip);
 
-/// How near a tip is to growth (1: it grows), of toughness K_Ic (Pa sqrt(m)), whose front goes through what growth has
-/// added: by K or J it is `by_K` near, by opening_behind() 2 to 4 cells behind the tip, where the grid's openings are
-/// right to half a per cent. K is off by some 5 viscous_tip()^4. Each counts by the inverse square of its error; by_K
-/// alone where no front is on its way or where J does not decide.
+/// How near a tip that by J is `by_K` near is to growth (1: it grows), in rock of toughness K_Ic (Pa sqrt(m)). Once it
+/// has grown, and while the front goes through what growth has added, by opening_behind() 2 to 4 cells behind the tip
+/// too, where a grid's openings are right to half a per cent. K is off by 5 viscous_tip()^4 or so, more where the rock
+/// leaks: each counts by the inverse square of its error. by_K alone where J does not decide.
 double fed_margin(const Scene& scene, const Rocks& rocks, const State& state, const Tip& tip, double K_Ic, double by_K);
 
 /// Whether such fronts go on, by an increment, which is then done: no load changes by it. Each took the time since it
