@@ -117,15 +117,15 @@ void Watch::flow() {
        where_grown(0.1),
        "fluid.minimum_opening_m decides about more than a tenth of the inlet's net pressure: lower it or use smaller "
        "cells until results no longer change");
-  // At 0.15, 0.20, 0.31, 0.36, 0.41 and 0.45 length, opening and pressure of a fracture that is fed at a rate were off
-  // by 0.6, 1.4, 5, 8, 15 and 21 %, with leak-off at 0.29, 0.34 and 0.38 by 5, 8 and 12 % (kgd_leakoff, toughness
-  // numbers 0.16 to 1.18, 11 to 47 cells); without toughness by 1 % at most.
+  // At 0.15, 0.20, 0.31, 0.36, 0.41 and 0.45 length, opening and pressure of a fracture that is fed at a rate and grows
+  // by K alone were off by 0.6, 1.4, 5, 8, 15 and 21 %, with leak-off at 0.29, 0.34 and 0.38 by 5, 8 and 12 %
+  // (kgd_leakoff, toughness numbers 0.16 to 1.18, 11 to 47 cells).
   if (scene.fluid.law == Fluid::Law::reynolds)
     note(
         "viscous_tip", m.viscous_at_growth, where_grown(0.3),
-        "the fluid's viscosity takes up more than three tenths of the inlet's net pressure, as K, within a cell of the "
-        "tip: length, opening and pressure are off by 5 % and more; use smaller cells or, where it hardly counts, "
-        "toughness_Pa_sqrt_m = 0, by which the fluid's front alone decides");
+        "near an interface or a step of the stress, where K or energy decides alone, the fluid's viscosity takes up more "
+        "than three tenths of the inlet's net pressure, as K, within a cell of the tip: the time of growth and the "
+        "pressure are off by 5 % and more; use smaller cells");
 }
 
 void Watch::fluid() {
