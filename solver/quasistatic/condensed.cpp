@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cstring>
-#include <iterator>
 #include <map>
 #include <numeric>
-#include <ranges>
 #include <span>
 #include <utility>
 
@@ -245,7 +243,8 @@ Condensed condense(const Scene& scene, const Rocks& rocks, const State& state, c
     condense_some(body, some, fresh, entries, out);
   }
   std::vector<int> loaded;
-  for (const auto& column : out.columns) std::ranges::copy(std::views::keys(column->G), std::back_inserter(loaded));
+  for (const auto& column : out.columns)
+    for (const auto& [row, value] : column->G) loaded.push_back(row);
   out.loaded = body.factor.branches(loaded);
   return out;
 }

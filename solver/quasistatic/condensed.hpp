@@ -27,8 +27,8 @@ namespace strata {
 struct JumpKey {
   int node = 0;
   int component = 0;
-  std::uint64_t particles = 0;  // fingerprint of the set
-  auto operator<=>(const JumpKey&) const = default;
+  std::uint64_t particles = 0;                       // fingerprint of the set
+  auto operator<=>(const JumpKey&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 struct JumpColumn {

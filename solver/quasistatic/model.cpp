@@ -91,11 +91,12 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> jumps_at_vertices(const State& stat
 // Masses of the copies of cut nodes (kg/m), which tell those that have rock; others' are not complete.
 void weigh_copies(const Scene& scene, State& state) {
   state.sums.clear(state.sums.size());
-  for_each_particle(scene, state, bins_at(state, state.cut_bins),
-                    [&](const Bin& bin, std::size_t q, const Gradients& g) {
-                      for (std::size_t n = 0; n < 9; ++n)
-                        state.sums[static_cast<std::size_t>(bin.record[n])].m += g.N[n] * state.particles.m[q];
-                    });
+  std::vector<Bin> cut;
+  for (const std::size_t b : state.cut_bins) cut.push_back(state.bins[b]);
+  for_each_particle(scene, state, cut, [&](const Bin& bin, std::size_t q, const Gradients& g) {
+    for (std::size_t n = 0; n < 9; ++n)
+      state.sums[static_cast<std::size_t>(bin.record[n])].m += g.N[n] * state.particles.m[q];
+  });
 }
 
 // Corners that stand in for edges that hold nothing would have to carry what a force pushes the whole block with.

@@ -95,7 +95,7 @@ auto& reach(auto& object, std::size_t index) {
 struct Member {
   bool (*read)(const Value&, Scene&, std::size_t index);
   std::string (*text)(Scene&, std::size_t index);
-  std::string_view words = "";  // of an enumeration or a truth
+  std::string_view words = {};  // of an enumeration or a truth
 };
 
 // The member scene.first.second..., by pointers to members.
@@ -132,11 +132,11 @@ struct Key {
   std::string_view path;  // "rock.NAME.poisson_ratio": NAME is any name, "strata.layers[].rock" is in each element
   Member member;
   std::string_view help;
-  std::string_view unit = "";     // "": none
+  std::string_view unit = {};     // "": none
   Bounds bounds = {};             // of numbers
-  std::string_view allowed = "";  // "a, b": words, integers, or the variables of formulas
-  std::string_view advice = "";   // what to do where the value is out of bounds, or no such list
-  std::string_view law = "";      // the interface law or laws that the key belongs to; "": any
+  std::string_view allowed = {};  // "a, b": words, integers, or the variables of formulas
+  std::string_view advice = {};   // what to do where the value is out of bounds, or no such list
+  std::string_view law = {};      // the interface law or laws that the key belongs to; "": any
   bool required = false;
 
   constexpr std::string_view table() const { return path.substr(0, path.find_last_of('.') + 1); }  // with the dot

@@ -152,7 +152,7 @@ void choose_cell(Log& log) {
     step = std::gcd(step, thickness);
     thinnest = std::min(thinnest, thickness);
   }
-  long parts = (fewest * step + thinnest - 1) / thinnest;
+  long parts = 1 + (fewest * step - 1) / thinnest;
   while (step % parts != 0 && parts < step) ++parts;
   const long cell = step / parts;
   const double cell_m = log.reading.scene.numerics.cell_m = static_cast<double>(cell) / units_per_m;

@@ -14,7 +14,7 @@ namespace {
 struct Numbering {
   SideWord key;
   int node, record;
-  auto operator<=>(const Numbering&) const = default;
+  auto operator<=>(const Numbering&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 bool beside(const Bin& bin, const Bin& next) {

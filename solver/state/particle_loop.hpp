@@ -1,7 +1,6 @@
 // Loops over particles with their weights at the nine nodes around.
 #pragma once
 
-#include <ranges>
 #include <vector>
 
 #include "state/shape_functions.hpp"
@@ -25,11 +24,6 @@ void for_each_particle(const Scene& scene, const State& state, const Bins& bins,
         visit(bin, q, gradients_of<decltype(shape)>(state.grid, bin.i, bin.j, {p.x[q], p.y[q]}, p.half(q)));
     }
   });
-}
-
-/// Some bins, by their places in state.bins.
-inline auto bins_at(const State& state, const std::vector<std::size_t>& places) {
-  return std::views::transform(places, [&state](std::size_t b) -> const Bin& { return state.bins[b]; });
 }
 
 /// A field of records at a particle: sum N_i v_i.

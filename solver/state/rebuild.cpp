@@ -222,7 +222,7 @@ struct SortKey {
   SideWord sides;
   std::int32_t id;
   std::size_t from;
-  auto operator<=>(const SortKey&) const = default;
+  auto operator<=>(const SortKey&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 // Which surfaces split any node of the stencil around a node.
