@@ -215,7 +215,8 @@ void Watch::deformation() {
   // From half a cell on a node of one face is nearer to another node of the other face than to its own.
   if (keeps)
     note("jump_share", m.largest_jump / state.grid.h, 0.5,
-         "faces open or slip by more than half a cell while they are solved as lying where they started" + check);
+         "faces open or slip by more than half a cell while they are solved as lying where they started" + check +
+             ", and whether a failed interface without interface.*.residual_friction lets blocks part");
 }
 
 // Explicit runs take for granted that the load is slow. A ramp to p in the time T leaves oscillations of p/(omega T): a

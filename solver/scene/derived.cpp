@@ -1,6 +1,7 @@
 #include "scene/derived.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -168,6 +169,11 @@ std::vector<std::string> implausible(const Scene& scene) {
   constexpr const char* of_rock = "1e3, that of 4 cm of rock: is it in MPa? 3 MPa is 3e6";
   least("in_situ.vertical_Pa", in_situ.vertical_Pa.number, 1e3, of_rock);
   least("in_situ.horizontal_Pa", in_situ.horizontal_Pa.number, 1e3, of_rock);
+  for (std::size_t k = 0; k < scene.strata.layers.size(); ++k) {
+    const auto& [of, own] = scene.strata.upwards() ? std::pair("horizontal", scene.strata.layers[k].horizontal_Pa)
+                                                   : std::pair("vertical", scene.strata.layers[k].vertical_Pa);
+    if (own) least(fmt::format("strata.layers[{}].{}_Pa", k, of), own->number, 1e3, of_rock);
+  }
   if (!scene.fracture) return out;
   const Fluid& fluid = scene.fluid;
   const double end_Pa = scene.stop.inlet_Pa.value_or(0.0);
@@ -217,11 +223,13 @@ double memory_need(const Scene& scene) {
 
 std::string announce(const Scene& scene) {
   const bool held = scene.fracture && scene.domain.sides == Edge::fixed && scene.domain.beyond_m == 0.0;
-  return fmt::format("mechanics = {}, {}{}{}; {:.2g} points, {:.2g} GB by estimate", word_of(scene.numerics.mechanics),
+  const std::vector<std::string> odd = implausible(scene);
+  return fmt::format("mechanics = {}, {}{}{}; {:.2g} points, {:.2g} GB by estimate{}{}",
+                     word_of(scene.numerics.mechanics),
                      scene.fracture ? "fluid.law = " + word_of(scene.fluid.law) : "no fracture",
                      scene.domain.bottom == Edge::symmetry ? ", y = 0 is a mirror (domain.bottom)" : "",
                      held ? ", sides are held (domain.beyond_m goes on)" : "", points_of(scene),
-                     1e-9 * memory_need(scene));
+                     1e-9 * memory_need(scene), odd.empty() ? "" : "; implausible: ", fmt::join(odd, "; "));
 }
 
 std::optional<std::string> too_large(const Scene& scene, double available) {

@@ -51,20 +51,24 @@ std::string typed(const Looked& of) {
   return of.field.formula.empty() ? of.key : fmt::format("{} = \"{}\"", of.key, of.field.formula);
 }
 
-// Places in layer k, 65 in rows along the axis (0: x) on which a stress must be in equilibrium.
+// Places in layer k, 65 in rows along the axis (0: x) on which a stress must be in equilibrium, and one just beyond
+// each border with a neighbour: so near that the neighbour's weight does not count, so far that the place is not in the
+// layer.
 std::vector<Point> places_in(const Scene& scene, std::size_t k, std::size_t axis) {
   const Layer& layer = scene.strata.layers[k];
   const std::size_t stacked = scene.strata.upwards() ? 1 : 0;
-  const auto at = [&](std::size_t of, std::size_t n, std::size_t count) {
-    const double share = (static_cast<double>(n) + 0.5) / static_cast<double>(count);
+  constexpr double beyond = 1e-6;
+  const auto at = [&](std::size_t of, double n, double count) {
+    const double share = std::clamp((n + 0.5) / count, -beyond, 1.0 + beyond);
     return of == stacked ? layer.from_m + share * (layer.to_m - layer.from_m) : share * scene.domain.extent_m(of);
   };
-  constexpr std::size_t along = 65, across = 9;
+  constexpr int along = 65, across = 9;
   std::vector<Point> out;
-  for (std::size_t row = 0; row < across; ++row) {
-    for (std::size_t n = 0; n < along; ++n) {
-      Point& x = out.emplace_back();
+  for (int row = 0; row < across; ++row) {
+    for (int n = -1; n <= along; ++n) {
+      Point x;
       x[axis] = at(axis, n, along), x[1 - axis] = at(1 - axis, row, across);
+      if (x[axis] > 0.0 && x[axis] < scene.domain.extent_m(axis)) out.push_back(x);
     }
   }
   return out;

@@ -25,7 +25,8 @@ std::vector<InSituStress> in_situ_stress(const Scene& scene, const std::vector<P
 double largest_in_situ(const Scene& scene);
 
 /// What is not in equilibrium, d sigma_xx/dX = 0 and d sigma_yy/dY = rho g, cannot be symmetric, or is not finite: the
-/// key and a sentence with the place. Looks at 65 places along a layer and 9 across it. Throws as in_situ_stress().
+/// key and a sentence with the place. Looks at 65 places along a layer and 9 across it, and just beyond its borders.
+/// Throws as in_situ_stress().
 std::vector<std::pair<std::string, std::string>> in_situ_faults(const Scene& scene);
 
 }  // namespace strata

@@ -126,6 +126,25 @@ TEST_CASE("what nothing balances is refused with its place and size") {
       CHECK_THAT(faults(scene).at(0), Catch::Contains("the rock's weight asks for -"));
     }
   }
+  // Mutations that fail: no place beyond a border; one half a row beyond, where the neighbour's weight counts.
+  SECTION("a jump at a border of layers") {
+    for (const char* formula : {"Y < 10 ? 5e6 : 6e6", "Y <= 10 ? 5e6 : 6e6", "Y < 30 ? 5e6 : 6e6"}) {
+      scene.in_situ.vertical_Pa = Field(formula);
+      CHECK_THAT(faults(scene).at(0),
+                 Catch::Contains("Pa/m along Y at X = ") && Catch::Contains("which nothing balances"));
+    }
+    scene.in_situ.weight = true;
+    const std::string own =
+        "9.80665*(3000*70 + (Y > 30 ? 3000*(30 - Y) : 2500*(30 - Y) - (Y < 10 ? 500*(10 - Y) : 0)))";
+    scene.in_situ.vertical_Pa = Field("5e6 + " + own);
+    CHECK(faults(scene).empty());
+    scene.in_situ.vertical_Pa = Field("(Y > 10 ? 5e6 : 4.9e6) + " + own);
+    CHECK_THAT(faults(scene).at(0), Catch::Contains("the rock's weight asks for -"));
+    scene.strata.along = Strata::Along::x;
+    scene.strata.layers[2].to_m = scene.domain.width_m;
+    scene.in_situ = {5e6, Field("X < 10 ? 5e6 : 6e6")};
+    CHECK_THAT(faults(scene).at(0), Catch::Contains("Pa/m along X at X = "));
+  }
   SECTION("between neighbours") {
     scene.strata.layers[1].vertical_Pa = 6e6;
     CHECK_THAT(faults(scene).at(0), Catch::Contains("neighbours press on each other with one vertical stress"));

@@ -13,6 +13,7 @@
 #include "output/suspect.hpp"
 #include "output/terminal.hpp"
 #include "output_state.hpp"
+#include "scene/derived.hpp"
 
 using namespace strata;
 using namespace strata::test;
@@ -461,6 +462,7 @@ TEST_CASE("values that no rock has mark the run") {
       {"rock.stiff.toughness_Pa_sqrt_m = 1.45", [](Scene& s) { s.rocks[0].toughness_Pa_sqrt_m = 1.45; }},
       {"in_situ.vertical_Pa = -3", [](Scene& s) { s.in_situ.vertical_Pa = -3.0; }},
       {"in_situ.horizontal_Pa = 2", [](Scene& s) { s.in_situ.horizontal_Pa = 2.0; }},
+      {"strata.layers[0].horizontal_Pa = 30", [](Scene& s) { s.strata.layers[0].horizontal_Pa = 30.0; }},
       {"fluid.inlet.start_Pa = 16", [](Scene& s) { s.fluid.start_Pa = 16.0; }},
       {"stop.inlet_Pa = 18", [](Scene& s) { s.stop.inlet_Pa = 18.0; }},
       {"fluid.bulk_modulus_Pa = 2.2", [](Scene& s) { s.fluid.bulk_modulus_Pa = 2.2; }},
@@ -475,6 +477,7 @@ TEST_CASE("values that no rock has mark the run") {
   CHECK(found[0].monitor == "implausible_inputs");
   CHECK(found[0].value == 1.0);
   CHECK_THAT(found[0].why, Catch::StartsWith(std::string(c.key) + " is "));
+  CHECK_THAT(announce(scene), Catch::Contains("; implausible: " + std::string(c.key) + " is "));
   scene = scene_of(rest, Fluid::Law::uniform);
   scene.rocks[0].toughness_Pa_sqrt_m = scene.fluid.start_Pa = 0.0, scene.fluid.bulk_modulus_Pa = 1.0;
   CHECK(marks(scene, sound_state()) == Names{});  // none, and what the law does not use
