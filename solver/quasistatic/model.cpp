@@ -248,22 +248,23 @@ double stored_in_surfaces(const QuasistaticModel& model, const Equilibrium& equi
   return energy;
 }
 
+// Over a step of the load by the mean of what friction was and is, as the works of the loads are: that of all places
+// together, since what one lets go another takes up. It is no less than the least, and no more than the largest, that
+// friction may have been on the way.
 double dissipated_by_friction(const QuasistaticModel& model, const Equilibrium& equilibrium, bool with_load) {
-  double energy = 0.0;
+  double mean = 0.0, least = 0.0, most = 0.0;
   for (std::size_t k = 0; k < model.places.size(); ++k) {
     const ContactPlace& place = model.places[k];
     const LawAnswer& r = equilibrium.answers[k];
     const double slip = plastic_slip(place, r, equilibrium.w[k]);
     if (slip == 0.0) continue;
-    const double against = slip > 0.0 ? -1.0 : 1.0, last = against * r.t;
-    double first = last;
-    if (with_load) {
-      const double bound = place.law.friction() * std::max(0.0, place.start.r_n);
-      first = std::clamp(against * place.start.r_t, std::min(bound, last), std::max(bound, last));
-    }
-    energy += place.A * 0.5 * (first + last) * std::abs(slip);
+    const double against = slip > 0.0 ? -1.0 : 1.0, last = against * r.t, work = place.A * std::abs(slip);
+    const double bound = with_load ? place.law.friction() * std::max(0.0, place.start.r_n) : last;
+    mean += work * 0.5 * ((with_load ? against * place.start.r_t : last) + last);
+    least += work * std::min(bound, last);
+    most += work * std::max(bound, last);
   }
-  return energy;
+  return std::clamp(mean, least, most);
 }
 
 }  // namespace strata
