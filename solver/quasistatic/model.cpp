@@ -248,9 +248,6 @@ double stored_in_surfaces(const QuasistaticModel& model, const Equilibrium& equi
   return energy;
 }
 
-// Over a step of the load by the mean of what friction was and is, as the works of the loads are: that of all places
-// together, since what one lets go another takes up. It is no less than the least, and no more than the largest, that
-// friction may have been on the way.
 double dissipated_by_friction(const QuasistaticModel& model, const Equilibrium& equilibrium, bool with_load) {
   double mean = 0.0, least = 0.0, most = 0.0;
   for (std::size_t k = 0; k < model.places.size(); ++k) {

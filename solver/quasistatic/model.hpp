@@ -59,9 +59,10 @@ void remember(State& state, QuasistaticModel& model, const Equilibrium& equilibr
 double stored_in_surfaces(const QuasistaticModel& model, const Equilibrium& equilibrium);
 
 /// What friction has dissipated since the equilibrium that it remembers (J/m): by what it holds now, as where all
-/// happens at one load; with_load: as the load went from there to here, also on faces that have parted since. The shear
-/// on the way is then the mean of that at which sliding begins and that at its end: faces that slid go on, others begin
-/// where the bound falls to what they held or, if it does not fall so far, at the nearer of its two ends.
+/// happens at one load; with_load: as the load went from there to here, also on faces that have parted since. It is
+/// then the mean of what it held there and holds here, as the works of loads are, of all places together: what one lets
+/// go another takes up. That is kept between the least and the largest that the bounds at both ends allow, so that
+/// faces that stuck idle and begin to slide count with their bound.
 double dissipated_by_friction(const QuasistaticModel& model, const Equilibrium& equilibrium, bool with_load = false);
 
 }  // namespace strata

@@ -125,7 +125,8 @@ def test_the_ledger_closes_where_the_fluid_frees_what_friction_held(tmp_path: Pa
 
     Faces that held the whole shear hold none when they are free: the work of friction is half of the shear times their slip, of which the
     work of the in-situ stress tells, and a few per cent more where faces beyond slide at their bound.
-    Mutations that fail: the mean place by place within its bounds, its last value alone, its first, none of it.
+    Mutations that fail: the mean place by place within its bounds, the least or the largest that these allow, friction's first or last value,
+    none, twice, of the other sign.
     """
     settings = (path_at(60), 'fracture.growth="J"', "fracture.friction=0.6", f"numerics.cell_m={cell}", f"stop.time_s={until}")
     assert run_in(tmp_path, SCENE, *settings).returncode == 0
