@@ -302,8 +302,9 @@ void find_motion(bool total, State& state) {
 void find_split_places(const Scene& scene, const Rocks& rocks, State& state) {
   SplitPlaces& out = state.split;
   const SpreadArray& mass = state.total.op ? state.total.m : state.sums.m;
+  for (const SplitNode& node : out.nodes) out.node_at[node.at] = none;  // few of all
+  out.node_at.resize(mass.size(), none);
   out.nodes.clear();
-  out.node_at.assign(mass.size(), none);
   out.laws = scene.laws;
   out.laws.push_back(face_law(scene));
   out.held.reset();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "state/particle_loop.hpp"
@@ -34,16 +35,19 @@ std::vector<double> reached_by_points(const Scene& scene, const State& state, st
   return reached;
 }
 
-// sum_p V_p |grad N_i| (m) of the records r of all bins, added up at index(r); negative ones are left out.
-template <class Index>
-std::vector<double> worth_of_particles(const Scene& scene, const State& state, std::size_t size, Index index) {
+// sum_p V_p |grad N_i| (m) of the records r of all bins, added up at index(r); negative ones are left out. The k-th
+// particle of the bins is particle(k).
+template <class Index, class Particle = std::identity>
+std::vector<double> worth_of_particles(const Scene& scene, const State& state, std::size_t size, Index index,
+                                       Particle particle = {}) {
   std::vector<double> worth(size, 0.0);
   const Particles& p = state.particles;
   for (const Bin& bin : state.bins) {
     std::array<int, 9> at{};
     std::ranges::transform(bin.record, at.begin(), index);
     if (std::ranges::all_of(at, [](int r) { return r < 0; })) continue;
-    for (const std::size_t q : bin) {
+    for (const std::size_t k : bin) {
+      const std::size_t q = particle(k);
       const Gradients g = gradients_at(scene, state, bin, q);
       for (std::size_t n = 0; n < 9; ++n) {
         const double slope = std::sqrt(g.N_x[n] * g.N_x[n] + g.N_y[n] * g.N_y[n]);  // |grad N_n| (1/m)
@@ -80,7 +84,7 @@ std::size_t corner_for(const CutNode& cut, const std::vector<double>& worth, std
 
 }  // namespace
 
-void join_corners(const Scene& scene, State& state) {
+void join_corners(const Scene& scene, const std::vector<std::size_t>& order, State& state) {
   Copies& copies = state.copies;
   std::vector<char> leans(static_cast<std::size_t>(copies.records()), 0);  // of corners' records
   for (const CutNode& cut : copies.cut) {                                  // without particles a ghost has no corner
@@ -90,7 +94,8 @@ void join_corners(const Scene& scene, State& state) {
   }
   if (std::ranges::count(leans, 1) == 0) return;
   const auto index = [&](int record) { return leans[static_cast<std::size_t>(record)] != 0 ? record : -1; };
-  const std::vector<double> worth_of_record = worth_of_particles(scene, state, leans.size(), index);
+  const std::vector<double> worth_of_record =
+      worth_of_particles(scene, state, leans.size(), index, [&](std::size_t k) { return order[k]; });
   std::vector<int> now(leans.size());
   std::iota(now.begin(), now.end(), 0);
   for (CutNode& cut : copies.cut) {

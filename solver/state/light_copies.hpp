@@ -30,8 +30,8 @@ constexpr double least_corner = 1.0 / 128.0;
 /// Where a fracture that does not lie along the grid crosses an interface, nodes have a copy for each of up to four
 /// corners, and the one or two particles at the point of a corner cannot hold those of several nodes. A corner that has
 /// less than least_corner of its node's sum_p V_p |grad N_i| becomes part of the largest one that a single interface
-/// parts from it (CutNode::joined), if that is larger. Changes the cut nodes and bins of `state`, before blocks,
-/// masters and stencils are made. Throws nothing.
-void join_corners(const Scene& scene, State& state);
+/// parts from it (CutNode::joined), if that is larger. order: which particle of the arrays is the k-th of the bins.
+/// Changes the cut nodes and bins of `state`, before blocks, masters and stencils are made. Throws nothing.
+void join_corners(const Scene& scene, const std::vector<std::size_t>& order, State& state);
 
 }  // namespace strata

@@ -432,10 +432,16 @@ void rebuild_copies(const Scene& scene, State& state) {
   make_bins(state, reach, keys);
   std::vector<std::size_t> order(keys.size());
   std::ranges::transform(keys, order.begin(), &SortKey::from);
-  sort_particles(state.particles, order);
-  join_corners(scene, state);
+  join_corners(scene, order, state);
   if (scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics) number_along_rows(state.copies, state.bins);
-  if (scene.numerics.in_lanes()) sort_particles(state.particles, make_blocks(state.particles.rock, state.bins));
+  if (scene.numerics.in_lanes()) {  // particles stand in blocks already, but for a few: they are moved once
+    std::vector<std::uint8_t> rock;
+    for (const std::size_t from : order) rock.push_back(state.particles.rock[from]);
+    std::vector<std::size_t> blocks = make_blocks(rock, state.bins);
+    for (std::size_t& k : blocks) k = order[k];
+    order.swap(blocks);
+  }
+  sort_particles(state.particles, order);
   list_bins(reach, state);
   make_masters(scene, state);
   make_surface_stencils(state);
