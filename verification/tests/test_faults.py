@@ -16,7 +16,7 @@ from pathlib import Path
 import h5py
 import pytest
 
-from verification.faults.__main__ import EXP1, KILLED, QUASISTATIC, RECORD, campaign, run_words
+from verification.faults.__main__ import COARSE, EXP1, KILLED, QUASISTATIC, RECORD, campaign, run_words
 from verification.faults.same import differences, torn
 from verification.harness.paths import EXPERIMENTS, solver
 from verification.harness.run import Job, ended
@@ -28,7 +28,7 @@ LONG = KILLED["explicit updated"]
 # Further ones that are interrupted: interfaces that part and slide on the way.
 GROWING = (
     Job(EXP1, "weak", Path(), (QUASISTATIC, "fluid.law=uniform", "stop.tip_y_m=20")),
-    Job(EXPERIMENTS / "exp6_stress_reversal.toml", "friction", Path(), (QUASISTATIC,)),
+    Job(EXPERIMENTS / "exp6_stress_reversal.toml", "friction", Path(), (QUASISTATIC, *COARSE)),
 )
 
 
@@ -165,7 +165,7 @@ def test_a_folder_that_vanishes_ends_the_run(tmp_path: Path, alone: Path, way: s
     *((job, signal.SIGTERM, (0.4, 0.6, 0.75)) for job in GROWING),
 ])  # fmt: skip
 def test_a_run_that_is_interrupted_ends_at_once_and_goes_on_to_the_same_digits(tmp_path: Path, job: Job, which: signal.Signals, shares: tuple[float, ...]) -> None:
-    """After some shares of its time. Mutation that fails with friction: the state is kept as it is after the run itself has started anew from it."""
+    """After some shares of its time. Mutation that fails with friction, in coarse cells too: the state is kept as it is after the run itself has started anew from it."""
     folder, whole = tmp_path / "X", tmp_path / "whole"
     begin = time.monotonic()
     assert ended(run_words(job, whole, 60.0), None) == (0, "")
