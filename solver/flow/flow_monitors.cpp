@@ -100,7 +100,8 @@ std::array<double, 2> floor_share(const Scene& scene, const State& state) {
 
 double viscous_tip(const State& state, const Fluid& fluid, bool at_back, const TipRock& rock) {
   const double net = net_at_inlet(state);
-  if (!(net > 0.0) || state.grown.line.size() == 0 || state.reynolds.dry_cells(at_back) > 0) return 0.0;
+  const std::vector<double>& phi = state.reynolds.phi;
+  if (!(net > 0.0) || phi.empty() || (at_back ? phi.back() : phi.front()) < 1.0) return 0.0;
   const auto [before, behind] = of_sides(state, [](const Side& side) {
     double a = 0.0;
     for (std::size_t k = 0; k < side.count; ++k) a += side[k].A;

@@ -25,8 +25,8 @@ std::array<double, 2> floor_share(const Scene& scene, const State& state);
 
 /// What the viscous fluid takes up within a cell of a tip, of the pressure at the inlet: (K(h) - K_Ic)/(p sqrt(pi a)),
 /// K(h) by toughness_from() a cell behind the tip, p the inlet's net pressure, a the length from there to the tip; rock
-/// whose toughness decides leaves 0. 0 where nothing has grown, and before the fluid has come to the tip. Throws
-/// nothing.
+/// whose toughness decides leaves 0. 0 where nothing has grown, and where fluid does not fill the last cell, which then
+/// draws the faces together no more than the cavitation pressure does. Throws nothing.
 double viscous_tip(const State& state, const Fluid& fluid, bool at_back, const TipRock& rock);
 
 /// Notes all at the end of a step of the load. Where the inlet's pressure is given, what the flow lags behind is in

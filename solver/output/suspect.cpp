@@ -121,11 +121,11 @@ void Watch::flow() {
   // by K alone were off by 0.6, 1.4, 5, 8, 15 and 21 %, with leak-off at 0.29, 0.34 and 0.38 by 5, 8 and 12 %
   // (kgd_leakoff, toughness numbers 0.16 to 1.18, 11 to 47 cells).
   if (scene.fluid.law == Fluid::Law::reynolds)
-    note(
-        "viscous_tip", m.viscous_at_growth, where_grown(0.3),
-        "near an interface or a step of the stress, where K or energy decides alone, the fluid's viscosity takes up more "
-        "than three tenths of the inlet's net pressure, as K, within a cell of the tip: the time of growth and the "
-        "pressure are off by 5 % and more; use smaller cells");
+    note("viscous_tip", m.viscous_at_growth, where_grown(0.3),
+         "near an interface or a step of the stress, where K or energy decides alone, the fluid's viscosity takes up "
+         "more "
+         "than three tenths of the inlet's net pressure, as K, within a cell of the tip: the time of growth and the "
+         "pressure are off by 5 % and more; use smaller cells");
 }
 
 void Watch::fluid() {

@@ -52,8 +52,8 @@ void start_fronts(double took, State& state);
 double front_margin(const Scene& scene, const Rocks& rocks, const State& state, const Tip& tip);
 
 /// How near a tip that by J is `by_K` near is to growth (1: it grows), in rock of toughness K_Ic (Pa sqrt(m)). Once it
-/// has grown, and while the front goes through what growth has added, by opening_behind() 2 to 4 cells behind the tip
-/// too, where a grid's openings are right to half a per cent. K is off by 5 viscous_tip()^4 or so, more where the rock
+/// has grown, fed at a rate, also by opening_behind() 2 to 4 cells behind the tip, where a grid's openings are right to
+/// half a per cent. K is off by 5 viscous_tip()^4 or so, more where the rock
 /// leaks: each counts by the inverse square of its error. by_K alone where J does not decide.
 double fed_margin(const Scene& scene, const Rocks& rocks, const State& state, const Tip& tip, double K_Ic, double by_K);
 
