@@ -321,7 +321,7 @@ double front_margin(const Scene& scene, const Rocks& rocks, const State& state, 
 
 double fed_margin(const Scene& scene, const Rocks& rocks, const State& state, const Tip& tip, double K_Ic,
                   double by_K) {
-  constexpr double as_good = 0.1;  // viscous_tip() at which openings and K are
+  constexpr double as_good = 0.1;  // viscous_tip() at which K is as good as openings
   if (!scene.fluid.rate_m2_s || !tip.has_grown || tip.criterion != Criterion::J) return by_K;
   TipRock rock = tip_rock(scene, rocks, state, tip.at_back);
   rock.K_Ic = K_Ic;
