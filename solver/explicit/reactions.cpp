@@ -302,7 +302,7 @@ void find_motion(bool total, State& state) {
 void find_split_places(const Scene& scene, const Rocks& rocks, State& state) {
   SplitPlaces& out = state.split;
   const SpreadArray& mass = state.total.op ? state.total.m : state.sums.m;
-  for (const SplitNode& node : out.nodes) out.node_at[node.at] = none;  // few of all
+  for (const SplitNode& node : out.nodes) out.node_at[node.at] = none;  // of which there are few
   out.node_at.resize(mass.size(), none);
   out.nodes.clear();
   out.laws = scene.laws;

@@ -122,10 +122,11 @@ void watch_flow(const Scene& scene, State& state) {
   m.flow_fall = net > 0.0 ? m.flow_fall_Pa / net : 0.0;
   m.floor_share = floor_share(scene, state);
   m.viscous_tip = {};
+  if (scene.fluid.law != Fluid::Law::reynolds) return;
   const Rocks rocks = make_elasticities(scene);
   for (const Tip& tip : state.tips) {
     const TipRock rock = tip_rock(scene, rocks, state, tip.at_back);
-    if (tip.criterion != Criterion::J && rock.K_Ic > 0.0)
+    if (!openings_tell(scene, tip) && rock.K_Ic > 0.0)
       m.viscous_tip[tip.at_back ? 1 : 0] = viscous_tip(state, scene.fluid, tip.at_back, rock);
   }
 }

@@ -29,9 +29,15 @@ std::array<double, 2> floor_share(const Scene& scene, const State& state);
 /// draws the faces together no more than the cavitation pressure does. Throws nothing.
 double viscous_tip(const State& state, const Fluid& fluid, bool at_back, const TipRock& rock);
 
-/// Notes all at the end of a step of the load. Where the inlet's pressure is given, what the flow lags behind is in
-/// the pressure of the next growth: the largest fall since the growth before counts. A given rate makes up for it: the
-/// fall at growth counts. Throws nothing.
+/// Whether openings behind a tip tell how near it is to growth: fed at a rate it has grown before, and J would decide.
+/// Throws nothing.
+inline bool openings_tell(const Scene& scene, const Tip& tip) {
+  return scene.fluid.rate_m2_s && tip.has_grown && tip.criterion == Criterion::J;
+}
+
+/// Notes all at the end of a step of the load, viscous_tip() where K or energy decides alone in a rock with toughness.
+/// Where the inlet's pressure is given, what the flow lags behind is in the pressure of the next growth: the largest
+/// fall since the growth before counts. A given rate makes up for it: the fall at growth counts. Throws nothing.
 void watch_flow(const Scene& scene, State& state);
 
 }  // namespace strata

@@ -101,9 +101,9 @@ double opening_behind(const Fluid& fluid, const ReynoldsLine& line, bool at_back
   if (time <= line.wet_s[added.cell(0)]) return 0.0;
   const MovingFront front(fluid, added, rock, time);
   const std::size_t side = at_back ? line.size() - line.inlet : line.inlet;
-  double way = 0.0, whole = side == line.size() ? 2.0 : 1.0;
+  double way = 0.0;
   for (std::size_t j = 0; j < side; ++j) way += added.length_of(j);
-  whole *= std::accumulate(line.length.begin(), line.length.end(), 0.0);
+  const double whole = side == line.size() ? 2.0 * way : std::accumulate(line.length.begin(), line.length.end(), 0.0);
   double x = 0.0, held = 0.0, content = 0.0;
   for (std::size_t j = 0; j < side && x < 0.999 * to; ++j) {
     const double A = added.length_of(j), near = x;

@@ -122,8 +122,9 @@ void Watch::flow() {
   // (kgd_leakoff, toughness numbers 0.16 to 1.18, 11 to 47 cells).
   if (scene.fluid.law == Fluid::Law::reynolds)
     note("viscous_tip", m.viscous_at_growth, where_grown(0.3),
-         "near an interface or a step of the stress, where K or energy decides alone, the fluid's viscosity takes up "
-         "more than three tenths of the inlet's net pressure, as K, within a cell of the tip: the time of growth and "
+         "where K or energy decides alone (near an interface or a step of the stress, under a given pressure, at the "
+         "first growth) the fluid's viscosity takes up more than three tenths of the inlet's net pressure, as K, "
+         "within a cell of the tip: the time of growth and "
          "the pressure are off by 5 % and more; use smaller cells");
 }
 

@@ -51,10 +51,10 @@ void start_fronts(double took, State& state);
 /// front_filling().
 double front_margin(const Scene& scene, const Rocks& rocks, const State& state, const Tip& tip);
 
-/// How near a tip that by J is `by_K` near is to growth (1: it grows), in rock of toughness K_Ic (Pa sqrt(m)). Once it
-/// has grown, fed at a rate, also by opening_behind() 2 to 4 cells behind the tip, where a grid's openings are right to
-/// half a per cent. K is off by 5 viscous_tip()^4 or so, more where the rock leaks: each counts by the inverse square
-/// of its error. by_K alone where J does not decide.
+/// How near a tip that by J is `by_K` near is to growth (1: it grows), in rock of toughness K_Ic (Pa sqrt(m)). Where
+/// openings_tell() also by opening_behind() 2 to 4 cells behind the tip, where a grid's openings are right to half a
+/// per cent. K is off by 5 viscous_tip()^4 or so, more where the rock leaks, so that K counts where that is small,
+/// openings where it is large. Throws nothing.
 double fed_margin(const Scene& scene, const Rocks& rocks, const State& state, const Tip& tip, double K_Ic, double by_K);
 
 /// Whether such fronts go on, by an increment, which is then done: no load changes by it. Each took the time since it

@@ -434,7 +434,7 @@ void rebuild_copies(const Scene& scene, State& state) {
   std::ranges::transform(keys, order.begin(), &SortKey::from);
   join_corners(scene, order, state);
   if (scene.numerics.mechanics == Numerics::Mechanics::explicit_dynamics) number_along_rows(state.copies, state.bins);
-  if (scene.numerics.in_lanes()) {  // particles stand in blocks already, but for a few: they are moved once
+  if (scene.numerics.in_lanes()) {  // to bins and blocks in one move
     std::vector<std::uint8_t> rock;
     for (const std::size_t from : order) rock.push_back(state.particles.rock[from]);
     std::vector<std::size_t> blocks = make_blocks(rock, state.bins);

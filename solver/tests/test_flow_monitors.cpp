@@ -1,8 +1,9 @@
 #include "flow/flow_monitors.hpp"
 
 #include <catch2/catch.hpp>
-#include <limits>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "flow/moving_front.hpp"
 #include "fracture/growth.hpp"
@@ -128,9 +129,9 @@ TEST_CASE("a flow is judged by what it was at growth") {
 }
 
 // Requires (K(h) - K_Ic)/(p sqrt(pi a)) of a tip; 0 before growth and where the fluid does not fill the last cell.
-// Noted at growth as it was before, where an interface or energy decides beside a rock with toughness. Mutations that
-// fail: the rock's own K not taken off, the whole pressure for the net one, half the length, the other side's, noted
-// where openings decide.
+// Noted at growth as it was before, in rock with toughness, but where openings decide. Mutations that fail: the rock's
+// own K not taken off, the whole pressure for the net one, half the length, the other side's, noted where openings
+// decide or without toughness, not noted under a given pressure, at first growth or where energy decides.
 TEST_CASE("what a viscous fluid takes up within a cell of the tip") {
   Bench bench(Fluid::Law::reynolds);
   Scene& scene = bench.run.scene;
@@ -146,12 +147,20 @@ TEST_CASE("what a viscous fluid takes up within a cell of the tip") {
   const double expected = (K - rock.K_Ic) / (3e6 * std::sqrt(5.0 * std::numbers::pi));
   CHECK(expected > 0.01);
   CHECK(share() == Approx(expected));
-  watch_flow(scene, state);
-  CHECK(state.monitors.viscous_tip == std::array<double, 2>{});
-  state.tips[0].criterion = Criterion::energy;
-  watch_flow(scene, state);
-  CHECK(state.monitors.viscous_tip[0] == 0.0);
-  CHECK(state.monitors.viscous_tip[1] == Approx(expected));
+  const auto noted = [&](bool by_rate, bool has_grown, Criterion criterion) {
+    scene.fluid.rate_m2_s = by_rate ? std::optional(1e-4) : std::nullopt;
+    state.tips[0].has_grown = has_grown, state.tips[0].criterion = criterion;
+    watch_flow(scene, state);
+    CHECK(state.monitors.viscous_tip[0] == 0.0);
+    return state.monitors.viscous_tip[1];
+  };
+  CHECK(noted(true, true, Criterion::J) == 0.0);
+  CHECK(noted(false, true, Criterion::J) == Approx(expected));
+  CHECK(noted(true, false, Criterion::J) == Approx(expected));
+  const double toughness = std::exchange(scene.rocks[0].toughness_Pa_sqrt_m, 0.0);
+  CHECK(noted(false, true, Criterion::J) == 0.0);
+  scene.rocks[0].toughness_Pa_sqrt_m = toughness;
+  CHECK(noted(true, true, Criterion::energy) == Approx(expected));
   Tip tip;
   note_growth(state, tip);
   CHECK(state.monitors.viscous_at_growth == Approx(expected));
