@@ -179,7 +179,7 @@ std::vector<KeyFault> in_situ_faults(const Scene& scene) {
           fmt::format("{0}{1}_Pa: neighbours press on each other with one {1} stress. Give {2}_Pa here and "
                       "in_situ.{1}_Pa for all.",
                       path, other_key, own_key));
-    for (const std::size_t axis : {0, 1}) {
+    for (const std::size_t axis : {0UL, 1UL}) {
       const bool is_own = (axis == 0) == upwards && own_stress(scene, layer);
       if (!is_own && said[axis]) continue;
       const Looked of = is_own      ? Looked{path + own_key + "_Pa", *own_stress(scene, layer)}

@@ -144,7 +144,7 @@ TEST_CASE("cells become as long as asked for") {
 using Ends = std::vector<double>;
 
 // Both ends of each fine stretch (m).
-Ends stretches(const Scene& scene, int axis) {
+Ends stretches(const Scene& scene, std::size_t axis) {
   Ends ends;
   for (const Stretch& s : fine_stretches(scene, axis)) ends.insert(ends.end(), {s.from, s.to});
   return ends;

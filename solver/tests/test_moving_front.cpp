@@ -145,7 +145,7 @@ TEST_CASE("dry cells stay dry") {
     FluidBalance balance;
     ReynoldsLine line = full_line(oil, std::vector<double>(4, 0.5), 0, 1e6, w, balance);
     const double full = balance.stored_at_start;
-    for (const std::size_t k : {2, 3}) leave_dry(oil, k, line, balance);
+    for (const std::size_t k : {2UL, 3UL}) leave_dry(oil, k, line, balance);
     CHECK(balance.stored_at_start == Approx(0.5 * full).epsilon(1e-12));
     CHECK(line.dry_cells(true) == 2);
     CHECK(line.dry_cells(false) == 0);
@@ -153,7 +153,7 @@ TEST_CASE("dry cells stay dry") {
         step_reynolds(oil, {Inlet::Drive::pressure, 2e6}, 10.0, walls, line, balance, {.filled_first = filled_first})
             .converged);
     CHECK(line.content[1] > 0.25 * full);
-    for (const std::size_t k : {2, 3}) {
+    for (const std::size_t k : {2UL, 3UL}) {
       CHECK(line.content[k] == 0.0);
       CHECK(line.phi[k] == 0.0);
       CHECK(line.P[k] == oil.cavitation_Pa);
@@ -171,14 +171,14 @@ TEST_CASE("a front is at its cells' end when they hold as much") {
   const double L = 0.5, V = L / 4.0, d = 18.0 * std::sqrt(3.0) * 12.0 * 0.1 * V / E_prime;
   const double held = 0.6 * std::cbrt(d) * std::pow(L, 5.0 / 3.0);
   ReynoldsLine line = grown(oil, 2, true);  // at 6 s, cells of 0.25 m
-  for (const std::size_t k : {2, 3}) line.w[k] = held / L;
+  for (const std::size_t k : {2UL, 3UL}) line.w[k] = held / L;
   CHECK(front_filling(oil, line, true, {E_prime, 0.0}, 10.0) == Approx(1.0).epsilon(2e-3));
-  for (const std::size_t k : {2, 3}) line.w[k] *= 0.5;
+  for (const std::size_t k : {2UL, 3UL}) line.w[k] *= 0.5;
   CHECK(front_filling(oil, line, true, {E_prime, 0.0}, 10.0) == Approx(0.5).epsilon(2e-3));
   CHECK(front_filling(oil, line, true, {E_prime, 0.0}, 6.0) == 0.0);
   FluidBalance balance;
   ReynoldsLine first = full_line(oil, std::vector<double>(4, 0.25), 0, 1e6, VectorXd::Constant(4, held / L), balance);
-  for (const std::size_t k : {2, 3}) leave_dry(oil, k, first, balance);
+  for (const std::size_t k : {2UL, 3UL}) leave_dry(oil, k, first, balance);
   CHECK(front_filling(oil, first, true, {E_prime, 0.0}, 4.0) == Approx(1.0).epsilon(2e-3));
 }
 

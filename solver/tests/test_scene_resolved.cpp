@@ -180,7 +180,7 @@ TEST_CASE("Fractures need what their length asks for") {
   scene.fracture->growth = Fracture::Growth::none;
   const auto jumps = [&](const std::vector<std::array<double, 2>>& path) {
     scene.fracture->path_m = path;
-    const auto cells = [&](int axis) { return static_cast<double>(scene_knots(scene, axis).size()) - 4.0; };
+    const auto cells = [&](std::size_t axis) { return static_cast<double>(scene_knots(scene, axis).size()) - 4.0; };
     const double n = 2.0 * (cells(0) + 1.0) * (cells(1) + 1.0);
     return std::sqrt((memory_need(scene) - 21e6 - 3200.0 * cells(0) * cells(1) - 500.0 * n * std::log2(n)) / 56.0);
   };
@@ -276,7 +276,7 @@ TEST_CASE("Thin layers between what parts them have more points") {
 
 TEST_CASE("Points are counted as cells are graded, and as the rock goes on beyond the block") {
   Scene scene = good(layered);
-  const auto cells = [&](int axis) { return static_cast<double>(scene_knots(scene, axis).size()) - 4.0; };
+  const auto cells = [&](std::size_t axis) { return static_cast<double>(scene_knots(scene, axis).size()) - 4.0; };
   scene.numerics.far_cell_m = 5.0;
   scene.stop.tip_y_m = 20.0;
   CHECK(points_of(scene) < 0.5 * 4.0 * 80.0 * 80.0);
